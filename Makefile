@@ -73,20 +73,20 @@ mini: modules
 
 # --- documentation -----------------------------------------------------------
 
-KERNELDOC ?= $(KDIR)/scripts/kernel-doc
 DOCDIR ?= $(BUILD)/doc
+SPHINXFLAGS ?= -W --keep-going
 NO_SPHINX = no sphinx-build: install python3-sphinx
-NO_KERNELDOC = no kernel-doc at $(KERNELDOC): install linux-headers-$(shell uname -r) or set KDIR=
 
 # in a copy, beside the pages that are generated
 doc:
 	@command -v sphinx-build >/dev/null || { echo "$(NO_SPHINX)" >&2; exit 1; }
-	@[ -e $(KERNELDOC) ] || { echo "$(NO_KERNELDOC)" >&2; exit 1; }
 	@rm -rf $(DOCDIR)/source && mkdir -p $(DOCDIR)/source
 	@cp -r Documentation/*.rst Documentation/pictures $(DOCDIR)/source
-	@Documentation/sphinx/api.py $(KERNELDOC) include/ecrt.h >$(DOCDIR)/source/api.rst
-	sphinx-build -q -W --keep-going -b html -c Documentation/sphinx $(DOCDIR)/source \
-		$(DOCDIR)/html
+	@PYTHONDONTWRITEBYTECODE=1 Documentation/sphinx/api.py include/ecrt.h \
+		>$(DOCDIR)/source/api.rst
+	@Documentation/sphinx/codes.py . >$(DOCDIR)/source/codes.rst
+	sphinx-build -q $(SPHINXFLAGS) -b html -d $(DOCDIR)/doctrees -c Documentation/sphinx \
+		$(DOCDIR)/source $(DOCDIR)/html
 
 .PHONY: doc
 

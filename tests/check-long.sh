@@ -8,7 +8,7 @@
 # pulled; 600,000 cycles beside readers of events; the packages of Debian 12 and 13; README's two
 # commands in a fresh root of Debian 13; a reboot and a suspend with both kinds of device; all
 # benchmarks, the cycle also with the legacy interrupt of the card. The last line is "N passed,
-# N failed"; results with their date are in Documentation/testing.rst.
+# N failed"; results with their date are in Documentation/results.rst.
 #
 # usage: check-long.sh [uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|events|packages|packages-13|
 #	check-13|reboot|bench|bench-legacy|KERNEL...]

@@ -2,11 +2,14 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """The reference of the application interface, from the kernel-doc comments of include/ecrt.h.
 
-usage: api.py KERNEL-DOC ECRT.H     writes reStructuredText to stdout
+usage: api.py ECRT.H [KERNEL-DOC]   writes reStructuredText to stdout; KERNEL-DOC: read the comments
+                                    with this script of the kernel instead of kerneldoc.py
 """
 import re
 import subprocess
 import sys
+
+import kerneldoc
 
 # heading, what the names of its functions begin with; the first that fits has the function
 GROUPS = (
@@ -65,12 +68,16 @@ def linked(lines, names):
 
 
 def main():
-    script, header = sys.argv[1:]
-    text = subprocess.run(["perl", script, "-rst", header], check=True, stdout=subprocess.PIPE,
-                          text=True).stdout
+    header, *script = sys.argv[1:]
+    if script:
+        text = subprocess.run(["perl", *script, "-rst", header], check=True,
+                              stdout=subprocess.PIPE, text=True).stdout
+    else:
+        with open(header) as file:
+            text = "\n".join(kerneldoc.document(file.read()))
     found = list(blocks(text))
     if not found:
-        sys.exit(f"{sys.argv[0]}: {script} finds no comment in {header}")
+        sys.exit(f"{sys.argv[0]}: no comment in {header}")
     names = {name for name, _ in found}
     groups = {title: [] for title in ORDER}
     for name, lines in found:

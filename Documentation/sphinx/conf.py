@@ -3,8 +3,9 @@
 project = "EtherCAT master"
 copyright = "its authors"       # noqa: A001, the name is Sphinx's
 html_theme = "alabaster"
-html_theme_options = {"description": "EtherCAT master for Linux", "page_width": "70em",
-                      "fixed_sidebar": True}
+html_theme_options = {"description": "EtherCAT master for Linux", "fixed_sidebar": True}
+html_static_path = ["static"]
+html_css_files = ["pages.css"]
 html_show_sourcelink = False
 html_copy_source = False
 highlight_language = "none"     # blocks are commands with their output

@@ -14,7 +14,7 @@ struct emergency {
 };
 
 /* CiA 301 table 26, ETG.1000.6 table 50; what is finer comes first */
-static const struct emergency groups[] = {
+static const struct emergency emergencies[] = {
 	{ 0xffff, 0x8110, "message lost, buffer overrun" },
 	{ 0xffff, 0x8130, "heartbeat missing" },
 	{ 0xffff, 0x8210, "PDO too short, not processed" },
@@ -49,7 +49,7 @@ static const struct emergency groups[] = {
 };
 
 /* CiA 402 (IEC 61800-7-201), error codes of object 0x603f; what is finer comes first */
-static const struct emergency drives[] = {
+static const struct emergency drive_emergencies[] = {
 	{ 0xffff, 0x2110, "short circuit or earth leakage, input side" },
 	{ 0xffff, 0x2120, "earth leakage, input side" },
 	{ 0xffff, 0x2130, "short circuit, input side" },
@@ -154,6 +154,6 @@ const char *ec_emergency_text(u16 code, u32 profile)
 	const char *text = NULL;
 
 	if (profile == EC_PROFILE_DRIVE)
-		text = look(drives, ARRAY_SIZE(drives), code);
-	return text ?: look(groups, ARRAY_SIZE(groups), code) ?: "unknown group";
+		text = look(drive_emergencies, ARRAY_SIZE(drive_emergencies), code);
+	return text ?: look(emergencies, ARRAY_SIZE(emergencies), code) ?: "unknown group";
 }

@@ -421,13 +421,41 @@ old_removed() {
 t "the old master's files are removed as documented" old_removed
 
 # --- documentation ---------------------------------------------------------------
-t "make doc builds HTML without a warning" make -s KDIR="$KDIR" DOCDIR="$tmp/doc" doc
+t "make doc builds HTML without a warning, and without kernel headers" \
+	make -s KDIR="$tmp/nowhere" DOCDIR="$tmp/doc" doc
 t "it has the reference of ecrt.h" grep -q c.ecrt_master_activate "$tmp/doc/html/api.html"
+
+# its comments are read as the kernel's script reads them
+api_reads() {
+	Documentation/sphinx/api.py include/ecrt.h | grep . >"$tmp/api" &&
+		Documentation/sphinx/api.py include/ecrt.h "$KDIR/scripts/kernel-doc" |
+			grep . | diff "$tmp/api" -
+}
+t "it has the text that kernel-doc of the kernel makes" api_reads
+
+# codes_notice FILE SED FINDING: a change of a table or of the remedies is an error of "make doc"
+codes_notice() {
+	local out
+
+	mkdir -p "$tmp/codes" &&
+		cp --parents master/wire/*.[ch] tool/why_slave.c \
+			Documentation/sphinx/{codes.py,remedies.txt} "$tmp/codes" &&
+		sed -i "$2" "$tmp/codes/$1" || return 1
+	out=$("$tmp/codes/Documentation/sphinx/codes.py" "$tmp/codes" 2>&1) && return 1
+	grep -F "$3" <<<"$out"
+}
+t "an AL status code without remedy is noticed" codes_notice master/wire/al.c \
+	's/{ 0x00F0, /{ 0x00EE, "new" },\n&/' 'no remedy of al 0x00ee (new)'
+t "a remedy without code is noticed" codes_notice Documentation/sphinx/remedies.txt \
+	'$aabort 0x12345678 none' "'abort 0x12345678' matches no code"
+t "a table that is not found is noticed" codes_notice master/wire/mbox.c \
+	's/^} errors\[\]/} renamed[]/' "no table 'errors' in master/wire/mbox*.c"
 
 # else the check above could not fail
 doc_notices() {
 	mkdir -p "$tmp/docs/Documentation" "$tmp/docs/include" &&
 		cp -r Documentation/sphinx Documentation/pictures "$tmp/docs/Documentation" &&
+		cp --parents master/wire/*.[ch] tool/why_slave.c "$tmp/docs" &&
 		cp Makefile "$tmp/docs" && cp include/ecrt.h "$tmp/docs/include" || return 1
 	printf 'Title\n=====\n\n:doc:`nowhere`\n\n.. toctree::\n   :glob:\n\n   *\n' \
 		>"$tmp/docs/Documentation/index.rst"
@@ -435,6 +463,17 @@ doc_notices() {
 		grep "index.rst:4: WARNING: unknown document: 'nowhere'" "$tmp/doc.log"
 }
 t "a reference to a page that does not exist is noticed" doc_notices
+t "no block or table scrolls sideways at 1200 px" tests/build/width.py "$tmp/doc/html"
+# else the check above could not fail
+wide_noticed() {
+	mkdir -p "$tmp/wide/_static" &&
+		cp Documentation/sphinx/static/pages.css "$tmp/wide/_static" &&
+		printf '<link href="_static/pages.css"><pre>%100s</pre>%s<pre>%100s</pre>' \
+			x '<ul><li>' y >"$tmp/wide/a.html" || return 1
+	! tests/build/width.py "$tmp/wide" >"$tmp/wide/out" && cat "$tmp/wide/out" &&
+		[ "$(grep -c '^a.html: ' "$tmp/wide/out")" = 1 ] && grep 'y$' "$tmp/wide/out"
+}
+t "a block that scrolls sideways is noticed" wide_noticed
 
 # no_headers TARGET: one line that says what to do, before anything else
 no_headers() {
@@ -447,6 +486,23 @@ t "make without kernel headers says what to install" no_headers all
 t "make install without kernel headers says what to install" no_headers install
 t "make uninstall needs no kernel headers" make -s KDIR="$tmp/nowhere" DESTDIR="$root" PREFIX=$prefix uninstall
 t "every command of the documentation is run by a test" tests/build/commands.py
+t "simulator.rst has the slaves of each built-in segment" tests/build/segments.py
+# else the check above could not fail
+segment_noticed() {
+	sed 's/``dio`` /``dao`` /' Documentation/simulator.rst >"$tmp/simulator.rst" &&
+		! tests/build/segments.py "$tmp/simulator.rst" >"$tmp/segments" &&
+		grep 'no row bench 1 dio EL1859' "$tmp/segments" &&
+		grep 'no slave bench 1 dao EL1859' "$tmp/segments"
+}
+t "a slave with another name is noticed" segment_noticed
+# screen_is --screen|--like OUTPUT: is it accepted as that of a page?
+screen_is() {
+	printf '%b' '::\n\n    $ x\n    a 1\n    ...\n    b ... 2\n\nEnd\n' >"$tmp/page.rst"
+	printf '%b' "$2" | tests/build/commands.py "$1" "$tmp/page.rst" '$ x'
+}
+t "another output than that of a page is noticed" eval \
+	'screen_is --screen "a 1\nc\nb c 2\n" && ! screen_is --screen "a 2\nb c 2\n" &&
+	screen_is --like "a  2\nb c 3\n" && ! screen_is --like "c 1\nb c 2\n"'
 
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

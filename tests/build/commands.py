@@ -3,7 +3,8 @@
 """Every command of README.md, CONTRIBUTING.md, Documentation/ is run by a test or marked.
 
 Takes the literal blocks, and the inline commands that begin with make, ethercat, ethercatctl,
-systemctl, ethercat-sim or tests/. Each must be in commands.txt, as
+systemctl, ethercat-sim or tests/, also of the page of codes that "make doc" writes. Each must be in
+commands.txt, as
 
     TEST       : TEXT : COMMAND      the file TEST contains TEXT, which runs the command
     level NAME : TEXT : COMMAND      tests/check.sh runs that level by default, with TEXT
@@ -13,9 +14,16 @@ systemctl, ethercat-sim or tests/. Each must be in commands.txt, as
 and each line there must be used. That TEXT runs the command with these words, and that
 TEST is run, is not proved here: tests/system/docs.bats reads its commands from the
 documents, all other rows are for the reader to follow.
-usage: commands.py [--block FILE FIRST_LINE]
+
+A block that begins with "$ COMMAND" is output: docs.bats has the line "screen FILE '$ COMMAND'",
+which compares it with what the command prints now; "..." in it stands for anything. With "like
+FILE '$ COMMAND'" the values of numbers do not count.
+usage: commands.py [--block FILE FIRST_LINE]    the commands of a block
+       commands.py --screen|--like FILE FIRST_LINE      is the output on stdin that of the block?
 """
+import difflib
 import re
+import subprocess
 import sys
 from pathlib import Path
 
@@ -41,9 +49,8 @@ def blocks(path):
             inside = line.rstrip().endswith("::") if rst else True
 
 
-def inline(path):
-    mark = "``" if path.suffix == ".rst" else "`"
-    text = path.read_text().replace("\n", " ")
+def inline(text, mark):
+    text = re.sub(r"\s+", " ", text)
     for span in re.findall(mark + "([^`]+)" + mark, text):
         if INLINE.match(span) and span not in PROGRAMS:
             yield span
@@ -104,10 +111,44 @@ def show(path, first):
     return 1
 
 
+def folded(line):
+    """A line without the values of its numbers, which also change its blanks."""
+    number = r"(?<![\w.])[-+]?(0x)?[0-9a-f]*[0-9.+][0-9a-f.+:]*(?![\w])|\b[0-9a-f]{2}\b"
+    return re.sub(r"\s+", " ", re.sub(number, "#", line))
+
+
+def screen(fold, path, first):
+    """Does stdin equal a block, but for its first line and for "..."?"""
+    printed = [fold(line.rstrip()) for line in sys.stdin.read().rstrip("\n").split("\n")]
+    for block in blocks(ROOT / path):
+        if block[0] == first:
+            block = [line if line == "..." else "...".join(map(fold, line.rstrip().split("...")))
+                     for line in block[1:]]
+            pattern = "".join("(?:.*\n)*?" if line == "..." else
+                              ".*".join(map(re.escape, line.split("..."))) + "\n"
+                              for line in block)
+            if re.fullmatch(pattern, "\n".join(printed) + "\n"):
+                return 0
+            print("\n".join(difflib.unified_diff(block, printed, path, "printed", lineterm="")))
+            return 1
+    print(f"{path} has no block '{first}'")
+    return 1
+
+
+def codes():
+    """What "make doc" writes about codes, without the tables around it."""
+    page = ROOT / "Documentation/sphinx/codes.py"
+    return subprocess.run([page, ROOT, "--remedies"], check=True, stdout=subprocess.PIPE,
+                          text=True).stdout
+
+
 def main():
     if sys.argv[1:2] == ["--block"]:
         return show(*sys.argv[2:])
+    if sys.argv[1:2] in (["--screen"], ["--like"]):
+        return screen(folded if sys.argv[1] == "--like" else str, *sys.argv[2:])
     rows, used, bad, count = table(), set(), [], 0
+    shown = (ROOT / "tests/system/docs.bats").read_text()
 
     def look(where, what):
         nonlocal count
@@ -125,11 +166,19 @@ def main():
             if rows.get(first, ("",))[0] == "-":
                 used.add(first)
                 continue
+            if first.startswith("$ "):
+                count += 1
+                test = rf"\b(screen|like) {name}[\s\\]+['\"]{re.escape(first)}['\"]"
+                if not re.search(test, shown):
+                    bad.append(f"{name}: docs.bats has no: screen {name} '{first}'")
+                continue
             for line in block:
                 if command(line):
                     look(name, command(line))
-        for span in inline(path):
+        for span in inline(path.read_text(), "``" if path.suffix == ".rst" else "`"):
             look(name, command(span))
+    for span in inline(codes(), "``"):
+        look("codes.py", command(span))
     run = levels()
     for what, (test, text) in rows.items():
         if what not in used:

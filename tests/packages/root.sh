@@ -25,7 +25,7 @@ fi
 first=linux-headers-$(tests/vm/kernels.sh release $kernel)
 second="${backports:+-t $backports }linux-headers-amd64"
 packages="build-essential debhelper dh-dkms dkms fakeroot iproute2 kmod lintian man-db pkg-config
-	systemd systemd-sysv udev $first"
+	python3-sphinx systemd systemd-sysv udev $first"
 root=$cache/roots/packages-$suite
 layout="2 $packages $second"
 

@@ -126,6 +126,24 @@ module_builds() {
 		! grep -E "warning:|WARNING:" log'
 }
 
+# The pages, and the tutorial that the guest runs
+pages() {
+	local page=Documentation/first-ten-minutes.rst block
+
+	in_root 'cd /usr/share/doc/ethercat-doc/html
+		grep -q "AL status codes" codes.html
+		grep -q c.ecrt_master_activate api.html
+		for f in $(sed -n "s/.*href=\"\([a-z-]*\.html\)\".*/\1/p" index.html); do
+			[ -s $f ]
+		done' &&
+	for block in 'modprobe ec_master main_devices=sim0' 'ethercat graph --tree' \
+		'cp -r /usr/share/doc/ethercat-doc/examples ~' \
+		'~/examples/build/dc_motion follow 4 5 5'; do
+		tests/build/commands.py --block "$page" "$block" || return
+		echo sleep 5	# a scan
+	done >"$tmp/root/upper/srv/tutorial"
+}
+
 # The service starts with the guest, which has systemd as its init; an application with the unit
 # of Documentation/install.rst; stops that are refused; removal while masters run.
 boots() {
@@ -180,6 +198,9 @@ boots() {
 		wait $app || true
 		ethercatctl stop
 		unloaded
+		HOME=/root sh -eux /srv/tutorial
+		ethercatctl stop
+		unloaded
 		systemctl restart ethercat
 		systemctl stop ethercat
 		unloaded
@@ -229,8 +250,9 @@ t "DKMS has built the modules for the installed kernel" has_modules 0.1.0 1
 t "the modules are signed by DKMS, and can be signed by hand" signed
 t "a program builds against libethercat-dev" program_builds
 t "a kernel module builds against the modules that are installed" module_builds
+t "the pages are HTML, with the codes and the reference of ecrt.h" pages
 t "systemd starts the simulated bus and an application in a guest, and stops them" boots
-in_root 'rm -r /srv/mini /srv/mirror /srv/app.service'
+in_root 'rm -rf /srv/mini /srv/mirror /srv/app.service /srv/tutorial /root/examples'
 t "the headers of another kernel are installed" in_root 'dpkg -i /srv/second/*.deb'
 t "DKMS has built the modules for the new kernel" has_modules 0.1.0 2
 in_root 'echo "# mine" >>/etc/ethercat.conf; systemctl enable ethercat

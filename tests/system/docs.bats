@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# vm: --icount --nics --timeout 600
+# vm: --icount --nics --timeout 900
 # The commands of README and Documentation, as they are written there. Which test runs
 # which: tests/build/commands.txt.
 
@@ -19,6 +19,17 @@ setup_file() {
 	cp "$EC_BUILD"/modules/{master,devices,devices/sim}/*.ko "$dir"
 	depmod
 	modprobe veth
+	install_packages
+}
+
+# what ethercat-doc and libethercat-dev install
+install_packages() {
+	local doc=/usr/share/doc/ethercat-doc
+
+	mkdir -p $doc
+	cp -r "$BATS_TEST_DIRNAME/../../examples" $doc
+	rm -rf $doc/examples/build ~/examples
+	make -s -C "$BATS_TEST_DIRNAME/../../lib" O="$EC_BUILD/lib" install
 }
 
 setup() {
@@ -30,6 +41,7 @@ setup() {
 teardown() {
 	local d
 	[ -z "${pid:-}" ] || kill "$pid" 2>/dev/null || true
+	[ -z "${pid:-}" ] || wait "$pid" 2>/dev/null || true
 	rmmod ec_sim ec_generic ec_master 2>/dev/null || true
 	for d in veth0 eth1; do ip link del $d 2>/dev/null || true; done
 	rm -f /tmp/segment
@@ -45,13 +57,21 @@ doc() {
 		line=${line//PID/${3:-PID}}
 		echo "$ $line"
 		case $line in
-		tcpdump*|ethercat-sim*|cat\ trace_pipe) eval "$line" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- & pid=$! ;;
+		tcpdump*|ethercat-sim*|cat\ trace_pipe|*dc_motion*\ \&)
+			line=${line%&}
+			eval "$line" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- & pid=$! ;;
 		ethercat\ slaves|tool/build/ethercat\ slaves) wait_for 60 eval "$line | grep -q PREOP"; eval "$line" ;;
+		ethercat\ why) eval "$line" || [ $? = 1 ] || return ;;	# 1: a fault
 		*) eval "$line" || return ;;
 		esac
 	done < <("$BATS_TEST_DIRNAME/../build/commands.py" --block "$1" "$2")
 	[ $n -gt 0 ]
 }
+
+# screen FILE '$ COMMAND': it prints what the page shows
+screen() { eval "${2#?}" 2>&1 | "$BATS_TEST_DIRNAME/../build/commands.py" --screen "$1" "$2"; }
+# the same but for the values of numbers
+like() { eval "${2#?}" 2>&1 | "$BATS_TEST_DIRNAME/../build/commands.py" --like "$1" "$2"; }
 
 has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 ]"; }
 
@@ -75,8 +95,10 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 }
 
 @test "examples.rst: mirror without hardware" {
-	doc Documentation/examples.rst 'insmod build/modules/master/ec_master.ko main_devices=sim0' \
-		>"$BATS_TEST_TMPDIR/mirror"
+	local f=Documentation/examples.rst
+
+	doc $f 'cp -r /usr/share/doc/ethercat-doc/examples ~'
+	doc $f 'modprobe ec_master main_devices=sim0' >"$BATS_TEST_TMPDIR/mirror"
 	grep -E '^inputs: 0x04' "$BATS_TEST_TMPDIR/mirror"
 }
 
@@ -101,13 +123,15 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 @test "first-ten-minutes.rst: from the scan to a broken cable" {
 	local f=Documentation/first-ten-minutes.rst
 
-	doc $f 'insmod build/modules/master/ec_master.ko main_devices=sim0'
+	doc $f 'modprobe ec_master main_devices=sim0'
 	has_slaves 22
-	doc $f 'tool/build/ethercat graph --tree' >"$BATS_TEST_TMPDIR/look"
+	screen Documentation/first-ten-minutes.rst '$ ethercat slaves'
+	doc $f 'ethercat graph --tree' >"$BATS_TEST_TMPDIR/look"
 	cat "$BATS_TEST_TMPDIR/look"
-	grep -q '^├─ 15  ' "$BATS_TEST_TMPDIR/look"
 	grep -qx '0x00000002 2' "$BATS_TEST_TMPDIR/look"
-	doc $f 'examples/build/dc_motion follow 4 5 5'
+	like Documentation/first-ten-minutes.rst '$ ethercat graph --tree'
+	doc $f 'cp -r /usr/share/doc/ethercat-doc/examples ~'
+	doc $f '~/examples/build/dc_motion follow 4 5 5'
 	has_slaves 22
 	doc $f "(sleep 1; echo 'errors axis1.0 add=5' >/sys/kernel/debug/ec_sim/sim0) &" \
 		>"$BATS_TEST_TMPDIR/crc"
@@ -120,16 +144,130 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 @test "first-drive.rst: from the identity to a motion" {
 	local f=Documentation/first-drive.rst
 
-	doc $f 'insmod build/modules/master/ec_master.ko main_devices=sim0'
+	doc $f 'modprobe ec_master main_devices=sim0'
 	has_slaves 4
-	doc $f 'tool/build/ethercat slaves -v -p3' >"$BATS_TEST_TMPDIR/pdos"
+	doc $f 'ethercat slaves -v -p3' >"$BATS_TEST_TMPDIR/pdos"
 	grep -q 'PDO entry 0x607a:00' "$BATS_TEST_TMPDIR/pdos"
-	doc $f 'tool/build/ethercat upload -p3 -t uint16 0x6041 0'
-	doc $f 'tool/build/ethercat download -p3 -t int8 0x6060 0 8'
+	doc $f 'ethercat upload -p3 -t uint16 0x6041 0'
+	doc $f 'ethercat download -p3 -t int8 0x6060 0 8'
 	[ "$(ethercat upload -p3 -t int8 0x6060 0)" = "0x08 8" ]
-	doc $f 'examples/build/dc_motion follow 2 3 4' >"$BATS_TEST_TMPDIR/motion"
+	has_examples
+	doc $f '~/examples/build/dc_motion follow 2 3 4' >"$BATS_TEST_TMPDIR/motion"
 	cat "$BATS_TEST_TMPDIR/motion"
 	[ "$(awk '/^axis/ && $NF >= 90000' "$BATS_TEST_TMPDIR/motion" | wc -l)" = 2 ]
+}
+
+# those of first-ten-minutes.rst, if its test has not run
+has_examples() {
+	local f=Documentation/first-ten-minutes.rst
+
+	[ -x ~/examples/build/dc_motion ] ||
+		doc $f 'cp -r /usr/share/doc/ethercat-doc/examples ~'
+}
+
+# motion SECONDS: a simulated bench whose axes move
+motion() {
+	has_examples
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment=bench
+	has_slaves 22
+	~/examples/build/dc_motion follow 4 5 "$1" >"$BATS_TEST_TMPDIR/motion" 2>&1 3>&- &
+	pid=$!
+	wait_for 60 eval '[ "$(ethercat slaves | grep -c " OP ")" = 3 ]'
+}
+
+@test "sizing.rst and clocks.rst: wire time and clocks of a running application" {
+	motion 60
+	# more clock datagrams than usual in the first seconds
+	wait_for 20 eval "ethercat master -v | grep -q 'Free for acyclic frames: 889.44 us'"
+	like Documentation/sizing.rst '$ ethercat domains -v'
+	like Documentation/sizing.rst '$ ethercat master -v'
+	like Documentation/clocks.rst '$ ethercat dc -p4,5'
+	ethercat domains -v | grep -q 'Datagrams: 1, 40 bytes, 3.20 us of wire time'
+	ethercat master -v | grep -q '10.56 us of wire time'
+}
+
+@test "capture.rst: frames of an SDO" {
+	local f=Documentation/capture.rst filter
+
+	tshark() { command tshark "$@" 2>/dev/null; }	# warns root
+	doc $f 'modprobe ec_master main_devices=sim0 capture=1'
+	wait_for 20 eval '! pidof tcpdump'
+	doc $f 'tshark -r /tmp/frames.pcap -Y ecat_mailbox.coe' >"$BATS_TEST_TMPDIR/coe"
+	grep -q 'Idx=0x1018 Sub=1' "$BATS_TEST_TMPDIR/coe"
+	screen Documentation/capture.rst \
+		"$ tshark -r /tmp/frames.pcap -Y 'ecat_mailbox.coe.sdoidx == 0x1018'"
+	for filter in 'ecat.ado == 0x0120' 'ecat.ado == 0x0130' 'ecat.ado == 0x0910' ecat.lad \
+		ecat_mailbox.coe.abortcode; do
+		grep -qF "\`\`$filter\`\`" "$BATS_TEST_DIRNAME/../../$f"
+		command tshark -r /tmp/frames.pcap -Y "$filter" -c 1
+	done
+	rm /tmp/frames.pcap
+}
+
+@test "several-masters.rst: two simulated buses" {
+	local f=Documentation/several-masters.rst
+
+	doc $f 'modprobe ec_master main_devices=sim0,sim1'
+	wait_for 60 all_slaves_are PREOP 24
+	doc $f 'ethercat slaves -m1'
+	screen Documentation/several-masters.rst '$ ethercat slaves -m1'
+	screen Documentation/several-masters.rst '$ ethercat upload -p4 0x1018 1'
+	[ -c /dev/EtherCAT1 ]
+}
+
+@test "coming-from-twincat.rst: slaves, process data and lists" {
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment=bench
+	has_slaves 22
+	local f=Documentation/coming-from-twincat.rst
+
+	doc $f 'ethercat slaves' >"$BATS_TEST_TMPDIR/first"
+	grep -q 'RxPDO 0x1608 "Channel 1"' "$BATS_TEST_TMPDIR/first"
+	doc $f 'ethercat cstruct -p3' >"$BATS_TEST_TMPDIR/lists"
+	grep -q ec_pdo_entry_info_t "$BATS_TEST_TMPDIR/lists"
+	doc $f 'ethercat why' >"$BATS_TEST_TMPDIR/why"
+	grep -q '^All is well' "$BATS_TEST_TMPDIR/why"
+}
+
+@test "debugging.rst: an application that is stopped" {
+	local f=Documentation/debugging.rst
+
+	motion 60
+	doc $f 'ethercat why' >"$BATS_TEST_TMPDIR/outside"
+	grep -q '^All is well' "$BATS_TEST_TMPDIR/outside"
+	grep -q '^0000001c' "$BATS_TEST_TMPDIR/outside"
+	# 124: of timeout
+	run doc $f 'timeout -s INT 2 strace -c -f -p $(pidof dc_motion)'
+	echo "$output"
+	[ "$status" = 124 ]
+	[[ $output == *" fadvise64"*" clock_nanosleep"* ]]
+	[[ $output != *" ioctl"* ]]
+	kill "$pid"
+	wait "$pid" || true
+	has_slaves 22
+	doc $f '~/examples/build/dc_motion follow 4 5 &' >"$BATS_TEST_TMPDIR/why"
+	cat "$BATS_TEST_TMPDIR/why"
+	sed -n '/^Fault/,/^1 fault/p' "$BATS_TEST_TMPDIR/why" |
+		"$BATS_TEST_DIRNAME/../build/commands.py" --screen $f '$ ethercat why'
+	rc=0
+	wait "$pid" || rc=$?
+	[ $rc = 1 ]
+	ethercat log | grep -q 'cycle timeout: no cyclic frame for'
+	ethercat log | grep -q 'cycle(s) skipped'
+	grep -q 'a drive has left operation' "$BATS_TEST_TMPDIR/out"
+}
+
+@test "simulator.rst: a cable that is cut and repaired" {
+	local f=Documentation/simulator.rst
+
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment=bench
+	has_slaves 22
+	echo 'cut axis1.0' >/sys/kernel/debug/ec_sim/sim0
+	has_slaves 11
+	doc $f "echo 'cut axis1.0' >/sys/kernel/debug/ec_sim/sim0"
+	has_slaves 22
 }
 
 # sources DEVICE: different source addresses of the next 20 EtherCAT frames that come to it
@@ -189,7 +327,8 @@ sources() {
 	has_slaves 3
 	local c
 	for c in 'ethercat master' 'ethercat master -v' 'ethercat domains -v' 'ethercat slaves' \
-		'ethercat slaves -v' 'ethercat crc' 'ethercat cycle' 'ethercat cycle --reset'; do
+		'ethercat slaves -v' 'ethercat crc' 'ethercat cycle' 'ethercat cycle --reset' \
+		'ethercat domains' 'ethercat config' 'ethercat cstruct'; do
 		echo "$ $c"
 		eval "$c"
 	done
@@ -205,6 +344,15 @@ sources() {
 	ethercat latch -p 2
 	ethercat latch -p 2 single
 	ethercat latch -p 2 continuous
+	# "make doc" has these on its page of codes
+	ethercat states INIT
+	wait_for 60 all_slaves_are INIT 3
+	ethercat states PREOP
+	wait_for 60 all_slaves_are PREOP 3
+	ethercat states SAFEOP
+	wait_for 60 all_slaves_are SAFEOP 3
+	ethercat states PREOP
+	ethercat sii_read -v -p2 | grep -q '^SII Area'
 	ethercat-sim --check /tmp/segment
 	# there is no session
 	run ethercat release
