@@ -21,6 +21,7 @@ setup() {
 		"$root"/sys/bus/pci/{devices,drivers/ec_intel}
 	sed "s,/\(sys\|run\|dev/E\|etc/mod\),$root&,g" "$here/ethercatctl" >"$root/sbin/ethercatctl"
 	chmod +x "$root/sbin/ethercatctl"
+	sed "s,/\(sys\|run\),$root&,g" "$here/devices.sh" >"$root/sbin/devices.sh"
 	cp "$here/conf.sh" "$root/sbin"
 	stub id 'echo 0'
 	stub ip

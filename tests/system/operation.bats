@@ -165,7 +165,7 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	fails 'cannot load ec_sim: ec_sim: segment=bnech: neither a built-in segment' own start
 	none_loaded
 	# the clone may be in a folder of root's
-	install -m 755 -D -t /run/ctl "$CTL" "${CTL%/*}/conf.sh" "$CONF/sim.conf"
+	install -m 755 -D -t /run/ctl "$CTL" "${CTL%/*}"/{conf,devices}.sh "$CONF/sim.conf"
 	fails "'start' needs root" setpriv --reuid=65534 --clear-groups /run/ctl/ethercatctl \
 		-c /run/ctl/sim.conf start
 	conf 'MASTER0_DEVICE="sim0"' 'MODPROBE_FLAGS="-d/nowhere"'
