@@ -155,6 +155,93 @@ managed() {
 	fi
 }
 
+# unusable INTERFACE: why it can never be the device of a master
+unusable() {
+	local type
+
+	read -r type 2>/dev/null <"/sys/class/net/$1/type" || type=1
+	if [ "$type" = 772 ]; then
+		echo "the loopback interface has no cable"
+	elif [ "$type" != 1 ]; then
+		echo "$1 is not an Ethernet interface"
+	elif [ -e "/sys/class/net/$1/phy80211" ]; then
+		echo "$1 is a wireless interface; slaves need a cable"
+	elif [ -e "/sys/class/net/$1/brport" ] || [ -e "/sys/class/net/$1/bonding_slave" ]; then
+		echo "$1 is a port of $(basename "$(readlink "/sys/class/net/$1/master")"); release it with 'ip link set $1 nomaster'"
+	else
+		return 1
+	fi
+}
+
+# usable INDEX DEVICE: unless it is an interface that can never be the device of a master
+usable() {
+	local name why
+
+	is_sim "$2" || ! name=$(interface "$2") || ! why=$(unusable "$name") || {
+		eval "number=\$at_$1"
+		bad "MASTER$1_DEVICE=\"$2\": $why; 'ethercat devices' lists the cards"
+	}
+}
+
+# known INDEX DEVICE: reports a device that is not there
+known() {
+	local other what="MASTER$1_DEVICE=\"$2\""
+
+	eval "number=\$at_$1"
+	! present "$2" && [ -z "$(recall "$2")" ] || return 0
+	if is_mac "$2"; then
+		warn "$what: no interface has this address now; the master waits for it"
+	elif is_any "$2"; then
+		bad "$what: no card is free; 'ethercat devices' lists the cards"
+	elif is_pci "$2"; then
+		bad "$what: no card at this PCI address; 'ethercat devices' lists the cards"
+	elif other=$(altname_of "$2"); then
+		bad "$what is another name of $other; write $other"
+	else
+		bad "$what: no such interface; 'ethercat devices' lists the cards"
+	fi
+}
+
+# altname_of NAME: the interface that has this name as another one
+altname_of() {
+	local other
+
+	other=$(ip -o link show dev "$1" 2>/dev/null) || return
+	other=${other#*: } other=${other%%[:@]*}
+	[ -n "$other" ] && [ "$other" != "$1" ] && echo "$other"
+}
+
+known_segment() {	# known_segment NAME
+	local out
+
+	case $1 in
+	/*)	if [ ! -f "$1" ] || [ ! -r "$1" ]; then
+			bad "SIM_SEGMENT: no file $1 that can be read"
+		elif command -v ethercat-sim >/dev/null; then
+			out=$(ethercat-sim --check "$1" 2>&1) || bad "SIM_SEGMENT: $out"
+		fi ;;
+	*)	has "$1" thin three bench line100 line1000 ||
+			bad "SIM_SEGMENT: no segment '$1'; there are thin, three, bench, line100, line1000, and paths, which begin with /" ;;
+	esac
+}
+
+# check_machine [all]: whether this computer has what the configuration names. start waits for
+# devices; 'all' reports those that are absent as well.
+check_machine() {
+	local i
+
+	each_master usable
+	[ -z "${1:-}" ] || each_master known
+	number=$at_up
+	for i in $up; do
+		[ -z "${1:-}" ] || [ -e "/sys/class/net/$i" ] ||
+			warn "UPDOWN_INTERFACES: no interface $i; 'ip link' lists the interfaces"
+	done
+	number=$at_segments
+	[ "$sims" = 0 ] || for i in $(echo "$segments" | tr , ' '); do known_segment "$i"; done
+	[ "$wrong" = 0 ]
+}
+
 # check_interface INDEX DEVICE NAME
 check_interface() {
 	local all manager
