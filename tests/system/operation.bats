@@ -189,7 +189,7 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	own start
 	conf 'MASTER0_DEVICE="lo"'
 	fails 'the loopback interface has no cable' own restart
-	attached veth0
+	attached "$(cat /sys/class/net/veth0/address)"
 	own stop
 	none_loaded
 }
