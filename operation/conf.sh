@@ -155,6 +155,19 @@ set_flags() {
 	modprobe_flags=$1
 }
 
+unknown_variable() {
+	local upper
+
+	upper=$(echo "$1" | tr a-z A-Z)
+	case $upper in
+	"$1") ;;
+	MASTER*_DEVICE|MASTER*_BACKUP|DEVICE_MODULES|UPDOWN_INTERFACES|SIM_SEGMENT|MODPROBE_FLAGS)
+		bad "unknown variable $1; write $upper"
+		return ;;
+	esac
+	warn "unknown variable $1 has no effect; see 'man ethercatctl'"
+}
+
 set_variable() {	# set_variable NAME VALUE
 	case $1 in
 	MASTER*_DEVICE|MASTER*_BACKUP) set_master "$1" "$2" ;;
@@ -164,7 +177,7 @@ set_variable() {	# set_variable NAME VALUE
 	SIM_SEGMENT) set_segments "$2" ;;
 	EOE_INTERFACES|EOE_AUTOCREATE|PCAP_SIZE_MB|REBIND_NICS)
 		[ -z "$2" ] || warn "$1 has no effect in this version" ;;
-	*)	warn "unknown variable $1 has no effect; see 'man ethercatctl'" ;;
+	*)	unknown_variable "$1" ;;
 	esac
 }
 
@@ -233,6 +246,9 @@ parse_line() {
 	esac
 	name=${text%%=*}
 	case $name in
+	'export '*)
+		bad "'$name': this file is not run as a shell script; write ${name#export }=..."
+		return ;;
 	''|[0-9]*|*[!A-Za-z0-9_]*)
 		is_typed "$name" &&
 			bad "'$name' is no name of a variable; write NAME=\"value\" without blanks beside ="

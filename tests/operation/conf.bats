@@ -142,6 +142,9 @@ accepted() {
 		'1: MASTER0_DEVICE="525400ec0000": write 52:54:00:ec:00:00'
 	refused 'MASTER0_DEVICE="01:00.0"' '1: MASTER0_DEVICE="01:00.0": write 0000:01:00.0'
 	refused 'MASTER0_DEVICE="SIM1"' '1: MASTER0_DEVICE="SIM1": write sim1'
+	refused 'master0_device="eth0"\nexport SIM_SEGMENT=thin' \
+		'1: unknown variable master0_device; write MASTER0_DEVICE' \
+		"2: 'export SIM_SEGMENT': this file is not run as a shell script; write SIM_SEGMENT=..."
 	refused 'MASTER0_DEVICE="sim"' '1: MASTER0_DEVICE="sim": write sim0'
 	refused 'MASTER0_DEVICE="sim12"' '1: MASTER0_DEVICE="sim12": the simulator has sim0 to sim7'
 	refused 'MASTER0_DEVICE="eth0,eth1"' \
@@ -240,15 +243,22 @@ accepted() {
 	[ "$status" = 6 ]
 }
 
-@test "an unknown verb prints the usage" {
-	local words
+@test "an unknown command is named before the usage" {
+	local words first
 
-	for words in '' reload 'start stop' '-c'; do
+	while IFS='|' read -r words first; do
 		# shellcheck disable=SC2086
 		run ctl $words
 		[ "$status" = 1 ]
-		[[ $output == "usage: ethercatctl "* ]]
-	done
+		[[ ${lines[0]} == "$first"* ]]
+		[[ $output == *"usage: ethercatctl "* ]]
+	done <<-'END'
+	|usage: ethercatctl
+	reload|ethercatctl: unknown command 'reload'
+	start stop|ethercatctl: more than one command: start stop
+	-c|ethercatctl: option -c needs a file and a command
+	-c file|ethercatctl: option -c needs a file and a command
+	END
 	run ctl --help
 	[ "$status" = 0 ]
 }
