@@ -118,6 +118,10 @@ set_modules() {
 	local m
 
 	modules=
+	case $1 in
+	*,*)	bad "DEVICE_MODULES=\"$1\": separate names by blanks"
+		return ;;
+	esac
 	for m in $1; do
 		m=${m#ec_}
 		has "$m" $native_drivers $other_drivers ||

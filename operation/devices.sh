@@ -195,6 +195,8 @@ known() {
 		bad "$what: no card is free; 'ethercat devices' lists the cards"
 	elif is_pci "$2"; then
 		bad "$what: no card at this PCI address; 'ethercat devices' lists the cards"
+	elif other=$(echo "$2" | tr A-Z a-z) && interface "$other" >/dev/null; then
+		bad "$what: no such interface; write $other"
 	elif other=$(altname_of "$2"); then
 		bad "$what is another name of $other; write $other"
 	else

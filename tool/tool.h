@@ -13,6 +13,8 @@
 #define EC_TOOL_VERSION		"0.1.0"
 #endif
 
+#define EC_TOOL_COMMANDS	64	/* room for all */
+
 /* bits of struct cmd.flags */
 #define CMD_ONE_MASTER		1	/* -m must leave exactly one */
 #define CMD_HISTORIC		2	/* abbreviations resolve to it first */
@@ -124,6 +126,7 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 const struct cmd *cmd_exact(const char *name);
 int cmd_lookup(const char *text, const struct cmd **found);
 int cmd_unknown(const char *text);
+const char *opt_nearest(const char *word);
 int cmd_ambiguous(const char *text, const struct cmd **found, int n);
 
 /* help.c */

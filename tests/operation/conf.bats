@@ -84,6 +84,7 @@ accepted() {
 		"1: MASTER0_DEVICE=\"veth1\": veth1 is a port of br0; release it with 'ip link set veth1 nomaster'"
 	refused 'MASTER0_DEVICE=sim0\nMASTER1_DEVICE="eth9"' \
 		"2: MASTER1_DEVICE=\"eth9\": no such interface; 'ethercat devices' lists the cards"
+	refused 'MASTER0_DEVICE="Eth1"' '1: MASTER0_DEVICE="Eth1": no such interface; write eth1'
 	refused 'MASTER0_DEVICE="0000:99:00.0"' \
 		'1: MASTER0_DEVICE="0000:99:00.0": no card at this PCI address;'
 	refused 'MASTER0_DEVICE="ff:ff:ff:ff:ff:ff"' \
@@ -218,6 +219,8 @@ accepted() {
 		'2: MASTERx_BACKUP: the masters are'
 	refused 'MASTER0_DEVICE=eth0\nMASTER1_DEVICE=eth0' \
 		'2: MASTER1_DEVICE="eth0" is the device of MASTER0'
+	refused 'DEVICE_MODULES="generic,e1000"' \
+		'1: DEVICE_MODULES="generic,e1000": separate names by blanks'
 	refused 'DEVICE_MODULES="generic e1000x"' "1: DEVICE_MODULES: unknown driver 'e1000x'"
 	refused 'UPDOWN_INTERFACES="eth0,eth1"' "1: UPDOWN_INTERFACES: 'eth0,eth1' is not the name"
 	refused 'MODPROBE_FLAGS="debug_level=1"' "1: MODPROBE_FLAGS: 'debug_level=1' is not an option"

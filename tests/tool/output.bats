@@ -239,6 +239,13 @@ END
 
 	[[ $(script -qec "$tool upload -p2 0x1018" /dev/null) == "0x04 0x00 0x02 0x00"* ]]
 	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2000 0" /dev/null) == "0x00 0x00 0xc0"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2003 0" /dev/null) == "0x61 0x0a 0x62"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2003 1" /dev/null) == "0xe4 0xf6"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2003 2" /dev/null) == "text" ]]
+	[[ $(script -qec "$tool upload -p2 -tstring 0x2003 1" /dev/null) == "äö"* ]]
+	# half of a pair, a control character
+	[[ $(script -qec "$tool upload -p2 -tunicode_string 0x2004 0" /dev/null) == "EÄ€😀??L"* ]]
+	[ "$(out upload -p2 -tunicode_string 0x2004 0 | wc -c)" -eq 19 ]
 }
 
 @test "upload failures name cause and slave" {
@@ -260,6 +267,25 @@ END
 	run ethercat upload -p2 -t uint8 0x1018 1
 	[ "$status" -eq 1 ]
 	[[ $output == *"uint8 has 1 byte(s), but 4 were received"* ]]
+}
+
+@test "hex for a type of characters is reported with the type that takes it" {
+	FAKE_LOG=$BATS_TEST_TMPDIR/log run ethercat download -p2 -t octet_string 0x2001 0 '0x12 0x34'
+	[ "$status" -eq 0 ]
+	[ "$output" = "warning: octet_string writes the characters '0x12 0x34'; --type raw writes these bytes" ]
+	[ -z "$(err download -p2 -t octet_string 0x2001 0 '0x1g')" ]
+	[ -z "$(err download -p2 -t string 0x2001 0 '0x12')" ]
+	[ -z "$(printf 0x12 | err download -p2 -t octet_string 0x2001 0 -)" ]
+}
+
+@test "a number out of range is refused with the limits" {
+	[[ $(err reg_write -p2 0x120 -t uint16 70000) == *"'70000' for type uint16: expected 0 to 65535"* ]]
+	[[ $(err reg_write -p2 0x120 -t uint64 -1) == *": expected 0 to 18446744073709551615"* ]]
+	[[ $(err reg_write -p2 0x120 -t int8 200) == *"'200' for type int8: expected -128 to 127"* ]]
+	[[ $(err reg_write -p2 0x120 -t int64 99999999999999999999) == \
+		*": expected -9223372036854775808 to 9223372036854775807"* ]]
+	[[ $(err reg_write -p2 0x120 -t sm16 40000) == *": expected -32767 to 32767"* ]]
+	[[ $(err debug 5) == *"invalid level '5': expected 0 to 2"* ]]
 }
 
 @test "download sends values of all types" {
