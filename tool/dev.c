@@ -91,12 +91,11 @@ int dev_ioctl(struct dev *d, unsigned long request, void *arg)
 	return ret < 0 ? errno : 0;
 }
 
-/* report the failure @err of the last dev_ioctl(), with the kernel's reason */
-int dev_fail(struct dev *d, int err, const char *fmt, ...)
+/* the kernel's reason for the failure @err of the last dev_ioctl(), "" if there is none */
+void dev_reason(struct dev *d, int err, char *buf, size_t size)
 {
 	struct ec_ioc_reason reason = { 0 };
-	char text[512], older[128];
-	va_list ap;
+	char older[128];
 
 	if (sys_ioctl(d->fd, EC_IOC_REASON, &reason))
 		reason.text[0] = 0;
@@ -106,10 +105,32 @@ int dev_fail(struct dev *d, int err, const char *fmt, ...)
 			 d->version.abi, EC_UAPI_VERSION);
 		memcpy(reason.text, older, sizeof(older));
 	}
+	snprintf(buf, size, "%s", reason.text);
+}
+
+/* What was done to which slave is in @text already: "SDO 0x1018:01 of slave 1: no CoE mailbox". */
+static const char *cause_of(const char *reason, const char *text)
+{
+	const char *of = strstr(reason, " of slave "), *colon = of ? strchr(of, ':') : NULL;
+	char slave[16];
+
+	if (!colon || colon - of >= (int)sizeof(slave) || colon[1] != ' ')
+		return reason;
+	snprintf(slave, sizeof(slave), "%.*s:", (int)(colon - of - 4), of + 4);
+	return strstr(text, slave) ? colon + 2 : reason;
+}
+
+/* report the failure @err of the last dev_ioctl(), with the kernel's reason */
+int dev_fail(struct dev *d, int err, const char *fmt, ...)
+{
+	char text[512], reason[EC_UAPI_REASON];
+	va_list ap;
+
+	dev_reason(d, err, reason, sizeof(reason));
 	va_start(ap, fmt);
 	vsnprintf(text, sizeof(text), fmt, ap);
 	va_end(ap);
-	return fail_full(err, reason.text, 0, "%s", text);
+	return fail_cause(err, reason, cause_of(reason, text), "%s", text);
 }
 
 static unsigned int master_count(void)
@@ -122,6 +143,13 @@ static unsigned int master_count(void)
 	n = max(d.version.master_count, 1U);
 	dev_close(&d);
 	return n;
+}
+
+static int no_such_master(unsigned int count)
+{
+	if (count == 1)
+		return usage_error("no such master, there is only master 0");
+	return usage_error("no such master, there are masters 0 to %u", count - 1);
 }
 
 int dev_open_single(struct dev *d, const struct tool *t, bool write)
@@ -140,7 +168,7 @@ int dev_open_single(struct dev *d, const struct tool *t, bool write)
 		ret = usage_error("%u masters found, the command needs one; select it with -m",
 				  count);
 	else
-		ret = usage_error("-m selects none of the %u master(s) present", count);
+		ret = no_such_master(count);
 	numbers_free(&m);
 	return ret;
 }
@@ -160,7 +188,7 @@ static int each_master(const struct tool *t, bool write,
 	if (list_expand(&t->masters, count, &m))
 		return fail("out of memory");
 	if (!m.n)
-		ret = usage_error("-m selects none of the %u master(s) present", count);
+		ret = no_such_master(count);
 	for (size_t i = 0; i < m.n; i++) {
 		struct dev d;
 		int one = dev_open(&d, m.v[i], write);

@@ -142,6 +142,8 @@ int fail(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 /* @err: errno or 0; @reason: text of the kernel or NULL; @abort: SDO abort code or 0 */
 int fail_full(int err, const char *reason, u32 abort, const char *fmt, ...)
 	__attribute__((format(printf, 4, 5)));
+int fail_cause(int err, const char *reason, const char *cause, const char *fmt, ...)
+	__attribute__((format(printf, 4, 5)));
 void note(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 void error_context(const char *cmd, bool json);
 

@@ -86,7 +86,7 @@ load common
 	for c in slaves states pdos domains rescan master; do
 		run ethercat $c -m5
 		[ "$status" -eq 1 ]
-		[[ $output == *"-m selects none of the 1 master(s) present"* ]]
+		[[ $output == *"no such master, there is only master 0"* ]]
 	done
 	# one match on one of two masters is enough
 	FAKE_BUS=two run ethercat slaves -m0,1 -p1
@@ -263,7 +263,11 @@ END
 	err upload -j -p2 0x5001 0 | json 'd["error"]["abort_text"] == "unknown code"'
 	run ethercat upload -p2 0x4000 0
 	[ "$status" -eq 1 ]
-	[[ $output == *"timed out: slave 2 has not answered for 1000 ms"* ]]
+	[[ $output == *"SDO upload 0x4000:00: slave 2 has not answered for 1000 ms" ]]
+	# neither the SDO nor the slave twice, also if the kernel names both
+	run ethercat upload -p2 0x4001 0
+	[ "$output" = "ethercat upload: Master0 slave 2: SDO upload 0x4001:00: no CoE mailbox" ]
+	err upload -j -p2 0x4001 0 | json 'd["error"]["reason"] == "SDO 0x4001:00 of slave 2: no CoE mailbox" and d["error"]["errno"] == 93'
 	run ethercat upload -p2 -t uint8 0x1018 1
 	[ "$status" -eq 1 ]
 	[[ $output == *"uint8 has 1 byte(s), but 4 were received"* ]]
