@@ -186,7 +186,8 @@ set_variable() {	# set_variable NAME VALUE
 }
 
 # marks that word processors and web pages have instead of " and '
-typographic=$(printf '\342\200\230 \342\200\231 \342\200\232 \342\200\234 \342\200\235 \342\200\236 \302\253 \302\273 \302\264')
+typographic=$(printf '\342\200%b ' '\0230' '\0231' '\0232' '\0234' '\0235' '\0236')
+typographic="$typographic $(printf '\302%b ' '\0253' '\0273' '\0264')"
 no_break=$(printf '\302\240')
 
 # is_typed TEXT: without such marks

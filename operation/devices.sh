@@ -122,7 +122,7 @@ wait_present() {	# wait_present INDEX DEVICE
 				warn "MASTER$1_DEVICE=\"$2\": $what after 10 s; the master waits for it, 'ethercat devices' lists the cards"
 				return
 			fi
-			bad "MASTER$1_DEVICE=\"$2\": no such device after 10 s; 'ethercat devices' lists the cards"
+			bad "MASTER$1_DEVICE=\"$2\": no such device after 10 s; $(instead "$2")"
 			return 1
 		fi
 		patience=$((patience - 1))
@@ -155,19 +155,24 @@ managed() {
 	fi
 }
 
-# unusable INTERFACE: why it can never be the device of a master
+# unusable INTERFACE DEVICE: why it can never be the device of a master. A bridge can have the
+# address of its port: the master then uses the bridge.
 unusable() {
-	local type
+	local type mtu list="; 'ethercat devices' lists the cards"
 
 	read -r type 2>/dev/null <"/sys/class/net/$1/type" || type=1
 	if [ "$type" = 772 ]; then
-		echo "the loopback interface has no cable"
+		echo "the loopback interface has no cable$list"
 	elif [ "$type" != 1 ]; then
-		echo "$1 is not an Ethernet interface"
+		echo "$1 is not an Ethernet interface$list"
 	elif [ -e "/sys/class/net/$1/phy80211" ]; then
-		echo "$1 is a wireless interface; slaves need a cable"
-	elif [ -e "/sys/class/net/$1/brport" ] || [ -e "/sys/class/net/$1/bonding_slave" ]; then
+		echo "$1 is a wireless interface, slaves need a cable$list"
+	elif [ "$1" = "$2" ] && { [ -e "/sys/class/net/$1/brport" ] ||
+			[ -e "/sys/class/net/$1/bonding_slave" ]; }; then
 		echo "$1 is a port of $(basename "$(readlink "/sys/class/net/$1/master")"); release it with 'ip link set $1 nomaster'"
+	elif ! has_native "$1" && read -r mtu 2>/dev/null <"/sys/class/net/$1/mtu" &&
+		[ "$mtu" -lt 1500 ]; then
+		echo "$1 has MTU $mtu, frames need 1500; run 'ip link set $1 mtu 1500'"
 	else
 		return 1
 	fi
@@ -177,30 +182,39 @@ unusable() {
 usable() {
 	local name why
 
-	is_sim "$2" || ! name=$(interface "$2") || ! why=$(unusable "$name") || {
+	is_sim "$2" || ! name=$(interface "$2") || ! why=$(unusable "$name" "$2") || {
 		eval "number=\$at_$1"
-		bad "MASTER$1_DEVICE=\"$2\": $why; 'ethercat devices' lists the cards"
+		bad "MASTER$1_DEVICE=\"$2\": $why"
 	}
 }
 
 # known INDEX DEVICE: reports a device that is not there
 known() {
-	local other what="MASTER$1_DEVICE=\"$2\""
+	local what="MASTER$1_DEVICE=\"$2\""
 
 	eval "number=\$at_$1"
 	! present "$2" && [ -z "$(recall "$2")" ] || return 0
 	if is_mac "$2"; then
-		warn "$what: no interface has this address now; the master waits for it"
+		warn "$what: no interface has this address yet; the master waits for it"
 	elif is_any "$2"; then
 		bad "$what: no card is free; 'ethercat devices' lists the cards"
 	elif is_pci "$2"; then
 		bad "$what: no card at this PCI address; 'ethercat devices' lists the cards"
-	elif other=$(echo "$2" | tr A-Z a-z) && interface "$other" >/dev/null; then
-		bad "$what: no such interface; write $other"
-	elif other=$(altname_of "$2"); then
-		bad "$what is another name of $other; write $other"
 	else
-		bad "$what: no such interface; 'ethercat devices' lists the cards"
+		bad "$what: no such interface; $(instead "$2")"
+	fi
+}
+
+# instead NAME: what to write for a name that no interface has
+instead() {
+	local other
+
+	if other=$(echo "$1" | tr A-Z a-z) && interface "$other" >/dev/null; then
+		echo "write $other"
+	elif other=$(altname_of "$1"); then
+		echo "write $other, which has this name as another one"
+	else
+		echo "'ethercat devices' lists the cards"
 	fi
 }
 

@@ -64,10 +64,10 @@ static void matlab_ports(const struct layout *l, bool output)
 				if (!x->index)
 					continue;
 				n++;
-				out_text("rv.PortConfig.%s(%u).pdo = [%u, %u, %u, 0];\n", kind, n, i,
-					 k, e);
-				out_text("rv.PortConfig.%s(%u).pdo_data_type = %u;\n\n", kind, n,
-					 1000u + x->bits);
+				out_text("rv.PortConfig.%s(%u).pdo = [%u, %u, %u, 0];\n", kind,
+					 n, i, k, e);
+				out_text("rv.PortConfig.%s(%u).pdo_data_type = %u;\n\n", kind,
+					 n, 1000u + x->bits);
 			}
 	}
 }

@@ -71,17 +71,27 @@ accepted() {
 }
 
 @test "a device that can never work, or is absent, is refused with the reason" {
+	local name
+
 	refused 'MASTER0_DEVICE="lo"' \
 		"1: MASTER0_DEVICE=\"lo\": the loopback interface has no cable; 'ethercat devices' lists"
 	interface can0 280
-	refused 'MASTER0_DEVICE="can0"' '1: MASTER0_DEVICE="can0": can0 is not an Ethernet interface;'
+	refused 'MASTER0_DEVICE="can0"' \
+		'1: MASTER0_DEVICE="can0": can0 is not an Ethernet interface;'
 	mkdir "$root/sys/class/net/eth1/phy80211"
 	refused 'MASTER0_DEVICE="eth1"' \
-		'1: MASTER0_DEVICE="eth1": eth1 is a wireless interface; slaves need a cable;'
+		'1: MASTER0_DEVICE="eth1": eth1 is a wireless interface, slaves need a cable;'
 	mkdir "$root/sys/class/net/veth1/brport"
 	ln -s ../br0 "$root/sys/class/net/veth1/master"
 	refused 'MASTER0_DEVICE="veth1"' \
 		"1: MASTER0_DEVICE=\"veth1\": veth1 is a port of br0; release it with 'ip link set veth1 nomaster'"
+	# a bridge may have the address of its port
+	mkdir "$root/sys/class/net/eth0/brport"
+	accepted 'MASTER0_DEVICE="52:54:00:ec:00:00"' 52:54:00:ec:00:00
+	rmdir "$root/sys/class/net/eth0/brport"
+	echo 1400 >"$root/sys/class/net/veth0/mtu"
+	refused 'MASTER0_DEVICE="veth0"' \
+		"1: MASTER0_DEVICE=\"veth0\": veth0 has MTU 1400, frames need 1500; run 'ip link set veth0 mtu 1500'"
 	refused 'MASTER0_DEVICE=sim0\nMASTER1_DEVICE="eth9"' \
 		"2: MASTER1_DEVICE=\"eth9\": no such interface; 'ethercat devices' lists the cards"
 	refused 'MASTER0_DEVICE="Eth1"' '1: MASTER0_DEVICE="Eth1": no such interface; write eth1'
@@ -90,8 +100,9 @@ accepted() {
 	refused 'MASTER0_DEVICE="ff:ff:ff:ff:ff:ff"' \
 		'1: MASTER0_DEVICE="ff:ff:ff:ff:ff:ff": no card is free;'
 	# the card may appear later
-	accepted 'MASTER0_DEVICE="52:54:00:ec:0f:01"' 52:54:00:ec:0f:01 \
-		'1: MASTER0_DEVICE="52:54:00:ec:0f:01": no interface has this address now; the master waits for it'
+	name=52:54:00:ec:0f:01
+	accepted "MASTER0_DEVICE=$name" $name \
+		"1: MASTER0_DEVICE=\"$name\": no interface has this address yet; the master waits for it"
 	accepted 'MASTER0_DEVICE=eth0\nUPDOWN_INTERFACES="eth0 eth7"' eth0 \
 		"2: UPDOWN_INTERFACES: no interface eth7; 'ip link' lists the interfaces"
 }
@@ -100,7 +111,7 @@ accepted() {
 	printf '%s\n' '#!/bin/sh' 'echo "2: eth0@if3: <UP> mtu 1500"' >"$root/ip"
 	chmod +x "$root/ip"
 	PATH=$root:$PATH refused 'MASTER0_DEVICE="enp0s3"' \
-		'1: MASTER0_DEVICE="enp0s3" is another name of eth0; write eth0'
+		'1: MASTER0_DEVICE="enp0s3": no such interface; write eth0, which has this'
 }
 
 @test "an unknown segment is refused with the names" {
@@ -149,7 +160,7 @@ accepted() {
 	refused 'MASTER0_DEVICE="sim"' '1: MASTER0_DEVICE="sim": write sim0'
 	refused 'MASTER0_DEVICE="sim12"' '1: MASTER0_DEVICE="sim12": the simulator has sim0 to sim7'
 	refused 'MASTER0_DEVICE="eth0,eth1"' \
-		'1: MASTER0_DEVICE="eth0,eth1" is not one device; a second master has a variable of its own'
+		'1: MASTER0_DEVICE="eth0,eth1" is not one device; a second master has a variable of'
 }
 
 @test "ethercatctl, the installation guide and DKMS name the same kernels" {

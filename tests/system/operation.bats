@@ -11,7 +11,7 @@ CTL=$BATS_TEST_DIRNAME/../../operation/ethercatctl
 setup_file() {
 	local tree=$BATS_FILE_TMPDIR/lib/modules/$(uname -r)
 
-	modprobe -a veth bridge
+	modprobe -a veth bridge macvlan
 	modprobe e1000e
 	ip link set eth1 up
 	mkdir -p "$tree"
@@ -173,7 +173,7 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	none_loaded
 }
 
-@test "a start with an interface that can never work names the reason, and restart keeps what runs" {
+@test "start refuses an interface that can never work, and restart then stops nothing" {
 	conf 'MASTER0_DEVICE="lo"'
 	fails 'conf:1: MASTER0_DEVICE="lo": the loopback interface has no cable' own start
 	ip link add br0 type bridge
@@ -182,10 +182,13 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	fails "veth0 is a port of br0; release it with 'ip link set veth0 nomaster'" own start
 	ip link del br0
 	ip link set veth0 mtu 1400
-	fails 'conf:1: MASTER0_DEVICE="veth0": the master cannot use veth0: MTU 1400, need 1500; run ' \
+	fails "veth0 has MTU 1400, frames need 1500; run 'ip link set veth0 mtu 1500'" own start
+	ip link set veth0 mtu 1500
+	ip link add link veth0 name mac0 type macvlan
+	fails 'conf:1: MASTER0_DEVICE="veth0": the master cannot use veth0: in use by a bridge,' \
 		own start
 	none_loaded
-	ip link set veth0 mtu 1500
+	ip link del mac0
 	own start
 	conf 'MASTER0_DEVICE="lo"'
 	fails 'the loopback interface has no cable' own restart

@@ -274,7 +274,8 @@ END
 }
 
 @test "hex for a type of characters is reported with the type that takes it" {
-	FAKE_LOG=$BATS_TEST_TMPDIR/log run ethercat download -p2 -t octet_string 0x2001 0 '0x12 0x34'
+	export FAKE_LOG=$BATS_TEST_TMPDIR/log
+	run ethercat download -p2 -t octet_string 0x2001 0 '0x12 0x34'
 	[ "$status" -eq 0 ]
 	[ "$output" = "warning: octet_string writes the characters '0x12 0x34'; --type raw writes these bytes" ]
 	[ -z "$(err download -p2 -t octet_string 0x2001 0 '0x1g')" ]
