@@ -269,10 +269,13 @@ accepted() {
 	done <<-'END'
 	|usage: ethercatctl
 	reload|ethercatctl: unknown command 'reload'
-	start stop|ethercatctl: more than one command: start stop
-	-c|ethercatctl: option -c needs a file and a command
-	-c file|ethercatctl: option -c needs a file and a command
+	start stop|ethercatctl: unexpected argument 'stop'
+	--force stop|ethercatctl: unknown option '--force'
+	stop -c|ethercatctl: option -c needs a file
+	-c file|usage: ethercatctl
 	END
+	printf 'MASTER0_DEVICE=eth0\n' >"$BATS_TEST_TMPDIR/conf"
+	[ "$(ctl check -c "$BATS_TEST_TMPDIR/conf" | head -n 1)" = 'Master0: eth0' ]
 	run ctl --help
 	[ "$status" = 0 ]
 }

@@ -88,6 +88,9 @@ load common
 		[ "$status" -eq 1 ]
 		[[ $output == *"no such master, there is only master 0"* ]]
 	done
+	# a list with masters that exist
+	[ "$(err master -m0,7)" = "warning: no master 7, the last one is master 0" ]
+	[ -z "$(err master -m0-7)" ]
 	# one match on one of two masters is enough
 	FAKE_BUS=two run ethercat slaves -m0,1 -p1
 	[ "$status" -eq 0 ]
