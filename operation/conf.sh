@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # For ethercatctl: the configuration file. Its lines are read, never run.
 #
-# parse FILE sets: masters (their number), device_N and at_N (the line of it), modules, up
-# (interfaces), modprobe_flags, segments
+# parse FILE sets: masters (their number), device_N and at_N (the line of it), modules, up and at_up
+# (interfaces), modprobe_flags, segments and at_segments
 
 native_drivers="e1000 e1000e igb intel"
 other_drivers="generic sim igc r8169 e100 8139too r8152 cx2100 ccat genet dwmac-intel stmmac-pci"
@@ -48,17 +48,46 @@ is_interface() {
 # lower DEVICES: addresses in lower case, names as they are
 lower() { echo "$1" | tr , '\n' | sed '/:/y/ABCDEF/abcdef/' | paste -sd,; }
 
+# proposal VALUE: how a device that looks like this one is written
+proposal() {
+	local d=[0-9a-fA-F]
+
+	case $1 in
+	$d$d[.-]$d$d[.-]$d$d[.-]$d$d[.-]$d$d[.-]$d$d) echo "$1" | tr .- :: ;;
+	$d$d$d$d$d$d$d$d$d$d$d$d) echo "$1" | sed 's/..\B/&:/g' ;;
+	$d$d:$d$d.[0-7]) echo "0000:$1" ;;
+	[sS][iI][mM]|[sS][iI][mM]0) echo sim0 ;;
+	[sS][iI][mM][1-7]) echo "sim${1#???}" ;;
+	*) return 1 ;;
+	esac
+}
+
+# not_a_device NAME VALUE: the error
+not_a_device() {
+	local what="is neither a MAC address, as 00:11:22:33:44:55, nor an interface, a PCI address, as 0000:01:00.0, or sim0"
+
+	case $2 in
+	*[,\ ]*)	what="is not one device; a second master has a variable of its own, MASTER1_DEVICE" ;;
+	esac
+	bad "$1=\"$2\" $what; 'ethercat devices' lists the cards"
+}
+
 # device INDEX VALUE
 set_device() {
 	local value old was
 
 	value=$(lower "$2")
+	if ! is_sim "$value" && old=$(proposal "$2"); then
+		bad "MASTER$1_DEVICE=\"$2\": write $old"
+		return
+	fi
 	case $value in
+	sim[1-9][0-9]*) bad "MASTER$1_DEVICE=\"$2\": the simulator has sim0 to sim7" ;;
 	00:00:00:00:00:00) bad "MASTER$1_DEVICE=\"$2\": no card has this address; 'ethercat devices' lists the cards" ;;
 	ff:ff:ff:ff:ff:ff|'') ;;
 	?[13579bdf]:*:*:*:*:*) bad "MASTER$1_DEVICE=\"$2\" is a multicast address; 'ethercat devices' lists the cards" ;;
 	*)	is_mac "$value" || is_pci "$value" || is_interface "$value" ||
-			bad "MASTER$1_DEVICE=\"$2\" is neither a MAC address, as 00:11:22:33:44:55, nor an interface, a PCI address, as 0000:01:00.0, or sim0; 'ethercat devices' lists the cards" ;;
+			not_a_device "MASTER$1_DEVICE" "$2" ;;
 	esac
 	eval "old=\${device_$1:-} was=\${at_$1:-}"
 	[ -z "$old" ] || [ "$old" = "$value" ] ||
@@ -89,6 +118,10 @@ set_modules() {
 	local m
 
 	modules=
+	case $1 in
+	*,*)	bad "DEVICE_MODULES=\"$1\": separate names by blanks"
+		return ;;
+	esac
 	for m in $1; do
 		m=${m#ec_}
 		has "$m" $native_drivers $other_drivers ||
@@ -104,13 +137,14 @@ set_interfaces() {	# set_interfaces NAME VALUE
 		is_interface "$i" || bad "$1: '$i' is not the name of an interface; separate names by blanks"
 		has "$i" $up || up="$up $i"
 	done
+	at_up=$number
 }
 
 set_segments() {
 	case $1 in
 	*[[:space:]]*|,*|*,|*,,*) bad "SIM_SEGMENT=\"$1\": names or paths separated by commas, no blanks" ;;
 	esac
-	segments=$1
+	segments=$1 at_segments=$number
 }
 
 set_flags() {
@@ -125,6 +159,19 @@ set_flags() {
 	modprobe_flags=$1
 }
 
+unknown_variable() {
+	local upper
+
+	upper=$(echo "$1" | tr a-z A-Z)
+	case $upper in
+	"$1") ;;
+	MASTER*_DEVICE|MASTER*_BACKUP|DEVICE_MODULES|UPDOWN_INTERFACES|SIM_SEGMENT|MODPROBE_FLAGS)
+		bad "unknown variable $1; write $upper"
+		return ;;
+	esac
+	warn "unknown variable $1 has no effect; see 'man ethercatctl'"
+}
+
 set_variable() {	# set_variable NAME VALUE
 	case $1 in
 	MASTER*_DEVICE|MASTER*_BACKUP) set_master "$1" "$2" ;;
@@ -134,7 +181,30 @@ set_variable() {	# set_variable NAME VALUE
 	SIM_SEGMENT) set_segments "$2" ;;
 	EOE_INTERFACES|EOE_AUTOCREATE|PCAP_SIZE_MB|REBIND_NICS)
 		[ -z "$2" ] || warn "$1 has no effect in this version" ;;
-	*)	warn "unknown variable $1 has no effect; see 'man ethercatctl'" ;;
+	*)	unknown_variable "$1" ;;
+	esac
+}
+
+# marks that word processors and web pages have instead of " and '
+typographic=$(printf '\342\200%b ' '\0230' '\0231' '\0232' '\0234' '\0235' '\0236')
+typographic="$typographic $(printf '\302%b ' '\0253' '\0273' '\0264')"
+no_break=$(printf '\302\240')
+
+# is_typed TEXT: without such marks
+is_typed() {
+	local mark
+
+	for mark in $typographic; do
+		case $1 in
+		*"$mark"*)
+			bad "'$1' has typographic quotes; write \" at both ends"
+			return 1 ;;
+		esac
+	done
+	case $1 in
+	*"$no_break"*)
+		bad "'$1' has a no-break space; write a blank"
+		return 1 ;;
 	esac
 }
 
@@ -150,10 +220,11 @@ parse_value() {
 	\"*\"*) text=${text#\"} value=${text%%\"*} text=${text#*\"} ;;
 	\'*\'*)	text=${text#\'} value=${text%%\'*} text=${text#*\'} ;;
 	[\"\']*)
-		bad "the closing quote is missing; a value ends in its line"
+		is_typed "$text" && bad "the closing quote is missing; a value ends in its line"
 		return 1 ;;
 	*)	value=${text%%[[:space:]]*} text=${text#"$value"} ;;
 	esac
+	is_typed "$value" && is_typed "${text%%#*}" || return
 	trim
 	case $text in
 	''|'#'*) ;;
@@ -180,8 +251,12 @@ parse_line() {
 	esac
 	name=${text%%=*}
 	case $name in
+	'export '*)
+		bad "'$name': this file is not run as a shell script; write ${name#export }=..."
+		return ;;
 	''|[0-9]*|*[!A-Za-z0-9_]*)
-		bad "'$name' is no name of a variable; write NAME=\"value\" without blanks beside ="
+		is_typed "$name" &&
+			bad "'$name' is no name of a variable; write NAME=\"value\" without blanks beside ="
 		return ;;
 	esac
 	parse_value "${text#*=}" && set_variable "$name" "$value"
@@ -246,7 +321,7 @@ parse() {
 	local line mark
 
 	mark=$(printf '\357\273\277')
-	conf=$1 number=0 wrong=0 modules= up= modprobe_flags= segments= sims=0
+	conf=$1 number=0 wrong=0 modules= up= at_up=0 modprobe_flags= segments= at_segments=0 sims=0
 	if [ ! -f "$conf" ] || [ ! -r "$conf" ]; then
 		if [ -e "$conf" ]; then
 			err "cannot read the configuration $conf: no file that you may read"

@@ -48,7 +48,7 @@ static void show(const struct layout *l, bool quiet)
 	}
 }
 
-/* one line of the port list for each entry that carries data */
+/* a port for each entry that carries data */
 static void matlab_ports(const struct layout *l, bool output)
 {
 	unsigned int n = 0;
@@ -64,14 +64,15 @@ static void matlab_ports(const struct layout *l, bool output)
 				if (!x->index)
 					continue;
 				n++;
-				out_text("rv.PortConfig.%s(%u).pdo = [%u %u %u 0];\n", kind, n, i,
-					 k, e);
-				out_text("rv.PortConfig.%s(%u).pdo_data_type = %u;\n", kind, n,
-					 1000u + x->bits);
+				out_text("rv.PortConfig.%s(%u).pdo = [%u, %u, %u, 0];\n", kind,
+					 n, i, k, e);
+				out_text("rv.PortConfig.%s(%u).pdo_data_type = %u;\n\n", kind,
+					 n, 1000u + x->bits);
 			}
 	}
 }
 
+/* "..." continues a line: without it MATLAB begins a row there */
 static void matlab_sm(const struct layout_sm *s)
 {
 	out_text("    {%u, %u, {\n", s->sm.sm, !layout_is_output(s));
@@ -80,28 +81,31 @@ static void matlab_sm(const struct layout_sm *s)
 
 		out_text("        {hex2dec('%04x'), [\n", p->pdo.index);
 		for (unsigned int e = 0; e < p->pdo.entry_count; e++)
-			out_text("            hex2dec('%04x'), hex2dec('%02x'), %u;\n",
+			out_text("            hex2dec('%04x'), hex2dec('%02x'), %3u; ...\n",
 				 p->entries[e].index, p->entries[e].subindex, p->entries[e].bits);
-		out_text("        ]},\n");
+		out_text("            ]}, ...\n");
 	}
-	out_text("    }},\n");
+	out_text("        }}, ...\n");
 }
 
-static void matlab(const struct ec_ioc_slave *s, const struct layout *l)
+static void matlab(const struct dev *d, const struct ec_ioc_slave *s, const struct layout *l)
 {
-	out_text("function rv = slave%u()\n\n", s->position);
+	out_text("%%\n%% Master %u, Slave %u", d->master, s->position);
+	if (*s->order)
+		out_text(", \"%s\"", s->order);
+	out_text("\n%%\nfunction rv = slave%u()\n\n%% Slave configuration\n\n", s->position);
 	out_text("rv.SlaveConfig.vendor = %u;\n", s->vendor_id);
 	out_text("rv.SlaveConfig.product = hex2dec('%08x');\n", s->product_code);
 	out_text("rv.SlaveConfig.description = '");
 	for (const char *c = s->order; *c; c++)
 		out_text(*c == '\'' ? "''" : "%c", *c);
-	out_text("';\nrv.SlaveConfig.sm = {\n");
+	out_text("';\nrv.SlaveConfig.sm = { ...\n");
 	for (unsigned int i = 0; i < l->n; i++)
 		matlab_sm(&l->sms[i]);
-	out_text("};\n\n");
+	out_text("    };\n\n%% Port configuration\n\n");
 	matlab_ports(l, true);
 	matlab_ports(l, false);
-	out_text("\nend\n\n");
+	out_text("end\n\n");
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
@@ -119,7 +123,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 		out_text("=== Master %u, Slave %u ===\n", d->master, s->position);
 	out_array("sync_managers");
 	if (l.n && etherlab)
-		matlab(s, &l);
+		matlab(d, s, &l);
 	else
 		show(&l, t->verbosity < 0);
 	out_end();

@@ -3,7 +3,6 @@
 
 #include <errno.h>
 #include <fcntl.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -91,27 +90,6 @@ int dev_ioctl(struct dev *d, unsigned long request, void *arg)
 	return ret < 0 ? errno : 0;
 }
 
-/* report the failure @err of the last dev_ioctl(), with the kernel's reason */
-int dev_fail(struct dev *d, int err, const char *fmt, ...)
-{
-	struct ec_ioc_reason reason = { 0 };
-	char text[512], older[128];
-	va_list ap;
-
-	if (sys_ioctl(d->fd, EC_IOC_REASON, &reason))
-		reason.text[0] = 0;
-	string_clean(reason.text, sizeof(reason.text));
-	if (err == ENOTTY && !reason.text[0] && d->version.abi != EC_UAPI_VERSION) {
-		snprintf(older, sizeof(older), "the module has interface version %u, this tool %u",
-			 d->version.abi, EC_UAPI_VERSION);
-		memcpy(reason.text, older, sizeof(older));
-	}
-	va_start(ap, fmt);
-	vsnprintf(text, sizeof(text), fmt, ap);
-	va_end(ap);
-	return fail_full(err, reason.text, 0, "%s", text);
-}
-
 static unsigned int master_count(void)
 {
 	struct dev d;
@@ -122,6 +100,22 @@ static unsigned int master_count(void)
 	n = max(d.version.master_count, 1U);
 	dev_close(&d);
 	return n;
+}
+
+/* Others of the list exist, so that the command does its work. */
+static void note_absent(const struct list *l, unsigned int count)
+{
+	for (unsigned int i = 0; l->given && i < l->n; i++)
+		if (l->item[i].from == l->item[i].to && l->item[i].from >= count)
+			note("warning: no master %u, the last one is master %u", l->item[i].from,
+			     count - 1);
+}
+
+static int no_such_master(unsigned int count)
+{
+	if (count == 1)
+		return usage_error("no such master, there is only master 0");
+	return usage_error("no such master, there are masters 0 to %u", count - 1);
 }
 
 int dev_open_single(struct dev *d, const struct tool *t, bool write)
@@ -140,7 +134,7 @@ int dev_open_single(struct dev *d, const struct tool *t, bool write)
 		ret = usage_error("%u masters found, the command needs one; select it with -m",
 				  count);
 	else
-		ret = usage_error("-m selects none of the %u master(s) present", count);
+		ret = no_such_master(count);
 	numbers_free(&m);
 	return ret;
 }
@@ -160,7 +154,9 @@ static int each_master(const struct tool *t, bool write,
 	if (list_expand(&t->masters, count, &m))
 		return fail("out of memory");
 	if (!m.n)
-		ret = usage_error("-m selects none of the %u master(s) present", count);
+		ret = no_such_master(count);
+	else
+		note_absent(&t->masters, count);
 	for (size_t i = 0; i < m.n; i++) {
 		struct dev d;
 		int one = dev_open(&d, m.v[i], write);

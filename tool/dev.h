@@ -21,6 +21,7 @@ struct slaves {
 int dev_open(struct dev *d, unsigned int master, bool write);
 void dev_close(struct dev *d);
 int dev_ioctl(struct dev *d, unsigned long request, void *arg);
+void dev_reason(struct dev *d, int err, char *buf, size_t size);
 int dev_fail(struct dev *d, int err, const char *fmt, ...)
 	__attribute__((format(printf, 3, 4)));
 

@@ -96,6 +96,23 @@ int fail_full(int err, const char *reason, u32 abort, const char *fmt, ...)
 	return 1;
 }
 
+/*
+ * @cause replaces the text of @err; "": there is none, NULL: @fmt has it all. JSON has @err, and
+ * @reason of the kernel.
+ */
+int fail_cause(int err, const char *reason, const char *cause, const char *fmt, ...)
+{
+	va_list ap;
+
+	va_start(ap, fmt);
+	if (as_json)
+		print("runtime", err, reason, 0, fmt, ap);
+	else
+		print("runtime", cause && !*cause ? err : 0, cause, 0, fmt, ap);
+	va_end(ap);
+	return 1;
+}
+
 /* a remark on stderr that is no error */
 void note(const char *fmt, ...)
 {

@@ -4,6 +4,7 @@
 #include <pthread.h>
 #include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 #include "../master/wire/foe.h"
 #include "io.h"
@@ -97,19 +98,22 @@ int foe_password(int argc, char **argv, struct foe *f)
 
 static int failed(struct dev *d, int err, const struct ec_ioc_foe *i, bool write)
 {
-	const char *text = ec_foe_error_text(i->error_code);
-	char name[EC_FOE_NAME + 1] = "";
+	const char *text = ec_foe_error_text(i->error_code) ?: "unknown code", *own;
+	char name[EC_FOE_NAME + 1] = "", reason[EC_UAPI_REASON];
+	const char *verb = write ? "write" : "read";
 
 	memcpy(name, i->name, EC_FOE_NAME);
 	string_clean(name, sizeof(name));
-	if (i->error_code && !text)
-		text = "unknown code";
-	if (text && i->error_code)
-		return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s': 0x%08x: %s",
-				d->master, i->position, write ? "write" : "read", name,
-				i->error_code, text);
-	return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s'", d->master, i->position,
-			write ? "write" : "read", name);
+	if (!i->error_code)
+		return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s'", d->master,
+				i->position, verb, name);
+	dev_reason(d, err, reason, sizeof(reason));
+	own = strstr(reason, "; text of the slave: ");
+	if (own && !strcasecmp(strchr(own, ':') + 2, text))
+		own = NULL;
+	return fail_cause(err, reason, own ? own + 2 : NULL,
+			  "Master%u slave %u: cannot %s file '%s': 0x%08x: %s", d->master,
+			  i->position, verb, name, i->error_code, text);
 }
 
 int foe_check_name(const char *name)

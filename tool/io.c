@@ -6,6 +6,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 #include "out.h"
 
@@ -19,6 +20,9 @@ int io_number(const char *what, const char *text, u64 max, u64 *v)
 	case 0:
 		return 0;
 	case -ERANGE:
+		if (max < 10)
+			return usage_error("invalid %s '%s': expected 0 to %u", what, text,
+					   (unsigned int)max);
 		return usage_error("invalid %s '%s': expected 0 to 0x%llx", what, text,
 				   (unsigned long long)max);
 	default:
@@ -87,6 +91,27 @@ int io_read(const char *path, u8 **data, size_t *size)
 	return fail("%s is empty", strcmp(path, "-") ? path : "stdin");
 }
 
+/* hex bytes typed for a type whose value is the characters */
+static bool looks_like_hex(const char *text)
+{
+	return !strncasecmp(text, "0x", 2) && !text[strspn(text, "0123456789abcdefABCDEFxX ")];
+}
+
+static int bad_value(const struct ec_type *t, const char *text, int err, const char *why)
+{
+	u64 most = t->bits < 64 ? (1ULL << t->bits) - 1 : ~0ULL;
+
+	if (err == -ERANGE && (t->kind == EC_KIND_INT || t->kind == EC_KIND_SM))
+		return usage_error("invalid value '%s' for type %s: expected %lld to %lld", text,
+				   t->name, -(long long)(most >> 1) - (t->kind == EC_KIND_INT),
+				   (long long)(most >> 1));
+	if (err == -ERANGE && (t->kind == EC_KIND_BOOL || t->kind == EC_KIND_UINT ||
+			       t->kind == EC_KIND_BITS))
+		return usage_error("invalid value '%s' for type %s: expected 0 to %llu", text,
+				   t->name, (unsigned long long)most);
+	return usage_error("invalid value '%s' for type %s: %s", text, t->name, why);
+}
+
 /* bytes of a value as typed, "-" takes it from stdin; to be freed */
 int io_value(const struct ec_type *t, const char *text, u8 **data, size_t *size)
 {
@@ -108,9 +133,12 @@ int io_value(const struct ec_type *t, const char *text, u8 **data, size_t *size)
 		free(in);
 		return fail("out of memory");
 	}
+	if (!in && t->kind == EC_KIND_OCTETS && looks_like_hex(text))
+		note("warning: %s writes the characters '%s'; --type raw writes these bytes",
+		     t->name, text);
 	ret = value_parse(t, in ? (const char *)in : text, len, buf, cap, size, &why);
 	if (ret) {
-		usage_error("invalid value '%s' for type %s: %s", in ? "-" : text, t->name, why);
+		bad_value(t, in ? "-" : text, ret, why);
 		free(buf);
 	} else {
 		*data = buf;
@@ -165,7 +193,13 @@ int io_print(const struct ec_type *t, const u8 *data, size_t size)
 		out_hex("data_hex", data, size, "");
 		return 0;
 	}
-	if (value_is_text(t) && !(t->kind == EC_KIND_OCTETS && out_would_hide(data, size))) {
+	if (t->kind == EC_KIND_UNICODE && out_to_terminal()) {
+		out_utf16(data, size);
+		out_text("\n");
+		return 0;
+	}
+	if (value_is_text(t) &&
+	    !(t->kind == EC_KIND_OCTETS && out_to_terminal() && !out_is_line(data, size))) {
 		/* slaves fill a string up with NULs */
 		while (t->kind == EC_KIND_STRING && len && !data[len - 1])
 			len--;

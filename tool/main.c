@@ -10,11 +10,9 @@
 #include "out.h"
 #include "tool.h"
 
-#define MAX_CMDS	64
-
 static const struct cmd *find(const char *text)
 {
-	const struct cmd *found[MAX_CMDS];
+	const struct cmd *found[EC_TOOL_COMMANDS];
 	int n = cmd_lookup(text, found);
 
 	if (n > 1)

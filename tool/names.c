@@ -86,6 +86,23 @@ size_t typing_errors(const char *a, const char *b)
 	return rows[strlen(a) % 3][n];
 }
 
+/* the long option that @word, without "--", nearly is, or NULL */
+const char *opt_nearest(const char *word)
+{
+	size_t least = strlen(word) < 3 ? 0 : strlen(word) < 6 ? 1 : 2;
+	const char *nearest = NULL;
+
+	for (const struct opt *o = opts; o->letter; o++) {
+		size_t n = typing_errors(word, o->name);
+
+		if (n <= least && (!nearest || n < least)) {
+			least = n;
+			nearest = o->name;
+		}
+	}
+	return nearest;
+}
+
 /* Prints that no command is called @text, and which one is nearly; returns 1. */
 int cmd_unknown(const char *text)
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* getopt_long() does the parsing; digits are options so that "-1" can be a value. */
 #include <getopt.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -134,6 +135,21 @@ static int timeout(const char *text, u32 *ms)
 	return 0;
 }
 
+static int unknown_long(const char *word)
+{
+	const char *nearest;
+	char name[32];
+
+	snprintf(name, sizeof(name), "%.*s", (int)strcspn(word + 2, "="), word + 2);
+	for (const struct opt *o = opts; o->letter; o++)
+		if (!strncmp(o->name, name, strlen(name)))
+			return usage_error("ambiguous option '--%s'", name);
+	nearest = opt_nearest(name);
+	if (!nearest)
+		return usage_error("unknown option '--%s'", name);
+	return usage_error("unknown option '--%s'; did you mean '--%s'?", name, nearest);
+}
+
 static int bad_option(char **argv, int c)
 {
 	const char *word = argv[optind - 1];
@@ -143,7 +159,7 @@ static int bad_option(char **argv, int c)
 	if (c == ':')
 		return usage_error("option '-%c' needs an argument", optopt);
 	if (!optopt)
-		return usage_error("unknown or ambiguous option '%s'", word);
+		return unknown_long(word);
 	if (!strncmp(word, "--", 2) && strchr(word, '='))
 		return usage_error("option '%s' takes no argument", word);
 	return usage_error("unknown option '-%c'", optopt);
@@ -237,6 +253,19 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 	}
 }
 
+/* the command that these words are for, so that an error in an option names it */
+static const char *meant_command(int argc, char **argv)
+{
+	const struct cmd *found[EC_TOOL_COMMANDS];
+
+	for (int i = 1; i < argc; i++)
+		if (cmd_exact(argv[i]))
+			return argv[i];
+	if (argc > 1 && *argv[1] != '-' && cmd_lookup(argv[1], found) == 1)
+		return found[0]->name;
+	return "";
+}
+
 /**
  * options_parse() - take options and arguments apart
  * @t: options
@@ -255,6 +284,7 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs, bool *help,
 		  char *seen, size_t seen_size)
 {
+	const char *command = meant_command(argc, argv);
 	size_t n = 0;
 	int c, ret;
 
@@ -262,10 +292,11 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 	*nargs = 0;
 	*help = false;
 	opterr = 0;
+	error_context(command, false);
 	/* errors of the command line itself are JSON as well */
 	for (int i = 1; i < argc && strcmp(argv[i], "--"); i++)
 		if (!strcmp(argv[i], "--json") || !strcmp(argv[i], "-j"))
-			error_context("", true);
+			error_context(command, true);
 	while ((c = getopt_long(argc, argv, shorts, longs, NULL)) != -1) {
 		if (c == 1 ||
 		    ((c == '.' || (c >= '0' && c <= '9')) && negative(argv[optind - 1]))) {

@@ -223,22 +223,58 @@ void out_text_bytes(const u8 *data, size_t size)
 		return;
 	}
 	for (size_t i = 0; i < size; i += step) {
-		if (is_shown(data + i, size - i, &step))
+		if (!is_shown(data + i, size - i, &step))
+			fputs(data[i] ? "?" : "", stdout);
+		else if (step == 1 && data[i] >= 0x80)	/* Latin-1 */
+			printf("%c%c", 0xc0 | data[i] >> 6, 0x80 | (data[i] & 0x3f));
+		else
 			fwrite(data + i, 1, step, stdout);
-		else if (data[i])
-			putchar('?');
 	}
 }
 
-/* Return: whether out_text_bytes() would leave out or replace some, as on a terminal */
-bool out_would_hide(const u8 *data, size_t size)
+/* Return: whether a terminal can show the bytes as characters of one line */
+bool out_is_line(const u8 *data, size_t size)
 {
-	size_t step;
+	for (size_t i = 0; i < size;) {
+		int n = utf8_len(data + i, size - i);
 
-	for (size_t i = 0; isatty(STDOUT_FILENO) && i < size; i += step)
-		if (!is_shown(data + i, size - i, &step))
-			return true;
-	return false;
+		if (!n || !text_harmless(data + i, n))
+			return false;
+		i += (size_t)n;
+	}
+	return true;
+}
+
+/* little-endian UTF-16 as UTF-8; half of a pair, and what a terminal must not get, as '?' */
+void out_utf16(const u8 *data, size_t size)
+{
+	for (size_t i = 0; i + 1 < size; i += 2) {
+		u32 c = data[i] | (u32)data[i + 1] << 8;
+		u8 utf8[4];
+		size_t n = 0;
+
+		if ((c & 0xfc00) == 0xd800 && i + 3 < size && (data[i + 3] & 0xfc) == 0xdc) {
+			i += 2;
+			c = 0x10000 + ((c & 0x3ff) << 10 | (data[i + 1] & 3u) << 8 | data[i]);
+		}
+		if (!c)
+			continue;
+		if ((c & 0xf800) == 0xd800 && c < 0x10000)
+			c = '?';
+		if (c >= 0x10000)
+			utf8[n++] = (u8)(0xf0 | c >> 18);
+		if (c >= 0x800)
+			utf8[n++] = (u8)(c < 0x10000 ? 0xe0 | c >> 12 : 0x80 | (c >> 12 & 0x3f));
+		if (c >= 0x80)
+			utf8[n++] = (u8)(c < 0x800 ? 0xc0 | c >> 6 : 0x80 | (c >> 6 & 0x3f));
+		utf8[n++] = (u8)(c < 0x80 ? c : 0x80 | (c & 0x3f));
+		out_text_bytes(utf8, n);
+	}
+}
+
+bool out_to_terminal(void)
+{
+	return !json && isatty(STDOUT_FILENO);
 }
 
 /* Return: 0, or 1 after printing why binary data are not written */

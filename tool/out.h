@@ -35,7 +35,9 @@ void out_null(const char *key, const char *fmt, ...) OUT_FMT(2);
 void out_hex(const char *key, const u8 *data, size_t size, const char *indent);
 /* as they are; on a terminal without what could control it */
 void out_text_bytes(const u8 *data, size_t size);
-bool out_would_hide(const u8 *data, size_t size);
+bool out_is_line(const u8 *data, size_t size);
+void out_utf16(const u8 *data, size_t size);
+bool out_to_terminal(void);
 /* bytes: hex digits in JSON, as they are in text; those not to a terminal */
 int out_binary_allowed(const char *instead);
 void out_binary(const char *key, const u8 *data, size_t size);

@@ -13,6 +13,8 @@
 #define EC_TOOL_VERSION		"0.1.0"
 #endif
 
+#define EC_TOOL_COMMANDS	64	/* room for all */
+
 /* bits of struct cmd.flags */
 #define CMD_ONE_MASTER		1	/* -m must leave exactly one */
 #define CMD_HISTORIC		2	/* abbreviations resolve to it first */
@@ -125,6 +127,7 @@ const struct cmd *cmd_exact(const char *name);
 int cmd_lookup(const char *text, const struct cmd **found);
 int cmd_unknown(const char *text);
 size_t typing_errors(const char *a, const char *b);
+const char *opt_nearest(const char *word);
 int cmd_ambiguous(const char *text, const struct cmd **found, int n);
 
 /* help.c */
@@ -139,6 +142,8 @@ int usage_error(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 int fail(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 /* @err: errno or 0; @reason: text of the kernel or NULL; @abort: SDO abort code or 0 */
 int fail_full(int err, const char *reason, u32 abort, const char *fmt, ...)
+	__attribute__((format(printf, 4, 5)));
+int fail_cause(int err, const char *reason, const char *cause, const char *fmt, ...)
 	__attribute__((format(printf, 4, 5)));
 void note(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 void error_context(const char *cmd, bool json);

@@ -212,6 +212,7 @@ expected() {
 	./usr/local/lib/systemd/system/ethercat.service
 	.$prefix/sbin/ethercatctl
 	.$prefix/share/ethercat/conf.sh
+	.$prefix/share/ethercat/devices.sh
 	.$prefix/share/man/man8/ethercat-sim.8
 	.$prefix/share/man/man8/ethercatctl.8
 	./etc/ethercat.conf

@@ -2,7 +2,25 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # Configurations as users have them, and their errors; tests/system/operation.bats starts them.
 
-ctl() { "$BATS_TEST_DIRNAME/../../operation/ethercatctl" "$@"; }
+# a computer with these interfaces
+setup() {
+	local here=$BATS_TEST_DIRNAME/../../operation name
+
+	root=$BATS_TEST_TMPDIR/root
+	mkdir -p "$root"/{sbin,sys/class/net}
+	cp "$here"/{ethercatctl,conf.sh} "$root/sbin"
+	sed "s,/sys/,$root&,g" "$here/devices.sh" >"$root/sbin/devices.sh"
+	for name in eth0 eth1 veth0 veth1; do interface $name 1; done
+	echo 52:54:00:ec:00:00 >"$root/sys/class/net/eth0/address"
+	interface lo 772
+}
+
+interface() {	# interface NAME TYPE
+	mkdir "$root/sys/class/net/$1"
+	echo "$2" >"$root/sys/class/net/$1/type"
+}
+
+ctl() { "$root/sbin/ethercatctl" "$@"; }
 
 # means FILE LINE...: what the configuration means, and nothing on stderr
 means() {
@@ -50,6 +68,108 @@ accepted() {
 	run ctl -c "$BATS_TEST_DIRNAME/../../operation/ethercat.conf" check
 	[ "$status" = 0 ]
 	[ "$output" = "$(printf 'Master0: sim0\nDrivers: generic, segments: bench')" ]
+}
+
+@test "a device that can never work, or is absent, is refused with the reason" {
+	local name
+
+	refused 'MASTER0_DEVICE="lo"' \
+		"1: MASTER0_DEVICE=\"lo\": the loopback interface has no cable; 'ethercat devices' lists"
+	interface can0 280
+	refused 'MASTER0_DEVICE="can0"' \
+		'1: MASTER0_DEVICE="can0": can0 is not an Ethernet interface;'
+	mkdir "$root/sys/class/net/eth1/phy80211"
+	refused 'MASTER0_DEVICE="eth1"' \
+		'1: MASTER0_DEVICE="eth1": eth1 is a wireless interface, slaves need a cable;'
+	mkdir "$root/sys/class/net/veth1/brport"
+	ln -s ../br0 "$root/sys/class/net/veth1/master"
+	refused 'MASTER0_DEVICE="veth1"' \
+		"1: MASTER0_DEVICE=\"veth1\": veth1 is a port of br0; release it with 'ip link set veth1 nomaster'"
+	# a bridge may have the address of its port
+	mkdir "$root/sys/class/net/eth0/brport"
+	accepted 'MASTER0_DEVICE="52:54:00:ec:00:00"' 52:54:00:ec:00:00
+	rmdir "$root/sys/class/net/eth0/brport"
+	echo 1400 >"$root/sys/class/net/veth0/mtu"
+	refused 'MASTER0_DEVICE="veth0"' \
+		"1: MASTER0_DEVICE=\"veth0\": veth0 has MTU 1400, frames need 1500; run 'ip link set veth0 mtu 1500'"
+	refused 'MASTER0_DEVICE=sim0\nMASTER1_DEVICE="eth9"' \
+		"2: MASTER1_DEVICE=\"eth9\": no such interface; 'ethercat devices' lists the cards"
+	refused 'MASTER0_DEVICE="Eth1"' '1: MASTER0_DEVICE="Eth1": no such interface; write eth1'
+	refused 'MASTER0_DEVICE="0000:99:00.0"' \
+		'1: MASTER0_DEVICE="0000:99:00.0": no card at this PCI address;'
+	refused 'MASTER0_DEVICE="ff:ff:ff:ff:ff:ff"' \
+		'1: MASTER0_DEVICE="ff:ff:ff:ff:ff:ff": no card is free;'
+	# the card may appear later
+	name=52:54:00:ec:0f:01
+	accepted "MASTER0_DEVICE=$name" $name \
+		"1: MASTER0_DEVICE=\"$name\": no interface has this address yet; the master waits for it"
+	accepted 'MASTER0_DEVICE=eth0\nUPDOWN_INTERFACES="eth0 eth7"' eth0 \
+		"2: UPDOWN_INTERFACES: no interface eth7; 'ip link' lists the interfaces"
+}
+
+@test "another name of an interface is refused with the name to write" {
+	printf '%s\n' '#!/bin/sh' 'echo "2: eth0@if3: <UP> mtu 1500"' >"$root/ip"
+	chmod +x "$root/ip"
+	PATH=$root:$PATH refused 'MASTER0_DEVICE="enp0s3"' \
+		'1: MASTER0_DEVICE="enp0s3": no such interface; write eth0, which has this'
+}
+
+@test "an unknown segment is refused with the names" {
+	local text='thin, three, bench, line100, line1000, and paths, which begin with /'
+
+	refused 'MASTER0_DEVICE=sim0\n\nSIM_SEGMENT=bnech' "3: SIM_SEGMENT: no segment 'bnech'; there are $text"
+	refused 'MASTER0_DEVICE=sim0\nSIM_SEGMENT=my/bus' "2: SIM_SEGMENT: no segment 'my/bus'; there"
+	refused 'MASTER0_DEVICE=sim0\nSIM_SEGMENT=/no/bus' \
+		'2: SIM_SEGMENT: no file /no/bus that can be read'
+	echo slave >"$root/bus"
+	accepted "MASTER0_DEVICE=sim0\nSIM_SEGMENT=$root/bus" sim0
+	printf '%s\n' '#!/bin/sh' 'echo "$2:1: no name"' 'exit 1' >"$root/ethercat-sim"
+	chmod +x "$root/ethercat-sim"
+	PATH=$root:$PATH refused "MASTER0_DEVICE=sim0\nSIM_SEGMENT=$root/bus" \
+		"2: SIM_SEGMENT: $root/bus:1: no name"
+	# without effect
+	accepted 'MASTER0_DEVICE=eth0\nSIM_SEGMENT=bnech' eth0
+}
+
+@test "typographic quotes and no-break spaces are named" {
+	local text="has typographic quotes; write \" at both ends"
+
+	refused 'MASTER0_DEVICE=\xe2\x80\x9ceth0\xe2\x80\x9d' "1: '“eth0”' $text"
+	refused 'MASTER0_DEVICE=\xe2\x80\x9eeth0 eth1\xe2\x80\x9c' "1: '„eth0' $text"
+	refused 'MASTER0_DEVICE="eth0\xe2\x80\x9d # card' "1: '\"eth0” # card' $text"
+	refused 'DEVICE_MODULES="\xc2\xabgeneric\xc2\xbb"' "1: '«generic»' $text"
+	refused 'MASTER0_DEVICE="eth0\xc2\xa0"' \
+		"1: 'eth0"$'\xc2\xa0'"' has a no-break space; write a blank"
+	refused 'MASTER0_DEVICE="eth0"\xc2\xa0# card' \
+		"1: '"$'\xc2\xa0'"' has a no-break space; write a blank"
+	refused '\xc2\xa0MASTER0_DEVICE="eth0"' \
+		"1: '"$'\xc2\xa0'"MASTER0_DEVICE' has a no-break space; write a blank"
+	accepted 'MASTER0_DEVICE="eth0" # the \xe2\x80\x9cleft\xe2\x80\x9d port' eth0
+}
+
+@test "a device in another notation is refused with the right one" {
+	refused 'MASTER0_DEVICE="52-54-00-EC-00-00"' \
+		'1: MASTER0_DEVICE="52-54-00-EC-00-00": write 52:54:00:EC:00:00'
+	refused 'MASTER0_DEVICE="525400ec0000"' \
+		'1: MASTER0_DEVICE="525400ec0000": write 52:54:00:ec:00:00'
+	refused 'MASTER0_DEVICE="01:00.0"' '1: MASTER0_DEVICE="01:00.0": write 0000:01:00.0'
+	refused 'MASTER0_DEVICE="SIM1"' '1: MASTER0_DEVICE="SIM1": write sim1'
+	refused 'master0_device="eth0"\nexport SIM_SEGMENT=thin' \
+		'1: unknown variable master0_device; write MASTER0_DEVICE' \
+		"2: 'export SIM_SEGMENT': this file is not run as a shell script; write SIM_SEGMENT=..."
+	refused 'MASTER0_DEVICE="sim"' '1: MASTER0_DEVICE="sim": write sim0'
+	refused 'MASTER0_DEVICE="sim12"' '1: MASTER0_DEVICE="sim12": the simulator has sim0 to sim7'
+	refused 'MASTER0_DEVICE="eth0,eth1"' \
+		'1: MASTER0_DEVICE="eth0,eth1" is not one device; a second master has a variable of'
+}
+
+@test "ethercatctl, the installation guide and DKMS name the same kernels" {
+	local top=$BATS_TEST_DIRNAME/../.. range
+
+	range=$(sed -n 's/.*modules need Linux \([0-9.]* to [0-9.]*\),.*/\1/p' "$top/Documentation/install.rst")
+	[ "$range" = "6.1 to 7.3" ]
+	grep -qF "($range can have it)" "$top/operation/ethercatctl"
+	grep -qF 'BUILD_EXCLUSIVE_KERNEL="^(6\.[1-9]|7\.[0-3]\.)"' "$top/debian/ethercat-dkms.dkms"
 }
 
 @test "a backup device is refused with the reason" {
@@ -110,6 +230,8 @@ accepted() {
 		'2: MASTERx_BACKUP: the masters are'
 	refused 'MASTER0_DEVICE=eth0\nMASTER1_DEVICE=eth0' \
 		'2: MASTER1_DEVICE="eth0" is the device of MASTER0'
+	refused 'DEVICE_MODULES="generic,e1000"' \
+		'1: DEVICE_MODULES="generic,e1000": separate names by blanks'
 	refused 'DEVICE_MODULES="generic e1000x"' "1: DEVICE_MODULES: unknown driver 'e1000x'"
 	refused 'UPDOWN_INTERFACES="eth0,eth1"' "1: UPDOWN_INTERFACES: 'eth0,eth1' is not the name"
 	refused 'MODPROBE_FLAGS="debug_level=1"' "1: MODPROBE_FLAGS: 'debug_level=1' is not an option"
@@ -135,22 +257,32 @@ accepted() {
 	[ "$status" = 6 ]
 }
 
-@test "an unknown verb prints the usage" {
-	local words
+@test "an unknown command is named before the usage" {
+	local words first
 
-	for words in '' reload 'start stop' '-c'; do
+	while IFS='|' read -r words first; do
 		# shellcheck disable=SC2086
 		run ctl $words
 		[ "$status" = 1 ]
-		[[ $output == "usage: ethercatctl "* ]]
-	done
+		[[ ${lines[0]} == "$first"* ]]
+		[[ $output == *"usage: ethercatctl "* ]]
+	done <<-'END'
+	|usage: ethercatctl
+	reload|ethercatctl: unknown command 'reload'
+	start stop|ethercatctl: unexpected argument 'stop'
+	--force stop|ethercatctl: unknown option '--force'
+	stop -c|ethercatctl: option -c needs a file
+	-c file|usage: ethercatctl
+	END
+	printf 'MASTER0_DEVICE=eth0\n' >"$BATS_TEST_TMPDIR/conf"
+	[ "$(ctl check -c "$BATS_TEST_TMPDIR/conf" | head -n 1)" = 'Master0: eth0' ]
 	run ctl --help
 	[ "$status" = 0 ]
 }
 
 @test "status without a master of this computer: dead, exit code 1" {
 	printf 'MASTER0_DEVICE=eth0\n' >"$BATS_TEST_TMPDIR/conf"
-	run env PATH=/usr/bin:/bin "$BATS_TEST_DIRNAME/../../operation/ethercatctl" \
+	run env PATH=/usr/bin:/bin "$root/sbin/ethercatctl" \
 		-c "$BATS_TEST_TMPDIR/conf" status
 	[ "$status" = 1 ]
 	[ "$output" = "Master0  dead" ]

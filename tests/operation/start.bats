@@ -21,6 +21,7 @@ setup() {
 		"$root"/sys/bus/pci/{devices,drivers/ec_intel}
 	sed "s,/\(sys\|run\|dev/E\|etc/mod\),$root&,g" "$here/ethercatctl" >"$root/sbin/ethercatctl"
 	chmod +x "$root/sbin/ethercatctl"
+	sed "s,/\(sys\|run\),$root&,g" "$here/devices.sh" >"$root/sbin/devices.sh"
 	cp "$here/conf.sh" "$root/sbin"
 	stub id 'echo 0'
 	stub ip
@@ -127,6 +128,93 @@ main_is() { [ "$(cat "$root/sys/module/ec_master/parameters/main_devices")" = "$
 	[ "$status" = 1 ]
 	[[ $output =~ "conf names no master: set MASTER0_DEVICE to a MAC address" ]]
 	loaded_are 'ec_generic ec_master'
+}
+
+# systemd_stop JOB: what systemd calls for a job of this type
+systemd_stop() {
+	stub systemctl "[ \"\$*\" = 'list-jobs --no-legend ethercat.service' ] && echo '7 ethercat.service $1 running'"
+	run sh -c 'SYSTEMD_EXEC_PID=$$ exec "$@"' sh "$root/sbin/ethercatctl" \
+		-c "$BATS_TEST_TMPDIR/conf" stop
+	echo "$output"
+}
+
+@test "restart, also that of systemctl, stops nothing when the configuration is wrong" {
+	local line reason
+
+	nic eth0 $NIC
+	nic lo 00:00:00:00:00:00
+	echo 772 >"$root/sys/class/net/lo/type"
+	conf 'MASTER0_DEVICE=eth0'
+	ctl start
+	[ "$status" = 0 ]
+	while IFS='|' read -r line reason; do
+		conf "$line"
+		ctl restart
+		[ "$status" = 1 ]
+		[[ ${lines[0]} == *"conf:1: MASTER0_DEVICE="*"$reason"* ]]
+		systemd_stop restart
+		[ "$status" = 1 ]
+		[[ ${lines[0]} == *"conf:1: MASTER0_DEVICE="*"$reason"* ]]
+		[ "${lines[1]}" = "ethercatctl: the masters run on; mend $BATS_TEST_TMPDIR/conf, then run 'ethercatctl restart'" ]
+		loaded_are 'ec_generic ec_master'
+		# systemd starts all the same
+		ctl start
+		[ "$status" = 1 ]
+	done <<-'END'
+	MASTER0_DEVICE=lo|the loopback interface has no cable
+	MASTER0_DEVICE=eth9|no such interface
+	MASTER0_DEVICE=a/b|is neither a MAC address
+	END
+	rm "$BATS_TEST_TMPDIR/conf"
+	systemd_stop restart
+	[ "$status" = 1 ]
+	[[ ${lines[0]} == *"conf: it does not exist" ]]
+	loaded_are 'ec_generic ec_master'
+	ctl start
+	[ "$status" = 6 ]
+	# a stop needs no configuration
+	systemd_stop stop
+	[ "$status" = 0 ]
+	loaded_are '*'
+}
+
+@test "systemctl restart with a configuration that is right stops the masters" {
+	nic eth0 $NIC
+	conf 'MASTER0_DEVICE=eth0'
+	ctl start
+	systemd_stop restart
+	[ "$status" = 0 ]
+	loaded_are '*'
+	ctl start
+	[ "$status" = 0 ]
+}
+
+@test "the unit runs start also without a configuration, which then fails" {
+	run grep -E '^(Condition|Assert)' "$BATS_TEST_DIRNAME/../../operation/ethercat.service"
+	[ "$status" = 1 ]
+}
+
+@test "an interface that can never work is refused at once" {
+	nic lo 00:00:00:00:00:00
+	echo 772 >"$root/sys/class/net/lo/type"
+	conf "MASTER0_DEVICE=$LATE" 'MASTER1_DEVICE="lo"'
+	stub sleep 'touch $root/slept'
+	ctl start
+	[ "$status" = 1 ]
+	[[ $output == *'conf:2: MASTER1_DEVICE="lo": the loopback interface has no cable; '* ]]
+	[ ! -e "$root/slept" ]
+	loaded_are '*'
+}
+
+@test "an interface that ec_generic refuses fails the start with the reason of the kernel log" {
+	nic eth0 $NIC
+	conf "MASTER0_DEVICE=$NIC"
+	stub ethercat '[ "$1" != master ] || echo "  Main: eth0 (waiting...)"'
+	stub dmesg 'echo "[ 1.0] ec_generic: eth0: MTU 1400, need 1500"' 'echo "[ 2.0] other"'
+	ctl start
+	[ "$status" = 1 ]
+	[ "$output" = "$BATS_TEST_TMPDIR/conf:1: MASTER0_DEVICE=\"$NIC\": the master cannot use eth0: MTU 1400, need 1500" ]
+	loaded_are '*'
 }
 
 @test "ec_master that is loaded with an address in capitals is the same" {

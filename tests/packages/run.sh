@@ -205,6 +205,20 @@ boots() {
 		systemctl stop ethercat
 		unloaded
 		cp /etc/ethercat.conf /tmp/conf
+		systemctl start ethercat
+		wait_until "slaves PREOP 22"
+		echo "MASTER0_DEVICE=lo" >/etc/ethercat.conf
+		refused systemctl restart ethercat
+		slaves PREOP 22
+		journalctl -u ethercat | grep "the masters run on; mend /etc/ethercat.conf"
+		cp /tmp/conf /etc/ethercat.conf
+		systemctl start ethercat
+		rm /etc/ethercat.conf
+		refused systemctl restart ethercat
+		slaves PREOP 22
+		ethercatctl stop
+		unloaded
+		refused systemctl restart ethercat
 		echo "MASTER0_DEVICE=eth9" >/etc/ethercat.conf
 		refused systemctl start ethercat
 		journalctl -u ethercat | grep "ethercat.conf:1: .*no such device after 10 s"

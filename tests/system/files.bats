@@ -132,6 +132,7 @@ teardown_file() { stop; }
 	echo 'off drive' >"$sim"
 	wait "$pid" || rc=$?
 	[ "$rc" = 1 ]
+	cat "$BATS_TEST_TMPDIR/err"
 	[ "$(wc -l <"$BATS_TEST_TMPDIR/err")" = 1 ]
 	# the transfer ends before the master has noticed that the slave is absent
 	wait_for 20 all_slaves_are PREOP 2

@@ -11,7 +11,7 @@ CTL=$BATS_TEST_DIRNAME/../../operation/ethercatctl
 setup_file() {
 	local tree=$BATS_FILE_TMPDIR/lib/modules/$(uname -r)
 
-	modprobe veth
+	modprobe -a veth bridge macvlan
 	modprobe e1000e
 	ip link set eth1 up
 	mkdir -p "$tree"
@@ -162,14 +162,38 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	conf ''
 	fails 'names no master: set MASTER0_DEVICE to a MAC address' own start
 	conf 'MASTER0_DEVICE="sim0"' 'SIM_SEGMENT="bnech"'
-	fails 'cannot load ec_sim: ec_sim: segment=bnech: neither a built-in segment' own start
+	fails "conf:2: SIM_SEGMENT: no segment 'bnech'; there are thin, three" own start
 	none_loaded
 	# the clone may be in a folder of root's
-	install -m 755 -D -t /run/ctl "$CTL" "${CTL%/*}/conf.sh" "$CONF/sim.conf"
+	install -m 755 -D -t /run/ctl "$CTL" "${CTL%/*}"/{conf,devices}.sh "$CONF/sim.conf"
 	fails "'start' needs root" setpriv --reuid=65534 --clear-groups /run/ctl/ethercatctl \
 		-c /run/ctl/sim.conf start
 	conf 'MASTER0_DEVICE="sim0"' 'MODPROBE_FLAGS="-d/nowhere"'
-	fails "cannot load ec_master: it is not installed for the kernel $(uname -r) .6.1 to 6.12 can have it.; install ethercat-dkms and linux-headers-$(uname -r), or run 'make install'" own start
+	fails "cannot load ec_master: it is not installed for the kernel $(uname -r) .6.1 to 7.3 can have it.; install ethercat-dkms and linux-headers-$(uname -r), or run 'make install'" own start
+	none_loaded
+}
+
+@test "start refuses an interface that can never work, and restart then stops nothing" {
+	conf 'MASTER0_DEVICE="lo"'
+	fails 'conf:1: MASTER0_DEVICE="lo": the loopback interface has no cable' own start
+	ip link add br0 type bridge
+	ip link set veth0 master br0
+	conf 'MASTER0_DEVICE="veth0"'
+	fails "veth0 is a port of br0; release it with 'ip link set veth0 nomaster'" own start
+	ip link del br0
+	ip link set veth0 mtu 1400
+	fails "veth0 has MTU 1400, frames need 1500; run 'ip link set veth0 mtu 1500'" own start
+	ip link set veth0 mtu 1500
+	ip link add link veth0 name mac0 type macvlan
+	fails 'conf:1: MASTER0_DEVICE="veth0": the master cannot use veth0: in use by a bridge,' \
+		own start
+	none_loaded
+	ip link del mac0
+	own start
+	conf 'MASTER0_DEVICE="lo"'
+	fails 'the loopback interface has no cable' own restart
+	attached "$(cat /sys/class/net/veth0/address)"
+	own stop
 	none_loaded
 }
 

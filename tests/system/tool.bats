@@ -116,7 +116,7 @@ teardown_file() { stop; }
 	refused 'SDO download 0x1018:01 aborted with code 0x06010002: .*read' \
 		download -p17 -t uint32 0x1018 1 5
 	refused 'aborted with code 0x0607001' download -p17 -t uint32 0x6060 0 5
-	refused 'SDO 0x1018:01 of slave 0: no CoE mailbox' upload -p0 0x1018 1
+	refused 'slave 0: SDO upload 0x1018:01: no CoE mailbox$' upload -p0 0x1018 1
 	refused 'uint8 has 1 byte.*4 were received' upload -p4 -t uint8 0x1018 1
 	ethercat states INIT -p17 --wait
 	refused 'PREOP' upload -p17 0x1018 1
@@ -202,7 +202,7 @@ teardown_file() { stop; }
 	refused 'matches 0 of 22 slaves' upload -p22 0x1018 1
 	refused 'matches 0 of 22 slaves' reg_read -a77 0 1
 	refused 'invalid list' slaves -p 1x
-	refused 'none of the 1 master' reg_read -m3 -p0 0 1
+	refused 'no such master, there is only master 0' reg_read -m3 -p0 0 1
 }
 
 @test "rescan starts a scan and waits for its end" {

@@ -233,6 +233,27 @@ for o in d["options"]:
 	done
 }
 
+@test "an error in an option names the command, also an abbreviated one, and its help" {
+	local words
+
+	for words in "slaves -x" "slav -x" "-x slaves" "-m 0 slaves -p x" "slaves --wait=x"; do
+		run ethercat $words
+		[ "$status" -eq 1 ]
+		[[ ${lines[0]} == "ethercat slaves: "* ]]
+		[ "${lines[1]}" = "Try 'ethercat slaves --help'." ]
+	done
+	run ethercat -x
+	[ "${lines[0]}" = "ethercat: unknown option '-x'" ]
+	[ "${lines[1]}" = "Try 'ethercat --help'." ]
+	err slaves -j -x | json 'd["error"]["command"] == "slaves"'
+}
+
+@test "an unknown long option proposes the nearest" {
+	[[ $(err slaves --postion=3) == *"unknown option '--postion'; did you mean '--position'?"* ]]
+	[[ $(err slaves --bogus) == *"unknown option '--bogus'"$'\n'* ]]
+	[[ $(err slaves --co) == *"ambiguous option '--co'"* ]]
+}
+
 @test "help shows a letter for an option if the letter works, and only then" {
 	local shown l
 	shown=$(real help | sed -n 's/^  -\([a-z]\), .*/\1/pI' | tr -d '\n')
@@ -241,7 +262,7 @@ for o in d["options"]:
 		if [[ $shown == *$l* ]]; then
 			[[ $output != *"option '-$l'"* ]]
 		else
-			[ "${lines[0]}" = "ethercat: unknown option '-$l'" ]
+			[ "${lines[0]}" = "ethercat version: unknown option '-$l'" ]
 		fi
 	done
 	[[ $(err slaves --verbose=1) == *"option '--verbose=1' takes no argument"* ]]

@@ -87,6 +87,10 @@ static int upload(struct ec_ioc_sdo *x)
 		{ 0x1c13, 1, 2, "\0\x1a" },
 		{ 0x1a00, 0, 1, "\1" },
 		{ 0x1a00, 1, 4, "\x20\x11\0\x60" },
+		{ 0x2003, 0, 3, "a\nb" },
+		{ 0x2003, 1, 2, "\xe4\xf6" },
+		{ 0x2003, 2, 4, "text" },
+		{ 0x2004, 0, 18, "E\0\xc4\0\xac\x20\x3d\xd8\0\xde\0\xd8\x1b\0L\0\0\0" },
 		{ 0x2002, 0, 12, "a\033[2J\302\233b\n\0\0\0" },
 	};
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
@@ -116,6 +120,8 @@ static int upload(struct ec_ioc_sdo *x)
 	}
 	if (x->index == 0x4000)
 		return fake_fail(ETIMEDOUT, "slave 2 has not answered for 1000 ms");
+	if (x->index == 0x4001)
+		return fake_fail(EPROTONOSUPPORT, "SDO 0x4001:00 of slave 2: no CoE mailbox");
 	if (x->flags & EC_SDO_FLAG_COMPLETE) {
 		memcpy(to, "\4\0\2\0", 4);
 		x->size = 4;
@@ -255,7 +261,18 @@ static int soe_write(struct ec_ioc_soe *x)
 
 static int foe_error(struct ec_ioc_foe *x, __u32 code)
 {
+	static const char *const own[] = { "own", "no room", "same", "disk full" };
+
 	x->error_code = code;
+	for (size_t i = 0; i < LEN(own); i += 2)
+		if (!strcmp(x->name, own[i])) {
+			char text[128];
+
+			snprintf(text, sizeof(text),
+				 "file '%s' of slave 2: error 0x%08x: x; text of the slave: %s",
+				 own[i], code, own[i + 1]);
+			return fake_fail(EIO, text);
+		}
 	return fake_fail(EIO, "file: error");
 }
 
@@ -288,7 +305,7 @@ static int foe_write(struct ec_ioc_foe *x)
 {
 	char what[128];
 
-	if (!strcmp(x->name, "full"))
+	if (!strcmp(x->name, "full") || !strcmp(x->name, "own") || !strcmp(x->name, "same"))
 		return foe_error(x, 0x8003);
 	snprintf(what, sizeof(what), "foe %u %.64s 0x%08x ", x->position, x->name, x->password);
 	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);

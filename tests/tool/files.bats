@@ -73,7 +73,7 @@ load common
 @test "FoE errors: code and text of the slave, and of the master" {
 	run ethercat foe_read -p2 none
 	[ "$status" -eq 1 ]
-	[[ $output == *"Master0 slave 2: cannot read file 'none': 0x00008001: file not found"* ]]
+	[[ $output == *"Master0 slave 2: cannot read file 'none': 0x00008001: file not found" ]]
 	[[ $(err foe_read -p2 boot) == *"0x00008009: not possible in BOOT; some slaves mean: only "* ]]
 	run ethercat foe_read -p2 strange
 	[[ $output == *"cannot read file 'strange': 0x00009999: unknown code"* ]]
@@ -81,7 +81,10 @@ load common
 	[[ $output == *"cannot read file 'mute': "*"did not answer in time" ]]
 	run ethercat foe_write -p2 -o full - <<<x
 	[ "$status" -eq 1 ]
-	[[ $output == *"cannot write file 'full': 0x00008003: disk full"* ]]
+	[[ $output == *"cannot write file 'full': 0x00008003: disk full" ]]
+	# a text of the slave that says more
+	[[ $(err foe_write -p2 -o own - <<<x) == *": 0x00008003: disk full: text of the slave: no room" ]]
+	[[ $(err foe_write -p2 -o same - <<<x) == *": 0x00008003: disk full" ]]
 	err foe_read -j -p2 none | json '"0x00008001" in d["error"]["message"]'
 }
 

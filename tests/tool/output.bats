@@ -43,6 +43,7 @@ load common
 @test "golden: cut ring, two masters" {
 	FAKE_BUS=cut golden slaves_cut slaves
 	FAKE_BUS=two golden slaves_two slaves
+	FAKE_BUS=two golden slaves_two slaves -m 0,1
 }
 
 @test "slaves: list held, by which process, lost slave, slaves outside of the list" {
@@ -85,8 +86,11 @@ load common
 	for c in slaves states pdos domains rescan master; do
 		run ethercat $c -m5
 		[ "$status" -eq 1 ]
-		[[ $output == *"-m selects none of the 1 master(s) present"* ]]
+		[[ $output == *"no such master, there is only master 0"* ]]
 	done
+	# a list with masters that exist
+	[ "$(err master -m0,7)" = "warning: no master 7, the last one is master 0" ]
+	[ -z "$(err master -m0-7)" ]
 	# one match on one of two masters is enough
 	FAKE_BUS=two run ethercat slaves -m0,1 -p1
 	[ "$status" -eq 0 ]
@@ -238,6 +242,13 @@ END
 
 	[[ $(script -qec "$tool upload -p2 0x1018" /dev/null) == "0x04 0x00 0x02 0x00"* ]]
 	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2000 0" /dev/null) == "0x00 0x00 0xc0"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2003 0" /dev/null) == "0x61 0x0a 0x62"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2003 1" /dev/null) == "0xe4 0xf6"* ]]
+	[[ $(script -qec "$tool upload -p2 -toctet_string 0x2003 2" /dev/null) == "text" ]]
+	[[ $(script -qec "$tool upload -p2 -tstring 0x2003 1" /dev/null) == "äö"* ]]
+	# half of a pair, a control character
+	[[ $(script -qec "$tool upload -p2 -tunicode_string 0x2004 0" /dev/null) == "EÄ€😀??L"* ]]
+	[ "$(out upload -p2 -tunicode_string 0x2004 0 | wc -c)" -eq 19 ]
 }
 
 @test "upload failures name cause and slave" {
@@ -255,10 +266,34 @@ END
 	err upload -j -p2 0x5001 0 | json 'd["error"]["abort_text"] == "unknown code"'
 	run ethercat upload -p2 0x4000 0
 	[ "$status" -eq 1 ]
-	[[ $output == *"timed out: slave 2 has not answered for 1000 ms"* ]]
+	[[ $output == *"SDO upload 0x4000:00: slave 2 has not answered for 1000 ms" ]]
+	# neither the SDO nor the slave twice, also if the kernel names both
+	run ethercat upload -p2 0x4001 0
+	[ "$output" = "ethercat upload: Master0 slave 2: SDO upload 0x4001:00: no CoE mailbox" ]
+	err upload -j -p2 0x4001 0 | json 'd["error"]["reason"] == "SDO 0x4001:00 of slave 2: no CoE mailbox" and d["error"]["errno"] == 93'
 	run ethercat upload -p2 -t uint8 0x1018 1
 	[ "$status" -eq 1 ]
 	[[ $output == *"uint8 has 1 byte(s), but 4 were received"* ]]
+}
+
+@test "hex for a type of characters is reported with the type that takes it" {
+	export FAKE_LOG=$BATS_TEST_TMPDIR/log
+	run ethercat download -p2 -t octet_string 0x2001 0 '0x12 0x34'
+	[ "$status" -eq 0 ]
+	[ "$output" = "warning: octet_string writes the characters '0x12 0x34'; --type raw writes these bytes" ]
+	[ -z "$(err download -p2 -t octet_string 0x2001 0 '0x1g')" ]
+	[ -z "$(err download -p2 -t string 0x2001 0 '0x12')" ]
+	[ -z "$(printf 0x12 | err download -p2 -t octet_string 0x2001 0 -)" ]
+}
+
+@test "a number out of range is refused with the limits" {
+	[[ $(err reg_write -p2 0x120 -t uint16 70000) == *"'70000' for type uint16: expected 0 to 65535"* ]]
+	[[ $(err reg_write -p2 0x120 -t uint64 -1) == *": expected 0 to 18446744073709551615"* ]]
+	[[ $(err reg_write -p2 0x120 -t int8 200) == *"'200' for type int8: expected -128 to 127"* ]]
+	[[ $(err reg_write -p2 0x120 -t int64 99999999999999999999) == \
+		*": expected -9223372036854775808 to 9223372036854775807"* ]]
+	[[ $(err reg_write -p2 0x120 -t sm16 40000) == *": expected -32767 to 32767"* ]]
+	[[ $(err debug 5) == *"invalid level '5': expected 0 to 2"* ]]
 }
 
 @test "download sends values of all types" {
@@ -506,10 +541,7 @@ END
 }
 
 @test "the etherlab skin prints MATLAB functions" {
-	run ethercat pdos -p2 -s etherlab
-	[ "$status" -eq 0 ]
-	[[ $output == *"function rv = slave2()"* ]]
-	[[ $output == *"pdo_data_type = 1016;"* ]]
+	golden pdos_etherlab pdos -p2 -s etherlab
 }
 
 @test "a slave that differs from its configuration is marked" {
