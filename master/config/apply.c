@@ -27,6 +27,9 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 	const char *refusal = setup->pdo_refusal;
 	u16 code = READ_ONCE(s->al_code);
 
+	/* another state is asked for meanwhile: this says nothing of the way there */
+	if (setup->heading != ec_slave_wanted(s))
+		return ret;
 	if (ret == -EPROTO && state == EC_AL_SAFEOP && refusal[0])
 		/* the first cause, not only what follows from it */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, &setup->pdo_cause,
@@ -496,12 +499,13 @@ static int start_clean(struct ec_slave *s)
 /* One step towards the requested state; 1: there, 0: again, -errno. */
 static int step(struct ec_slave *s)
 {
-	const struct ec_setup *setup = ec_setup_of(s);
+	struct ec_setup *setup = ec_setup_of(s);
 	u8 want = ec_slave_wanted(s), cur;
 	bool anew;
 	int ret = ec_al_read(s);
 
 	lockdep_assert_held(&s->lock);
+	setup->heading = want;
 	if (ret)
 		return ret;
 	if (READ_ONCE(s->al_status) & EC_AL_ERROR && !s->emulation) {

@@ -152,6 +152,8 @@ struct ec_setup {
 	const struct ec_config *active_config;
 	/** @waits_for: what the worker waits for, NULL: nothing that lasts; any reader */
 	const char *waits_for;
+	/** @heading: state that was requested when the present step began */
+	u8 heading;
 	/** @op_only: SyncManagers that are on in OP only and are on, a bit each */
 	u16 op_only;
 	/** @mapped: its FMMUs are set */

@@ -232,6 +232,26 @@ static void apply_slow_end(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("refused"), lines);
 }
 
+/* While a slave takes its time to refuse a state, another one is requested: that has not failed. */
+static void apply_other_request_meanwhile(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=17 transition=300ms\n"
+				     "slave a io in=8 out=8 cpu=yes\n"
+				     "fault refuse a SAFEOP code=0x1d\n", 1);
+	u32 ms;
+
+	bus_idle(b);
+	bus_request(b, 0, EC_AL_OP);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	bus_request(b, 0, EC_AL_INIT);
+	for (ms = 0; ms < 3000; ms++) {
+		KUNIT_ASSERT_EQ(test, READ_ONCE(bus_slave(b, 0)->error), EC_SLAVE_OK);
+		usleep_range(1000, 1001);
+	}
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_INIT);
+}
+
 /* The mapping that was found is not the slave's any more after its power was off. */
 static void apply_found_pdos(struct kunit *test)
 {
@@ -436,6 +456,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(apply_op_only_late),
 	KUNIT_CASE_PARAM(apply_late_states_taken, late_gen_params),
 	KUNIT_CASE(apply_slow_end),
+	KUNIT_CASE(apply_other_request_meanwhile),
 	KUNIT_CASE(apply_found_pdos),
 	KUNIT_CASE(apply_second_round),
 	KUNIT_CASE(apply_changes_meanwhile),
