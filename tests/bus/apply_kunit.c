@@ -212,7 +212,7 @@ static void apply_late_states_taken(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 
-/* The application ends; the slave takes longer to leave OP than its watchdog. It refuses nothing. */
+/* The application ends; a slave takes longer to leave OP than its watchdog. It refuses nothing. */
 static void apply_slow_end(struct kunit *test)
 {
 	struct cyc *c = reserve(test, "segment seed=17 transition=400ms\n"

@@ -62,7 +62,7 @@ is() {
 	is not_requested '"ethercat states OP -p 2" in f["remedy"]'
 	is boot '"ethercat states PREOP -p 2" in f["remedy"]'
 	is al_refused '"tries again by itself, at once with \x27ethercat states OP -p 2" in f["remedy"]'
-	is stall_zero '(f["cause"], "the kernel sends zeros" in f["text"]) == ("output_stall", True)'
+	is stall_zero '(f["cause"], "kernel sends zeros" in f["text"]) == ("output_stall", True)'
 	is stall_stop '(f["cause"], "has stopped the cycle" in f["text"]) == ("output_stall", True)'
 	is emergency '(f["slave"], f["code"]) == (2, 0x7305)'
 	is emergency '"code 0x7305 (fault of encoder 1), error register" in f["text"]'
