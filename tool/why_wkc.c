@@ -11,7 +11,9 @@
 
 #define LOOKS		3	/* at a working counter before it counts as incomplete */
 #define LOOK_MS		20
-#define FMMU_ENABLE	12	/* byte of the page */
+#define FMMU_TYPE	11	/* byte of the page: 1 reads, 2 writes */
+#define FMMU_ENABLE	12
+#define OUTPUT		1	/* direction of struct ec_ioc_domain_fmmu */
 
 static const struct why_config *config_at(const struct why *w, u16 alias, u16 position)
 {
@@ -66,7 +68,9 @@ static bool is_given(struct why *w, const struct ec_ioc_domain *dom, unsigned in
 			return true;
 		*meets |= at < f.logical + f.size && f.logical < at + len;
 		c = config_at(w, f.alias, f.position);
-		if (c && c->c.slave_position == (int)slave && f.logical == at)
+		/* inputs of one slave and outputs of another may have the same address */
+		if (c && c->c.slave_position == (int)slave && f.logical == at &&
+		    page[FMMU_TYPE] == (f.dir == OUTPUT ? 2 : 1))
 			return true;
 	}
 	return false;

@@ -426,15 +426,28 @@ class Overrun(Whole):
         return [Event("overruns", many=True)]
 
 
-class Mangled(Lost):
-    """Some frames return with other content, so that they are no reply to any."""
+class Rejoined(Fault):
+    """A slave is lost and comes back while its neighbor refuses its state: that one stays."""
+    early = False
+    alone = True
+    places = [9]
+    undo = ("allow s8",)
 
     def inject(self, bench):
-        bench.sim("mangle rate=60000ppm")
+        bench.sim("refuse s8 OP code=0x24", "error s8 code=0x1a", f"off {self.name}")
+        time.sleep(0.5)
+        bench.sim(f"on {self.name}")
 
-    def heal(self, bench):
-        bench.sim("mangle rate=0ppm")
+    def expect(self, position):
+        return {("al_refused", position(8), 0x24), ("link_errors", 8, 1)}
+
+    def events(self):
+        return [Event("slave_failed", 8, many=True, cause=REFUSED, code=0x24, state="OP"),
+                Event("slave_lost", self.slave)]
+
+    def follows(self):
+        return [Event(kind, 8, many=True) for kind in ("al_error", "al_state_left")]
 
 
 MORE = [Late, Lost, Stall, Silenced, Emergency, Ended, Leftover, Odd, Sluggish, Dropped, Twin,
-        Doubled, Typo, Contact, Power, Repaired, Allowed, Spare, Overrun, Mangled]
+        Doubled, Typo, Contact, Power, Repaired, Allowed, Spare, Overrun, Rejoined]
