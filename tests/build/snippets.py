@@ -30,6 +30,7 @@ PROGRAM = """#include <ecrt.h>
 #include <sys/mman.h>
 extern ec_master_t *master;
 extern ec_domain_t *domain;
+extern ec_slave_config_t *config;
 extern struct sched_param param;
 """
 MODULE = """#include <linux/delay.h>

@@ -151,7 +151,7 @@ library_works() {
 		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close,--wrap=posix_fadvise \
 		-pthread -o "$o/session" session.c request.c soe.c foe.c dict.c eoe.c \
 		events.c extension.c rules.c kernel_cycle.c fake.c \
-		"$top"/lib/*.c "$top"/lib/ecrt/*.c "$top"/master/wire/{al,coe,event}.c &&
+		"$top"/lib/*.c "$top"/lib/ecrt/*.c "$top"/master/wire/{al,coe,emergency,event}.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }
 
