@@ -453,10 +453,10 @@ static void run(unsigned long cycles)
 		report(n);
 	}
 	reached_op = !not_in_op();
-	if (!reached_op)
-		printf("ended without OP\n");
-	else if (failed)
+	if (failed)
 		status_words("ended: a drive has left operation, all of them stop");
+	else if (!reached_op)
+		printf("ended without OP\n");
 	else if (!axes[0].moving)
 		status_words("ended: not all drives reached operation");
 	else

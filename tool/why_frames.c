@@ -36,6 +36,14 @@ static void late_place(struct why *w, struct why_finding *f)
 			   card, us);
 }
 
+static bool any(const struct why *w, const char *cause)
+{
+	for (size_t i = 0; i < w->n; i++)
+		if (!strcmp(w->f[i].cause, cause))
+			return true;
+	return false;
+}
+
 /**
  * why_late_frames() - frames that return when the next cycle has begun
  * @w: what is known; @late says whether there are any
@@ -57,20 +65,15 @@ void why_late_frames(struct why *w)
 	if (!n)
 		return;
 	w->late = true;
+	/* an application that is late itself fetches them late */
+	if (any(w, "overruns"))
+		return;
 	f = why_add(w, "late_frames",
 		    "check the CPU of the cycle and the interrupt of the network card: 'ethercat rtcheck', 'ethercat cycle -v'",
 		    "%llu %s in %u ms returned after the next cycle had begun: working counters are incomplete then, and no slave or cable is at fault",
 		    (unsigned long long)n, n == 1 ? "frame" : "frames", LATE_MS);
 	f->warning = true;
 	late_place(w, f);
-}
-
-static bool any(const struct why *w, const char *cause)
-{
-	for (size_t i = 0; i < w->n; i++)
-		if (!strcmp(w->f[i].cause, cause))
-			return true;
-	return false;
 }
 
 /**

@@ -224,6 +224,7 @@ def run_group(bench, title, cases):
         shown += can_show
         log += can_show and not wrong
         if found != wanted:
+            print(*(f"# {line}" for line in bench.texts.split("\n")), sep="\n")
             print(f"# {text}: why found {sorted(map(str, found))}, expected "
                   f"{sorted(map(str, wanted))}")
         for line in wrong:
