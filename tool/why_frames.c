@@ -65,8 +65,8 @@ void why_late_frames(struct why *w)
 	if (!n)
 		return;
 	w->late = true;
-	/* an application that is late itself fetches them late */
-	if (any(w, "overruns"))
+	/* an application that is late fetches them late, and so it is with a short cycle */
+	if (any(w, "overruns") || any(w, "cycle_too_short"))
 		return;
 	f = why_add(w, "late_frames",
 		    "check the CPU of the cycle and the interrupt of the network card: 'ethercat rtcheck', 'ethercat cycle -v'",
