@@ -156,7 +156,7 @@ struct count {
 	bool nothing;		/* is selected here */
 };
 
-/* "2 faults"; nothing for 0 unless it is the first */
+/* "2 faults" behind @before; nothing for 0 */
 static void number(size_t n, const char *one, const char *more, const char *before)
 {
 	if (n)

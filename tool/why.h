@@ -11,6 +11,7 @@
 
 #define WHY_NONE	(-1)
 #define WHY_REMEDY	400
+#define WHY_SCAN_REMEDY	"repeat the command when the scan is complete"
 #define WHY_TEXT	2048	/* two lists of some 60 PDO entries each fit */
 
 /**

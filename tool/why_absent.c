@@ -30,10 +30,13 @@ static void lost_at(struct why *w, unsigned int position, unsigned int port, con
 
 	why_slave_name(w, position, name, sizeof(name));
 	if (w->m.scan_busy || w->m.slaves_responding > w->bus.n) {
+		/* which of several places is repaired shows when the scan has ended */
 		f = why_scan(w);
+		if (f->slave != WHY_NONE)
+			f = why_add(w, "scan", WHY_SCAN_REMEDY, "%s", "");
 		snprintf(f->what, sizeof(f->what),
-			 "more slaves reply again behind port %u of %s: %u of %u slaves are read; lost before: %s",
-			 port, name, w->m.scan_index, w->m.scan_slaves, text);
+			 "slaves reply again, %u of %u are read; the scan shows whether those behind port %u of %s are back; lost before: %s",
+			 w->m.scan_index, w->m.scan_slaves, port, name, text);
 		f->wait = true;
 	} else {
 		f = why_add(w, "cable",

@@ -36,7 +36,7 @@ struct why_finding *why_scan(struct why *w)
 	for (size_t i = 0; i < w->n; i++)
 		if (!strcmp(w->f[i].cause, "scan"))
 			return &w->f[i];
-	f = why_add(w, "scan", "repeat the command when the scan is complete",
+	f = why_add(w, "scan", WHY_SCAN_REMEDY,
 		    "bus scan in progress: %u of %u slaves read", m->scan_index, m->scan_slaves);
 	f->warning = true;
 	return f;

@@ -131,7 +131,7 @@ static const struct emergency drive_emergencies[] = {
 	{ 0xffff, 0xf004, "control" },
 };
 
-static const char *look(const struct emergency *e, size_t n, u16 code)
+static const char *find_text(const struct emergency *e, size_t n, u16 code)
 {
 	size_t i;
 
@@ -154,6 +154,6 @@ const char *ec_emergency_text(u16 code, u32 profile)
 	const char *text = NULL;
 
 	if (profile == EC_PROFILE_DRIVE)
-		text = look(drive_emergencies, ARRAY_SIZE(drive_emergencies), code);
-	return text ?: look(emergencies, ARRAY_SIZE(emergencies), code) ?: "unknown group";
+		text = find_text(drive_emergencies, ARRAY_SIZE(drive_emergencies), code);
+	return text ?: find_text(emergencies, ARRAY_SIZE(emergencies), code) ?: "unknown group";
 }

@@ -159,7 +159,7 @@ static void kcyc_stall_again_and_again(struct kunit *test)
 		kcyc_give(a);
 		kcyc_wait_cycles(a, 6);
 	}
-	/* the last one stands, and is told when a second is over */
+	/* the last one stands, and has its record when a second is over */
 	kcyc_wait_cycles(a, 1000);
 	while (ec_event_ring_get(&a->c->b->m->base->events.ring, &at, &e)) {
 		n += e.kind == EC_EVENT_STALL || e.kind == EC_EVENT_OUTPUTS;
