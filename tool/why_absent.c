@@ -35,7 +35,7 @@ static void lost_at(struct why *w, unsigned int position, unsigned int port, con
 		if (f->slave != WHY_NONE)
 			f = why_add(w, "scan", WHY_SCAN_REMEDY, "%s", "");
 		snprintf(f->what, sizeof(f->what),
-			 "slaves reply again, %u of %u are read; the scan shows whether those behind port %u of %s are back; lost before: %s",
+			 "slaves reply again, %u of %u are read; the scan shows whether those behind port %u of %s reply as well; lost before: %s",
 			 w->m.scan_index, w->m.scan_slaves, port, name, text);
 		f->wait = true;
 	} else {

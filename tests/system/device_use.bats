@@ -29,6 +29,7 @@ teardown() {
 }
 
 use() { ethercat device use -m0 "$@"; }
+gone() { ! pgrep -x "$1" >/dev/null; }
 device() { ethercat master -m0 --json | gojq -r '.masters[0].devices[0].interface'; }
 # slaves_are NAME: of the second one of two, both in PREOP
 slaves_are() {
@@ -163,6 +164,9 @@ slaves_are() {
 	kill $readers
 	wait $readers 2>/dev/null || true
 	readers=
+	# the last application of a loop may outlive it for a second
+	pkill -KILL -x cyclic || true
+	wait_for 30 gone cyclic
 	echo "# $done of $i changes beside them" >&3
 	[ $done = 12 ]
 	wait_for 60 use sim1

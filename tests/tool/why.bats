@@ -54,7 +54,7 @@ is() {
 	# a link that is up again is not named as cut
 	FAKE_WHY="cable scan" run ethercat why
 	[ "$status" -eq 1 ]
-	[[ $output == "Under way: slaves reply again, "*" behind port 1 of slave 1 (EL2008) are back; "* ]]
+	[[ $output == "Under way: slaves reply again, "*" behind port 1 of slave 1 (EL2008) reply as well; "* ]]
 	[[ $output != *cable* && $output != *"link down"* ]]
 }
 
