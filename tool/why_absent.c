@@ -113,6 +113,16 @@ static struct why_config *first_absent(struct why *w)
 	return first;
 }
 
+static unsigned int last_position(const struct why *w)
+{
+	unsigned int last = 0;
+
+	for (size_t i = 0; i < w->n_configs; i++)
+		if (!w->configs[i].c.alias)
+			last = max(last, w->configs[i].c.position);
+	return last;
+}
+
 /*
  * Do all slaves from @from on fit when they are looked for @gap positions earlier, but not all
  * where they are configured? Then those in between are missing.
@@ -121,8 +131,8 @@ static bool shifted(const struct why *w, unsigned int from, unsigned int gap)
 {
 	bool any = from >= w->bus.n;
 
-	/* more than the whole bus has: a match is chance */
-	if (!any && gap > w->bus.n)
+	/* more than the whole bus has: a match is chance, unless the bus ends where it should */
+	if (!any && gap > w->bus.n && last_position(w) + 1 - gap != w->bus.n)
 		return false;
 	for (size_t i = 0; i < w->n_configs; i++) {
 		const struct why_config *c = &w->configs[i];
@@ -135,16 +145,6 @@ static bool shifted(const struct why *w, unsigned int from, unsigned int gap)
 		any |= at_position(c);
 	}
 	return any;
-}
-
-static unsigned int last_position(const struct why *w)
-{
-	unsigned int last = 0;
-
-	for (size_t i = 0; i < w->n_configs; i++)
-		if (!w->configs[i].c.alias)
-			last = max(last, w->configs[i].c.position);
-	return last;
 }
 
 /* The only port without link of the slave before @position, where the next one should be. */

@@ -104,10 +104,11 @@ struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position)
 	return s;
 }
 
-/* No slave on its way to another state, PDOs read. */
+/* No slave on its way to another state, PDOs read, or tried. */
 static bool slave_settled(struct ec_slave *s)
 {
-	return READ_ONCE(s->stop.gone) || (!ec_slave_busy(s) && !ec_slave_pdos_pending(s));
+	return READ_ONCE(s->stop.gone) ||
+	       (!ec_slave_busy(s) && (READ_ONCE(s->pdos_known) || !ec_slave_pdos_pending(s)));
 }
 
 static bool slaves_settled(struct ec_bus *bus)

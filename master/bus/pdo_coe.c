@@ -10,6 +10,8 @@
 
 #define NO_OBJECT	0x06020000	/* abort code */
 #define WHOLE_MS	300000	/* for the PDOs of a SyncManager: up to 65,000 objects */
+#define AGAIN_MIN_MS	2000	/* until they are read again after an exchange that failed */
+#define AGAIN_MAX_MS	60000
 
 /* An unsigned object of at most 4 bytes; -ENOENT: the slave refuses it; -ENXIO: it has none. */
 static int upload(struct ec_slave *s, u16 index, u8 sub, u32 *value, u64 end_ns)
@@ -189,18 +191,39 @@ void ec_slave_clear_warning(struct ec_slave *s)
 			     "PDOs could not be read over CoE; those of the EEPROM are used" : "");
 }
 
+/* Says once that it failed; what a slave answers wrongly it would answer again. */
+static void note_unread(struct ec_slave *s, int ret)
+{
+	bool before = s->pdos_unread;
+	u64 again = 0;
+	char why[96];
+
+	s->pdos_unread = ret && ret != -ENOENT;
+	ec_slave_clear_warning(s);
+	if (s->pdos_unread && ret != -EBADMSG) {
+		s->pdos_again_ms = clamp_t(u32, before ? 2 * s->pdos_again_ms : 0, AGAIN_MIN_MS,
+					   AGAIN_MAX_MS);
+		again = ktime_get_ns() + s->pdos_again_ms * (u64)NSEC_PER_MSEC;
+	}
+	ec_write64(&s->pdos_again_ns, again);
+	if (s->pdos_unread && !before)
+		ec_slave_warn(s, "%s (%s)\n", s->warning,
+			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
+	else if (before && !s->pdos_unread)
+		ec_slave_info(s, "PDOs read over CoE\n");
+}
+
 /**
- * ec_slave_read_coe_pdos() - read which PDOs the slave uses, once
+ * ec_slave_read_coe_pdos() - read which PDOs the slave uses
  * @s: slave in PREOP or higher with CoE, @lock held
  *
  * SyncManagers whose objects the slave does not have keep the PDOs of the
- * EEPROM.
+ * EEPROM. When its mailbox fails, they are read again later.
  *
  * Context: Process. Waits for bus traffic.
  */
 void ec_slave_read_coe_pdos(struct ec_slave *s)
 {
-	char why[96];
 	unsigned int sm;
 	int ret = 0;
 
@@ -213,11 +236,8 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	/* then the monitor lets it begin again */
 	if (ret == -ECANCELED || ret == -EINTR || ret == -ENOMEM)
 		return;
-	s->pdos_unread = ret && ret != -ENOENT;
-	ec_slave_clear_warning(s);
-	if (s->pdos_unread)
-		ec_slave_warn(s, "%s (%s)\n", s->warning,
-			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
-	WRITE_ONCE(s->names_done, false);
+	note_unread(s, ret);
+	if (!s->pdos_unread || !s->pdos_known)
+		WRITE_ONCE(s->names_done, false);
 	WRITE_ONCE(s->pdos_known, true);
 }

@@ -6,6 +6,7 @@
 #include <linux/kref.h>
 #include <linux/mutex.h>
 #include <linux/spinlock.h>
+#include "../base/once64.h"
 #include "../mailbox/mailbox.h"
 #include "bus.h"
 #include "dict.h"
@@ -77,6 +78,8 @@ struct ec_break {
  * @free_pdos: PDOs without SyncManager
  * @pdos_known: the object dictionary was read, or there is none
  * @pdos_unread: @pdos_known, but they could not be read
+ * @pdos_again_ns: when they are read again then (ktime), 0: not
+ * @pdos_again_ms: after that time since the last try
  * @names: from the object dictionary
  * @names_done: the slave was asked for those its EEPROM does not have
  *
@@ -159,6 +162,8 @@ struct ec_slave {
 	struct ec_pdo_list free_pdos;
 	bool pdos_known;
 	bool pdos_unread;
+	u32 pdos_again_ms;
+	aligned_u64 pdos_again_ns;
 	struct ec_names names;
 	bool names_done;
 
@@ -295,8 +300,11 @@ static inline bool ec_slave_busy(const struct ec_slave *slave)
 static inline bool ec_slave_pdos_pending(const struct ec_slave *s)
 {
 	u16 al = READ_ONCE(s->al_status);
+	u64 again = ec_read64(&s->pdos_again_ns);
 
-	return !READ_ONCE(s->pdos_known) && READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
+	if (READ_ONCE(s->pdos_known) && (!again || ktime_get_ns() < again))
+		return false;
+	return READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
 	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
 	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
 }

@@ -57,6 +57,36 @@ static void pdo_same_as_eeprom(struct kunit *test)
 	}
 }
 
+/* Its mailbox fails just when they are read: what is said of it ends with that. */
+static void pdo_mailbox_failed_read_later(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave d drive in=22 out=22 mapping=rewritable\n", 1);
+	struct ec_slave *s = bus_slave(b, 0);
+	char warning[160];
+	unsigned int i;
+
+	KUNIT_ASSERT_FALSE(test, s->pdos_known);
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
+	for (i = 0; i < 60 && !READ_ONCE(s->pdos_known); i++)
+		msleep(500);
+	KUNIT_EXPECT_TRUE(test, s->pdos_unread);
+	ec_slave_warning(s, warning, sizeof(warning));
+	KUNIT_EXPECT_TRUE(test, strstarts(warning, "PDOs could not be read over CoE"));
+	/* nobody who waits for the bus waits for that */
+	KUNIT_EXPECT_TRUE(test, bus_settled(b));
+	/* often enough to be long between two tries */
+	msleep(100000);
+	KUNIT_EXPECT_TRUE(test, s->pdos_unread);
+
+	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
+	for (i = 0; i < 200 && READ_ONCE(s->pdos_unread); i++)
+		msleep(500);
+	KUNIT_EXPECT_FALSE(test, s->pdos_unread);
+	ec_slave_warning(s, warning, sizeof(warning));
+	KUNIT_EXPECT_STREQ(test, warning, "");
+	KUNIT_EXPECT_FALSE(test, ec_slave_pdos_pending(s));
+}
+
 static void pdo_changed_mapping_is_seen(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave d drive in=22 out=22 mapping=rewritable\n", 1);
@@ -281,6 +311,7 @@ static void pdo_names_of_hostile_slave(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(pdo_same_as_eeprom),
+	KUNIT_CASE(pdo_mailbox_failed_read_later),
 	KUNIT_CASE(pdo_changed_mapping_is_seen),
 	KUNIT_CASE(pdo_mute_slave),
 	KUNIT_CASE(pdo_names_of_dictionary),
