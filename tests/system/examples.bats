@@ -16,6 +16,9 @@ setup_file() {
 teardown_file() { stop; }
 teardown() {
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	wait "${app:-}" 2>/dev/null || true
+	# a case that failed leaves its cycle to the kernel
+	ethercat release >/dev/null 2>&1 || true
 	wait_for 60 all_slaves_are PREOP 5
 }
 
