@@ -49,6 +49,15 @@ static const char *no_device_remedy(const char *name)
 	return "load the driver of the network card and ec_generic, or bind its native driver: 'ethercat device bind'; or select another card: 'ethercat devices', 'ethercat device use'";
 }
 
+/* A slave that cannot be read is tried again by scans: its own finding says enough. */
+static bool tries_again(const struct why *w)
+{
+	for (size_t i = 0; i < w->bus.n; i++)
+		if (w->bus.v[i].error == EC_SLAVE_SCAN_FAILED)
+			return w->m.slaves_responding == w->bus.n;
+	return false;
+}
+
 /**
  * why_bus() - no device, no link, no slaves
  * @w: what is known
@@ -71,7 +80,7 @@ bool why_bus(struct why *w)
 		why_add(w, "no_slaves",
 			"check that the cable leads to the input (port 0) of an EtherCAT slave, without a switch in between",
 			"link up at the main device %s, but no slave replies", m->devices[0].name);
-	else if (m->scan_busy)
+	else if (m->scan_busy && !tries_again(w))
 		return why_scan(w), false;
 	else
 		return false;

@@ -32,17 +32,25 @@
 #define EC_EVENT_RESPONDING	0x10	/* slaves that reply, before */
 #define EC_EVENT_SCAN_START	0x11	/* slaves */
 #define EC_EVENT_SCAN_END	0x12	/* slaves, us, frames */
-/* slave upstream or EC_EVENT_NONE: the main device, its port, alias, vendor, product, ms ago */
+/*
+ * slave upstream or EC_EVENT_NONE: the main device, its port, alias, vendor, product, ms ago;
+ * slaves of the ring that were lost there, this one and those after it
+ */
 #define EC_EVENT_SLAVE_LOST	0x13
 #define EC_EVENT_ALL_LOST	0x14	/* slaves, ms ago */
-#define EC_EVENT_SLAVE_FOUND	0x15	/* as EC_EVENT_SLAVE_LOST, without the last */
+#define EC_EVENT_SLAVE_FOUND	0x15	/* as EC_EVENT_SLAVE_LOST, without ms */
 #define EC_EVENT_SLAVE_SILENT	0x16	/* no reply, frames pass */
 #define EC_EVENT_SLAVE_REPLIES	0x17	/* again */
-#define EC_EVENT_SLAVE_BACK	0x18	/* in OP again: ms since it was last seen */
+/* in OP again: ms since they were last seen; slaves: this one and those after it */
+#define EC_EVENT_SLAVE_BACK	0x18
 #define EC_EVENT_NO_ANSWER	0x19	/* no reply at a station address: polls; a scan follows */
 
-#define EC_EVENT_AL_STATE	0x20	/* AL state, before */
-#define EC_EVENT_AL_LEFT	0x21	/* the same without request */
+/*
+ * as requested: AL state, before, slaves: this one and those after it, the lowest AL state in
+ * between if it is lower than both
+ */
+#define EC_EVENT_AL_STATE	0x20
+#define EC_EVENT_AL_LEFT	0x21	/* without request: AL state, before */
 #define EC_EVENT_AL_ERROR	0x22	/* AL state, AL status code */
 /* code, error register, data 0..3, data 4, profile: 402 drive, 0 not known */
 #define EC_EVENT_EMERGENCY	0x23

@@ -11,7 +11,7 @@
 #include "../wire/event_ring.h"
 
 #define EC_EVENT_RATE_NS	NSEC_PER_SEC
-#define EC_EVENT_RATE		8	/* records of a subject in that time */
+#define EC_EVENT_RATE		4	/* records of a subject in that time */
 
 /**
  * struct ec_events - events of a master

@@ -61,6 +61,11 @@ struct ec_bus {
 	/** @n_slaves: entries in @slaves */
 	unsigned int n_slaves;
 
+	/** @untold: slaves have changed, and there is no event of it so far */
+	bool untold;
+	/** @untold_ns: the monitor has seen it first (ktime), 0: not yet; the monitor's */
+	u64 untold_ns;
+
 	/** @rescan: a scan is requested; it waits while @held */
 	bool rescan;
 	/** @looked: the bus was scanned, or there is no link, since the device was attached */

@@ -276,35 +276,82 @@ static u32 upstream_of(const struct ec_slave *s, unsigned int n)
 	return up < n ? up : EC_EVENT_NONE;
 }
 
-/* One line each; without any slave the message about the link is enough. */
-static void log_lost(struct scan *sc, const struct ec_slave *s, unsigned int n_old, unsigned int *n)
+/* Lost together? What hangs behind a cable is one range of the ring, and one event. */
+static bool same_break(const struct ec_slave *a, const struct ec_slave *b)
 {
-	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
+	return a->lost_at.station == b->lost_at.station && a->lost_at.port == b->lost_at.port;
+}
+
+static bool is_lost(const struct ec_slave *s)
+{
+	return READ_ONCE(s->stop.gone) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+}
+
+static void log_lost(struct scan *sc, const struct ec_slave *first, const struct ec_slave *last,
+		     u64 ms)
+{
 	char text[128];
 
-	if (!sc->n || READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
-		return;
-	ec_slave_event(s, EC_EVENT_SLAVE_LOST, upstream_of(s, n_old), s->parent_port, s->alias,
-		       s->info.vendor, s->info.product, ms);
-	if ((*n)++ >= LOST_LINES)
-		return;
-	ec_slave_lost_text(s, text, sizeof(text));
-	ec_warn_each(sc->bus, s->position + 1, "%s, last seen %llu ms ago\n", text, ms);
+	ec_slave_lost_text(first, text, sizeof(text));
+	if (first == last)
+		ec_warn_each(sc->bus, first->position + 1, "%s, last seen %llu ms ago\n", text, ms);
+	else
+		ec_warn_each(sc->bus, first->position + 1,
+			     "%s, and what is behind it up to slave %u (%s), last seen %llu ms ago\n",
+			     text, last->position, last->order[0] ? last->order : last->name, ms);
+}
+
+/* One event and one line for each break; without any slave that about the link is enough. */
+static void note_lost(struct scan *sc, struct ec_slave **old, unsigned int n_old)
+{
+	unsigned int i, first, lines = 0;
+
+	for (i = 0; i < n_old && sc->n; ) {
+		const struct ec_slave *s = old[i];
+		u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
+
+		first = i++;
+		if (!is_lost(s))
+			continue;
+		while (i < n_old && is_lost(old[i]) && same_break(old[i], s))
+			i++;
+		if (lines++ < LOST_LINES)
+			log_lost(sc, s, old[i - 1], ms);
+		ec_slave_event(s, EC_EVENT_SLAVE_LOST, upstream_of(s, n_old), s->parent_port,
+			       s->alias, s->info.vendor, s->info.product, ms, i - first);
+	}
+	if (lines > LOST_LINES)
+		ec_warn(sc->bus, "slaves disconnected from %u more place(s)\n",
+			lines - LOST_LINES);
+}
+
+static bool is_found(const struct scan *sc, const struct ec_slave *s)
+{
+	return !ec_scan_is_known(sc, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 }
 
 /* Slaves beside known ones; of all of them, the end of the scan says enough. */
 static void note_found(struct scan *sc, unsigned int n_old)
 {
 	struct ec_bus *bus = sc->bus;
-	unsigned int i;
+	unsigned int i, first;
 
-	for (i = 0; n_old && i < bus->n_slaves; i++) {
+	for (i = 0; n_old && i < bus->n_slaves; ) {
 		const struct ec_slave *s = bus->slaves[i];
 
-		if (!ec_scan_is_known(sc, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
-			ec_slave_event(s, EC_EVENT_SLAVE_FOUND, upstream_of(s, bus->n_slaves),
-				       s->parent_port, s->alias, s->info.vendor,
-				       s->info.product);
+		first = i++;
+		if (!is_found(sc, s))
+			continue;
+		/* and those that hang at one of these */
+		for (; i < bus->n_slaves && is_found(sc, bus->slaves[i]); i++) {
+			u32 up = upstream_of(bus->slaves[i], bus->n_slaves);
+
+			if (up < first || up == EC_EVENT_NONE)
+				break;
+		}
+		ec_slave_event(s, EC_EVENT_SLAVE_FOUND, upstream_of(s, bus->n_slaves),
+			       s->parent_port, s->alias, s->info.vendor, s->info.product,
+			       i - first);
 	}
 }
 
@@ -332,8 +379,9 @@ static bool publish(struct scan *sc)
 {
 	struct ec_bus *bus = sc->bus;
 	struct ec_slave **old;
-	unsigned int i, n_old, lost = 0;
+	unsigned int i, n_old;
 
+	ec_told_flush(bus, true);
 	down_write(&bus->topo);
 	if (bus->held) {
 		up_write(&bus->topo);
@@ -365,11 +413,9 @@ static bool publish(struct scan *sc)
 		if (old[i]->position >= bus->n_slaves || bus->slaves[old[i]->position] != old[i]) {
 			note_parent(old[i], old, n_old);
 			ec_stop_gone(&old[i]->stop);
-			log_lost(sc, old[i], n_old, &lost);
 		}
 	}
-	if (lost > LOST_LINES)
-		ec_warn(bus, "%u more slave(s) disconnected\n", lost - LOST_LINES);
+	note_lost(sc, old, n_old);
 	if (!sc->n && n_old && READ_ONCE(bus->links->access.mode) != EC_ACCESS_DIRECT) {
 		u64 ms = div_u64(ktime_get_ns() - bus->complete_ns, NSEC_PER_MSEC);
 

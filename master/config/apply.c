@@ -552,10 +552,8 @@ static void log_return(struct ec_slave *s)
 	const struct ec_config *c = ec_setup_of(s)->active_config;
 	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
 
-	if (s->seen_ns && c && READ_ONCE(s->al_status) == EC_AL_OP) {
-		ec_slave_info(s, "back in OP, %llu ms after it was last seen\n", ms);
-		ec_slave_event(s, EC_EVENT_SLAVE_BACK, ms);
-	}
+	if (s->seen_ns && c && READ_ONCE(s->al_status) == EC_AL_OP)
+		ec_told_back(s, ms);
 	if (!c || READ_ONCE(s->al_status) == EC_AL_OP)
 		s->seen_ns = 0;
 }

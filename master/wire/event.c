@@ -27,15 +27,15 @@ static const struct ec_event_kind kinds[] = {
 	KIND(SCAN_START, "scan_start", U("slaves")),
 	KIND(SCAN_END, "scan_end", U("slaves"), U("duration_us"), U("frames")),
 	KIND(SLAVE_LOST, "slave_lost", S("upstream"), U("port"), U("alias"), U("vendor_id"),
-	     U("product_code"), U("age_ms")),
+	     U("product_code"), U("age_ms"), U("slaves")),
 	KIND(ALL_LOST, "all_slaves_lost", U("slaves"), U("age_ms")),
 	KIND(SLAVE_FOUND, "slave_found", S("upstream"), U("port"), U("alias"), U("vendor_id"),
-	     U("product_code")),
+	     U("product_code"), U("slaves")),
 	KIND(SLAVE_SILENT, "slave_silent"),
 	KIND(SLAVE_REPLIES, "slave_replies"),
-	KIND(SLAVE_BACK, "slave_back", U("absent_ms")),
+	KIND(SLAVE_BACK, "slave_back", U("absent_ms"), U("slaves")),
 	KIND(NO_ANSWER, "no_answer", U("polls")),
-	KIND(AL_STATE, "al_state", AL("state"), AL("before")),
+	KIND(AL_STATE, "al_state", AL("state"), AL("before"), U("slaves"), AL("lowest")),
 	KIND(AL_LEFT, "al_state_left", AL("state"), AL("before")),
 	KIND(AL_ERROR, "al_error", AL("state"), U("al_code")),
 	KIND(EMERGENCY, "emergency", U("code"), U("error_register"), U("data"), U("data_4"),
@@ -117,10 +117,22 @@ static void about_link(struct text *t, const struct ec_event *e)
 	format(t, "%s %s", device(e->arg[0]), what);
 }
 
-/* where a slave is, or was */
-static void place(struct text *t, const struct ec_event *e, const char *what, const char *of)
+/* "slave 5", or "slaves 5 to 9": @n of them */
+static const char *neighbours(const struct ec_event *e, u32 n, char *buf, size_t size)
 {
-	char alias[24] = "", at[40] = "the main device";
+	struct text t = { .buf = buf, .size = size };
+
+	if (n < 2)
+		format(&t, "slave %u", e->slave);
+	else
+		format(&t, "slaves %u to %u", e->slave, e->slave + n - 1);
+	return buf;
+}
+
+/* where slaves are, or were; @n of them */
+static void place(struct text *t, const struct ec_event *e, const char *what, u32 n)
+{
+	char alias[24] = "", at[40] = "the main device", who[32];
 	struct text a = { .buf = alias, .size = sizeof(alias) };
 	struct text p = { .buf = at, .size = sizeof(at) };
 
@@ -128,17 +140,20 @@ static void place(struct text *t, const struct ec_event *e, const char *what, co
 		format(&a, ", alias %u", e->arg[2]);
 	if (e->arg[0] != EC_EVENT_NONE)
 		format(&p, "port %u of slave %u", e->arg[1], e->arg[0]);
+	neighbours(e, n, who, sizeof(who));
 	if (e->kind == EC_EVENT_SLAVE_LOST)
-		format(t, "slave %u (0x%08x/0x%08x%s) %s %s %s, last seen %u ms ago", e->slave,
-		       e->arg[3], e->arg[4], alias, what, of, at, e->arg[5]);
+		format(t, "%s (%s0x%08x/0x%08x%s) %s %s, last seen %u ms ago", who,
+		       n < 2 ? "" : "the first: ", e->arg[3], e->arg[4], alias, what, at,
+		       e->arg[5]);
 	else
-		format(t, "slave %u (0x%08x/0x%08x%s) %s %s %s", e->slave, e->arg[3], e->arg[4],
-		       alias, what, of, at);
+		format(t, "%s (%s0x%08x/0x%08x%s) %s %s", who, n < 2 ? "" : "the first: ",
+		       e->arg[3], e->arg[4], alias, what, at);
 }
 
 static void about_bus(struct text *t, const struct ec_event *e)
 {
 	const u32 *a = e->arg;
+	char who[32];
 
 	switch (e->kind) {
 	case EC_EVENT_RESPONDING:
@@ -151,13 +166,13 @@ static void about_bus(struct text *t, const struct ec_event *e)
 		format(t, "scan complete: %u slave(s) in %u us, %u frames", a[0], a[1], a[2]);
 		break;
 	case EC_EVENT_SLAVE_LOST:
-		place(t, e, "disconnected", "from");
+		place(t, e, "disconnected from", a[6]);
 		break;
 	case EC_EVENT_ALL_LOST:
 		format(t, "all %u slave(s) disconnected, last seen %u ms ago", a[0], a[1]);
 		break;
 	case EC_EVENT_SLAVE_FOUND:
-		place(t, e, "connected", "to");
+		place(t, e, "connected to", a[5]);
 		break;
 	case EC_EVENT_SLAVE_SILENT:
 		format(t, "no reply from slave %u, frames pass; waiting for a reply", e->slave);
@@ -166,7 +181,9 @@ static void about_bus(struct text *t, const struct ec_event *e)
 		format(t, "slave %u replies again", e->slave);
 		break;
 	case EC_EVENT_SLAVE_BACK:
-		format(t, "slave %u back in OP, %u ms after it was last seen", e->slave, a[0]);
+		format(t, "%s back in OP, %u ms after %s last seen",
+		       neighbours(e, a[1], who, sizeof(who)), a[0],
+		       a[1] < 2 ? "it was" : "they were");
 		break;
 	case EC_EVENT_NO_ANSWER:
 		format(t, "a slave did not answer at its station address in %u polls; rescanning",
@@ -261,6 +278,7 @@ static void about_failure(struct text *t, const struct ec_event *e)
 static void about_slave(struct text *t, const struct ec_event *e)
 {
 	const char *state = ec_al_state_name((u8)e->arg[0]);
+	char who[32];
 
 	switch (e->kind) {
 	case EC_EVENT_SLAVE_FAILED:
@@ -282,8 +300,10 @@ static void about_slave(struct text *t, const struct ec_event *e)
 		       e->arg[0]);
 		break;
 	case EC_EVENT_AL_STATE:
-		format(t, "slave %u: AL state %s, before %s", e->slave, state,
-		       ec_al_state_name((u8)e->arg[1]));
+		format(t, "%s: AL state %s, before %s%s%s",
+		       neighbours(e, e->arg[2], who, sizeof(who)), state,
+		       ec_al_state_name((u8)e->arg[1]), e->arg[3] ? ", in between " : "",
+		       e->arg[3] ? ec_al_state_name((u8)e->arg[3]) : "");
 		break;
 	case EC_EVENT_AL_LEFT:
 		format(t, "slave %u: AL state %s left without request, now %s", e->slave,

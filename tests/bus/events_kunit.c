@@ -117,7 +117,9 @@ static void events_start_has_scan_and_session_in_order(struct kunit *test)
 	if (next(l, EC_EVENT_WKC))
 		KUNIT_EXPECT_EQ(test, l->e.arg[2], 0u);
 	if (next(l, EC_EVENT_AL_STATE))
-		KUNIT_EXPECT_EQ_MSG(test, l->e.arg[0], (u32)EC_AL_SAFEOP, "from PREOP");
+		KUNIT_EXPECT_EQ_MSG(test, l->e.arg[2], (u32)N, "slaves");
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[0], (u32)EC_AL_OP, "on its way it was in SAFEOP");
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[1], (u32)EC_AL_PREOP, "before");
 	next(l, EC_EVENT_DEACTIVATED);
 	next(l, EC_EVENT_RELEASED);
 }
@@ -157,6 +159,50 @@ static void events_unplugged_slave_is_lost_and_found(struct kunit *test)
 	KUNIT_EXPECT_EQ_MSG(test, l->e.kind, (u32)EC_EVENT_WKC, "the last of them");
 	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[1], l->e.arg[3], "complete again");
 	KUNIT_EXPECT_EQ(test, count(l, begin, EC_EVENT_SLAVE_FOUND), 1u);
+}
+
+#define MANY	100	/* drives */
+#define AT	8	/* the first one that is cut off */
+
+/* A cable with most of the bus behind it: lost, found and in OP again are one fact each. */
+static void events_cut_of_many_slaves_has_few_records(struct kunit *test)
+{
+	char *text = kunit_kzalloc(test, 80 + MANY * 24, GFP_KERNEL);
+	struct log *l;
+	struct cyc *c;
+	u64 begin, cut;
+	u32 i, at;
+
+	KUNIT_ASSERT_NOT_NULL(test, text);
+	at = sprintf(text, "segment seed=21 response=100us transition=1ms\n");
+	for (i = 0; i < MANY; i++)
+		at += sprintf(text + at, "slave d%u drive\n", i);
+	c = cyc_two_domains(bus_up(test, text, MANY), MANY);
+	cyc_run(c, 1500);
+	l = log_new(c->b);
+	cut = l->at;
+
+	bus_fault(c->b, EC_SIM_FAULT_CUT, AT, 0, 0, 0);
+	cyc_run(c, 1000);
+	next_of(l, EC_EVENT_SLAVE_LOST, AT);
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[0], AT - 1u, "slave upstream");
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[6], MANY - (u32)AT, "slaves");
+	bus_figure("cut of %u slaves: %llu events", MANY - AT,
+		   ec_event_ring_head(l->ring) - cut);
+	begin = ec_event_ring_head(l->ring);
+	bus_fault(c->b, EC_SIM_FAULT_HEAL, AT, 0, 0, 0);
+	recover(c);
+	cyc_run(c, 1000);
+	next_of(l, EC_EVENT_SLAVE_FOUND, AT);
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[5], MANY - (u32)AT, "slaves");
+	next_of(l, EC_EVENT_AL_STATE, AT);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)EC_AL_OP);
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[3], (u32)EC_AL_INIT, "lowest");
+	next_of(l, EC_EVENT_SLAVE_BACK, AT);
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[1], MANY - (u32)AT, "slaves");
+	bus_figure("until they are in OP again: %llu events", ec_event_ring_head(l->ring) - begin);
+	/* 100 such faults are in the ring */
+	KUNIT_EXPECT_LE(test, 100 * (ec_event_ring_head(l->ring) - cut), EC_EVENTS_KEPT + 0ull);
 }
 
 static void events_power_loss_of_slave_is_noticed_twice(struct kunit *test)
@@ -407,6 +453,7 @@ static void events_reader_begins_at_oldest_or_newest(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(events_start_has_scan_and_session_in_order),
 	KUNIT_CASE(events_unplugged_slave_is_lost_and_found),
+	KUNIT_CASE(events_cut_of_many_slaves_has_few_records),
 	KUNIT_CASE(events_power_loss_of_slave_is_noticed_twice),
 	KUNIT_CASE(events_al_error_has_code_and_return_to_op),
 	KUNIT_CASE(events_link_down_ends_all_slaves),

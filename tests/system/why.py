@@ -167,7 +167,7 @@ def expected(faults):
 def events_wrong(faults, events):
     """What the log has too much or too little."""
     cuts = late_cuts(faults)
-    some = [[]] + [[c] for c in cuts] + [cuts]
+    some = [[]] + [[c] for c in cuts] + [cuts] + [[c] for f in faults for c in f.passing]
     return judge(events, faults, lambda i: {position(i, c) for c in some},
                  lambda f: is_lost(f, faults))
 

@@ -48,6 +48,9 @@ class Event:
             return False
         for key, want in self.args.items():
             have = e.get(key)
+            # the event says that only of the first of several slaves
+            if e.get("behind") and key in ("upstream", "port"):
+                continue
             if key == "upstream":
                 if have not in positions(want):
                     return False
@@ -57,6 +60,13 @@ class Event:
             elif have != want:
                 return False
         return True
+
+
+def each_slave(e):
+    """An event of several neighbours as one of each: in a case these are slaves of their own."""
+    yield e
+    for i in range(1, e.get("slaves", 1) if "slave" in e else 1):
+        yield e | {"slave": e["slave"] + i, "behind": True}
 
 
 class Log:
@@ -94,7 +104,7 @@ class Log:
                 raise RuntimeError(f"ethercat log does not show event {end - 1}")
             time.sleep(0.01)
         self.events = [e for e in self.events if e["number"] >= begin]
-        return [e for e in self.events if e["number"] < end]
+        return [one for e in self.events if e["number"] < end for one in each_slave(e)]
 
 
 def judge(events, faults, positions, lost):

@@ -57,6 +57,7 @@ class Fault:
     places = range(N)
     undo = ()                   # statements for the simulator
     related = ()                # events that may follow at its slave
+    passing = ()                # slaves that were cut off for a while
 
     def __init__(self, rng):
         self.rng = rng

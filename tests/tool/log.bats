@@ -39,7 +39,7 @@ assert eval(sys.argv[1]), d
 
 @test "log --json has the values of each event by name" {
 	out log -j | json "[e['number'] for e in $events] == list(range(7, 16))"
-	out log -j | json "$events[4] == {'number': 11, 'time_ns': 1764000000150000000, 'monotonic_ns': 5150000000, 'event': 'al_state', 'slave': 2, 'state': 'OP', 'before': 'SAFEOP', 'text': 'slave 2: AL state OP, before SAFEOP'}"
+	out log -j | json "$events[4] == {'number': 11, 'time_ns': 1764000000150000000, 'monotonic_ns': 5150000000, 'event': 'al_state', 'slave': 2, 'state': 'OP', 'before': 'SAFEOP', 'slaves': 1, 'lowest': None, 'text': 'slave 2: AL state OP, before SAFEOP'}"
 	out log -j | json "'slave' not in $events[0] and $events[7]['upstream'] == 1"
 	out log -j | json "$events[8]['phase_error_ns'] == -12 and $events[8]['rate_ppb'] == -8700"
 	out log -j | json "$events[8]['cycle_lock'] == 'holding' and $events[1]['duration_us'] == 4100"

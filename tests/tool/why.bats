@@ -51,6 +51,9 @@ is() {
 	FAKE_WHY=under_way run ethercat why
 	[ "$status" -eq 1 ]
 	[[ $output == "Under way: AL state SAFEOP on the way to OP"*"No fault, 1 under way. "* ]]
+	# a slave that cannot be read is read again and again
+	[ "$(causes "eeprom scan")" = "scan eeprom" ]
+	[ "$(causes "unreadable scan")" = eeprom ]
 	# a link that is up again is not named as cut
 	FAKE_WHY="cable scan" run ethercat why
 	[ "$status" -eq 1 ]
