@@ -248,24 +248,32 @@ static bool differs(const struct scan *sc)
 	return false;
 }
 
-/* The place a lost slave had: @old are the slaves by their position at that time. */
+/*
+ * The place a lost slave had: @old are the slaves by their position at that time. Slaves that were
+ * lost together have the place where the first of them hung.
+ */
 static void note_parent(struct ec_slave *s, struct ec_slave **old, unsigned int n_old)
 {
 	u16 up = s->next[s->upstream];
+	const struct ec_slave *u = up < n_old ? old[up] : NULL;
 
-	if (up >= n_old)
-		strscpy(s->parent, "the main device", sizeof(s->parent));
-	else
-		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
-			 s->parent_port, up, old[up]->order);
 	s->seen_ns = s->bus->complete_ns;
-	/* slaves that were lost together have the place where the first of them hung */
-	if (up < s->position && READ_ONCE(old[up]->stop.gone))
-		s->lost_at = old[up]->lost_at;
+	if (u && up < s->position && READ_ONCE(u->stop.gone)) {
+		s->lost_at = u->lost_at;
+		strscpy(s->parent, u->parent, sizeof(s->parent));
+		if (u->first_lost[0])
+			strscpy(s->first_lost, u->first_lost, sizeof(s->first_lost));
+		else
+			snprintf(s->first_lost, sizeof(s->first_lost), "slave %u (%.24s)", up,
+				 ec_slave_label(u));
+		return;
+	}
+	s->lost_at = (struct ec_break){ .station = u ? u->station : 0, .port = s->parent_port };
+	if (u)
+		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
+			 s->parent_port, up, ec_slave_label(u));
 	else
-		s->lost_at = (struct ec_break){
-			.station = up < n_old ? old[up]->station : 0, .port = s->parent_port,
-		};
+		strscpy(s->parent, "the main device", sizeof(s->parent));
 }
 
 /* @n: slaves there were then */
@@ -298,7 +306,7 @@ static void log_lost(struct scan *sc, const struct ec_slave *first, const struct
 	else
 		ec_warn_each(sc->bus, first->position + 1,
 			     "%s, and what is behind it up to slave %u (%s), last seen %llu ms ago\n",
-			     text, last->position, last->order[0] ? last->order : last->name, ms);
+			     text, last->position, ec_slave_label(last), ms);
 }
 
 /* One event and one line for each break; without any slave that about the link is enough. */

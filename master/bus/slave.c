@@ -453,9 +453,9 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
 
 	if (slave->alias)
 		snprintf(alias, sizeof(alias), "alias %u, ", slave->alias);
-	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected from %s", slave->position,
-			 alias,
-			 slave->order[0] ? slave->order : slave->name, slave->parent);
+	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected%s%s from %s",
+			 slave->position, alias, ec_slave_label(slave),
+			 slave->first_lost[0] ? " with " : "", slave->first_lost, slave->parent);
 }
 
 /**

@@ -69,7 +69,8 @@ struct ec_break {
  * @delay_only: it has receive times, but no other register of a clock (0x0928)
  * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
  * @upstream: port towards the master
- * @parent: the slave it hung at when it was lost, in words
+ * @parent: where the first slave hung that was lost with it, in words
+ * @first_lost: the first slave that was lost with it, in words; empty: itself
  * @lost_at: where the way to it broke then
  * @parent_port: port of the slave it hangs at
  * @topology_inconsistent: open ports contradict the ring order, here or upstream
@@ -157,6 +158,7 @@ struct ec_slave {
 	u8 upstream;
 	u8 parent_port;
 	char parent[EC_UAPI_STRING];
+	char first_lost[40];
 	struct ec_break lost_at;
 	bool topology_inconsistent;
 
@@ -310,6 +312,12 @@ static inline bool ec_slave_pdos_pending(const struct ec_slave *s)
 	return READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
 	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
 	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
+}
+
+/* what people call it */
+static inline const char *ec_slave_label(const struct ec_slave *s)
+{
+	return s->order[0] ? s->order : s->name;
 }
 
 static inline u8 ec_slave_port_type(const struct ec_slave *s, unsigned int port)

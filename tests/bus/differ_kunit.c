@@ -184,6 +184,8 @@ static void lost_slaves_are_named(struct kunit *test)
 			logged("slave 3 (EL3062) disconnected from port 1 of slave 2 (EL4002), and what is behind it up to slave 4 (EL1859), last seen "), 1u);
 	EXPECT_WHY(b, 3,
 		   "slave 3 (EL3062) disconnected from port 1 of slave 2 (EL4002), last seen 2 s ago");
+	EXPECT_WHY(b, 4,
+		   "slave 4 (EL1859) disconnected with slave 3 (EL3062) from port 1 of slave 2 (EL4002), last seen 2 s ago");
 	bus_fault(b, EC_SIM_FAULT_HEAL, 2, 1, 0, 0);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 20);

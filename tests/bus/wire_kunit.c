@@ -138,23 +138,36 @@ static void digital_desc(const struct digital *d, char *desc)
 
 KUNIT_ARRAY_PARAM(digital, digitals, digital_desc);
 
+/* Of a cycle with its own datagrams only: a look of the monitor rides with one of ten. */
+static u32 own_ns(struct cyc *c)
+{
+	const struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
+	u32 ns = U32_MAX, i;
+
+	for (i = 0; i < 3; i++) {
+		cyc_run(c, 1);
+		ns = min(ns, cycle->last.ns);
+	}
+	return ns;
+}
+
 /* 1000 digital inputs and outputs, half of each */
 static void wire_digital(struct kunit *test)
 {
 	const struct digital *d = test->param_value;
 	struct bus *b = short_bus(test, d->text, d->slaves);
 	struct cyc *c = cyc_new(b, 100);
-	const struct ec_cycle *cycle;
+	u32 ns;
 
 	cyc_domain(c);
 	options(c, d->options);
 	cyc_map_all(c, 0, d->slaves, 0);
 	cyc_activate(c);
-	cycle = &b->m->sessions.session->cycle;
 	runs(c, d->bytes);
-	KUNIT_EXPECT_EQ(test, cycle->last.ns, (8 + 14 + 2 + 12 + d->wire_bytes + 4 + 12) * 80);
-	bus_row(cycle->last.ns, 30000, "ns of wire time: 1000 digital I/O, %s", d->name);
-	KUNIT_EXPECT_LE(test, cycle->last.ns, 30000u);
+	ns = own_ns(c);
+	KUNIT_EXPECT_EQ(test, ns, (8 + 14 + 2 + 12 + d->wire_bytes + 4 + 12) * 80);
+	bus_row(ns, 30000, "ns of wire time: 1000 digital I/O, %s", d->name);
+	KUNIT_EXPECT_LE(test, ns, 30000u);
 }
 
 /* a tool that reads one object after the other */
