@@ -270,6 +270,17 @@ int dev_slaves(struct dev *d, struct slaves *all)
 	}
 }
 
+/* Single positions that the ring does not have, beside others that it has. */
+static void name_absent(const struct dev *d, const struct tool *t, size_t selected, size_t count)
+{
+	const struct list *l = &t->positions;
+
+	for (unsigned int i = 0; selected && l->given && list_all(&t->aliases) && i < l->n; i++)
+		if (l->item[i].from == l->item[i].to && l->item[i].from >= count)
+			note("Master%u: no slave at position %u, the last one is %zu", d->master,
+			     l->item[i].from, count - 1);
+}
+
 int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, size_t *all)
 {
 	struct numbers pos;
@@ -287,6 +298,7 @@ int dev_select(struct dev *d, const struct tool *t, struct slaves *selected, siz
 		selected->v[selected->n++] = bus.v[pos.v[i]];
 	if (all)
 		*all = bus.n;
+	name_absent(d, t, pos.n, bus.n);
 	dev_selected("slave", !list_all(&t->aliases) || !list_all(&t->positions), pos.n);
 	numbers_free(&pos);
 	slaves_free(&bus);

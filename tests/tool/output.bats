@@ -96,6 +96,14 @@ load common
 	[ "$status" -eq 0 ]
 }
 
+@test "positions that the ring does not have are named beside others" {
+	run ethercat slaves -p 1,99
+	[ "$status" = 0 ]
+	[[ $output == *" EL2008"* ]]
+	[ "${lines[0]}" = "Master0: no slave at position 99, the last one is 2" ]
+	[ "$(ethercat slaves -p 1-99 2>&1 | wc -l)" = 2 ]
+}
+
 @test "without slaves or device nothing is requested, and that is an error" {
 	export FAKE_BUS=empty
 	for c in "states OP" "crc reset"; do
