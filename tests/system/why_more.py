@@ -453,5 +453,45 @@ class Rejoined(Fault):
         return [Event(kind, 8, many=True) for kind in ("al_error", "al_state_left")]
 
 
+class Half(Cut):
+    """Two cables were cut in different branches, one of them is repaired."""
+    alone = True
+    places = [3, 5, 9, 10, 11]
+    undo = ("heal {}.0",)
+
+    def inject(self, bench):
+        self.other = self.rng.choice([2, 7, 9] if self.slave > 9 else [10, 11])
+        self.passing = (self.other,)
+        bench.sim(f"cut {self.name}.0", f"cut {SEGMENT[self.other][0]}.0")
+        time.sleep(1)
+        bench.sim(f"heal {SEGMENT[self.other][0]}.0")
+        self.meanwhile = []
+        limit = time.monotonic() + SETTLE_S
+        while time.monotonic() < limit and len(self.meanwhile) < 20:
+            self.meanwhile.append(bench.why())
+
+    def place(self, cut, gone):
+        """The port that leads to a cut, while these are cut off."""
+        parent = PARENT[cut]
+        return parent - sum(any(behind(i, g) for g in gone) for i in range(parent)), PORT[cut]
+
+    def expect(self, position):
+        return super().expect(position) | \
+            {("link_errors", position(PARENT[self.other]), PORT[self.other])}
+
+    def meanwhile_wrong(self):
+        """What was said while the other cable was being repaired: another cable."""
+        cuts = [("cable",) + self.place(c, gone) for c in (self.slave, self.other)
+                for gone in ((self.slave,), (self.slave, self.other))]
+        return [f"during the repair {sorted(map(str, f))}" for f in self.meanwhile
+                if any(k[0] not in ("cable", "link_errors", "under_way", "scan") or
+                       (k[0] == "cable" and k not in cuts) for k in f)]
+
+    def events(self):
+        return super().events() + [Event("slave_lost", i, upstream=PARENT[i], port=PORT[i])
+                                   for i in range(N) if behind(i, self.other)]
+
+
 MORE = [Late, Lost, Stall, Silenced, Emergency, Ended, Leftover, Odd, Sluggish, Dropped, Twin,
-        Doubled, Typo, Contact, Power, Repaired, Allowed, Spare, Overrun, Rejoined]
+        Doubled, Typo, Contact, Power, Repaired, Allowed, Spare, Overrun, Rejoined,
+        Half]
