@@ -488,7 +488,8 @@ class Half(Cut):
                        (k[0] == "cable" and k not in cuts) for k in f)]
 
     def events(self):
-        return super().events() + [Event("slave_lost", i, upstream=PARENT[i], port=PORT[i])
+        # the position of one of the other branch may be that of one of these
+        return super().events() + [Event("slave_lost", i, True, upstream=PARENT[i], port=PORT[i])
                                    for i in range(N) if behind(i, self.other)]
 
 
