@@ -66,8 +66,7 @@ static unsigned int request_preop(struct ec_master *m)
 		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED ||
 		    (!beyond && !(READ_ONCE(s->requested) & EC_AL_BEYOND_PREOP)))
 			continue;
-		ec_slave_forgive(s);
-		ec_slave_request(s, EC_AL_PREOP);
+		ec_slave_request_anew(s, EC_AL_PREOP, 0);
 	}
 	up_read(&m->bus.topo);
 	return n;

@@ -88,8 +88,7 @@ int ec_ioc_state(struct ec_call *call)
 	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 		return ec_refuse(call, -EIO, "slave %u could not be read: %.160s", i->position,
 				 ec_slave_why(s, why, sizeof(why)));
-	ec_slave_forgive(s);
-	ec_slave_request_within(s, i->state, i->timeout_ms);
+	ec_slave_request_anew(s, i->state, i->timeout_ms);
 	return 0;
 }
 

@@ -497,6 +497,13 @@ u8 ec_slave_wanted(const struct ec_slave *slave)
 	return allowed(slave, READ_ONCE(slave->requested));
 }
 
+static void want(struct ec_slave *slave, u8 state, u32 limit_ms)
+{
+	WRITE_ONCE(slave->limit_ms, limit_ms);
+	WRITE_ONCE(slave->requested, allowed(slave, state));
+	wake_up_all(&slave->stop.wake);
+}
+
 /**
  * ec_slave_request() - let a worker bring the slave to a state
  * @slave: slave
@@ -506,21 +513,22 @@ u8 ec_slave_wanted(const struct ec_slave *slave)
  */
 void ec_slave_request(struct ec_slave *slave, u8 state)
 {
-	ec_slave_request_within(slave, state, 0);
+	want(slave, state, 0);
+	ec_slave_kick(slave);
 }
 
 /**
- * ec_slave_request_within() - the same with a time limit
+ * ec_slave_request_anew() - the same for a slave that may have failed before
  * @slave: slave
  * @state: AL state; none beyond PREOP is reached while the computer reboots
  * @limit_ms: for each transition on the way to it, until the next request; 0: the usual ones
  *
  * Context: Process.
  */
-void ec_slave_request_within(struct ec_slave *slave, u8 state, u32 limit_ms)
+void ec_slave_request_anew(struct ec_slave *slave, u8 state, u32 limit_ms)
 {
-	WRITE_ONCE(slave->limit_ms, limit_ms);
-	WRITE_ONCE(slave->requested, allowed(slave, state));
-	wake_up_all(&slave->stop.wake);
+	want(slave, state, limit_ms);
+	/* after it: a worker that notes a failure just now sees it there, see apply.c:failed() */
+	ec_slave_forgive(slave);
 	ec_slave_kick(slave);
 }

@@ -227,7 +227,7 @@ int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
 u8 ec_slave_wanted(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
-void ec_slave_request_within(struct ec_slave *slave, u8 state, u32 limit_ms);
+void ec_slave_request_anew(struct ec_slave *slave, u8 state, u32 limit_ms);
 void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *cause,
 		   const char *fmt, ...) __printf(4, 5);
 void ec_slave_list(struct ec_slave *slave);

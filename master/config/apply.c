@@ -57,6 +57,9 @@ static int failed(struct ec_slave *s, u8 state, int ret)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(FRAMES, .state = state),
 			      "communication failed before %s (%pe)", ec_al_state_name(state),
 			      ERR_PTR(ret));
+	/* ec_slave_request_anew() came in between, and has forgiven too early */
+	if (setup->heading != ec_slave_wanted(s))
+		ec_slave_forgive(s);
 	return ret;
 }
 

@@ -48,8 +48,7 @@ static void to_preop(struct ec_sessions *ss)
 		    (READ_ONCE(s->requested) == EC_AL_PREOP &&
 		     (READ_ONCE(s->error) || READ_ONCE(s->al_status) == EC_AL_PREOP)))
 			continue;
-		ec_slave_forgive(s);
-		ec_slave_request(s, EC_AL_PREOP);
+		ec_slave_request_anew(s, EC_AL_PREOP, 0);
 	}
 	up_read(&ss->bus->topo);
 }
