@@ -273,19 +273,20 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 {
 	u16 before = READ_ONCE(slave->al_status);
 	u8 state = status & EC_AL_STATE_MASK, was = before & EC_AL_STATE_MASK;
+	/* 0: not known before */
+	bool moved = state != was && was;
 
 	if (status == before && code == READ_ONCE(slave->al_code))
 		return;
+	if (moved && !requested)
+		ec_told_before(slave);
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
 	ec_slave_changed(slave);
-	/* 0: not known before */
-	if (state != was && was && requested) {
+	if (moved && requested)
 		ec_told_al(slave, was, state);
-	} else if (state != was && was) {
-		ec_told_before(slave);
+	else if (moved)
 		ec_slave_event(slave, EC_EVENT_AL_LEFT, state, was);
-	}
 	if (status & EC_AL_ERROR && !(before & EC_AL_ERROR)) {
 		ec_told_before(slave);
 		ec_slave_event(slave, EC_EVENT_AL_ERROR, state, code);

@@ -237,6 +237,28 @@ static void events_al_error_has_code_and_return_to_op(struct kunit *test)
 	while (l->e.kind == EC_EVENT_AL_STATE && l->e.arg[0] != EC_AL_OP);
 }
 
+/* What a slave had reached, and has left again before the monitor told of it. */
+static void events_al_state_before_error_is_told(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct ec_slave *s = bus_slave(c->b, DRIVE);
+	struct log *l = log_new(c->b);
+	u64 begin = l->at;
+
+	ec_slave_set_al(s, EC_AL_PREOP, 0, true);
+	ec_slave_set_al(s, EC_AL_SAFEOP, 0, true);
+	ec_slave_set_al(s, EC_AL_OP, 0, true);
+	ec_slave_set_al(s, EC_AL_SAFEOP | EC_AL_ERROR, 0x1b, false);
+	next_of(l, EC_EVENT_AL_STATE, DRIVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)EC_AL_OP);
+	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[3], (u32)EC_AL_PREOP, "lowest");
+	next_of(l, EC_EVENT_AL_LEFT, DRIVE);
+	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, l->e.arg[1], (u32)EC_AL_OP);
+	next_of(l, EC_EVENT_AL_ERROR, DRIVE);
+	KUNIT_EXPECT_EQ(test, ec_event_ring_head(l->ring) - begin, 3ull);
+}
+
 static void events_link_down_ends_all_slaves(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
@@ -456,6 +478,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(events_cut_of_many_slaves_has_few_records),
 	KUNIT_CASE(events_power_loss_of_slave_is_noticed_twice),
 	KUNIT_CASE(events_al_error_has_code_and_return_to_op),
+	KUNIT_CASE(events_al_state_before_error_is_told),
 	KUNIT_CASE(events_link_down_ends_all_slaves),
 	KUNIT_CASE(events_flapping_working_counter_has_few_records),
 	KUNIT_CASE(events_lost_frames_are_counted_in_few_records),
