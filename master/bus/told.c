@@ -8,7 +8,7 @@
 #include "slave.h"
 #include "told.h"
 
-#define TOGETHER_MS	200	/* a slave that needs longer than others has its own event */
+#define TOGETHER_MS	1000	/* a slave that needs longer than others has its own event */
 
 /* neighbours that have changed alike */
 struct group {
