@@ -487,7 +487,11 @@ static void ref_silent(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, heard(r, 100), 100u);
 }
 
-/* One that follows goes: the reference answers as before, with fewer that count. */
+/*
+ * One that follows goes: the reference answers as before, with fewer that count. Two frames are
+ * lost at its switches, and an answer that is by chance exactly what was sent proves nothing: the
+ * next ones are sent with 1, 2 and 3 ns more.
+ */
 static void ref_answer_valid_with_lower_wkc(struct kunit *test)
 {
 	struct run *r = start(test, TREE("drift=0ppm"), 4, -1);
@@ -495,7 +499,7 @@ static void ref_answer_valid_with_lower_wkc(struct kunit *test)
 	run(r, 1000);
 	KUNIT_EXPECT_EQ(test, heard(r, 100), 100u);
 	bus_fault(r->b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	KUNIT_EXPECT_GE(test, heard(r, 20), 18u);
+	KUNIT_EXPECT_GE(test, heard(r, 20), 20u - 2 - 4);
 }
 
 static struct kunit_case cases[] = {
