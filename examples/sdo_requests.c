@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-only
+// SPDX-License-Identifier: LGPL-2.1-or-later
 /*
  * sdo_requests: SDO and register requests and emergencies of one slave, beside a cycle of 1 ms
  * that does not wait for them. Reads serial number and station address, writes object 0x2001:08
