@@ -42,7 +42,7 @@ int sdo_addr_parse(struct sdo_addr *a, const char *index, const char *sub)
 					   colon + 1);
 	}
 	*a = (struct sdo_addr){ .index = (u16)v, .sub = (u8)s, .complete = !sub && !colon };
-	if (strspn(index, "0123456789") == 4 && *index != '0' && v < 0x1000)
+	if (strspn(index, "0123456789") == 4 && *index != '0')
 		snprintf(a->meant, sizeof(a->meant), "0x%.4s", index);
 	snprintf(a->text, sizeof(a->text), a->complete ? "0x%04x" : "0x%04x:%02x", a->index,
 		 a->sub);

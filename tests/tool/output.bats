@@ -261,7 +261,8 @@ END
 
 @test "upload failures name cause and slave" {
 	# an index that looks as if typed without 0x
-	[[ $(err upload -p2 5000 0) != *"did you mean"* ]]
+	[[ $(err upload -p2 5000 0) == *", in decimal 5000 (did you mean 0x5000?)"* ]]
+	[[ $(err upload -p2 0x5000 0) != *"did you mean"* ]]
 	[[ $(err upload -p2 1019 1) == *"upload 0x03fb:01, in decimal 1019 (did you mean 0x1019?)"* ]]
 	[[ $(err upload -p2 0x3fb 1) != *"did you mean"* ]]
 	run ethercat upload -p2 0x5000 0
