@@ -126,7 +126,7 @@ static void session_info(struct ec_call *call, const struct ec_session *s, struc
 	i->domain_count = s->wanted.n_domains;
 	if (!s->wanted.active)
 		return;
-	i->no_cycle = !ec_access_is_cyclic(&s->cycle.links->access);
+	i->no_cycle = !ec_access_runs(&s->cycle.links->access);
 	cycle_info(&s->cycle, i);
 	st = s->cycle.shared->status;
 	ec_status_copy(st, &i->dc_ref_time, &st->dc_time, sizeof(i->dc_ref_time));

@@ -144,7 +144,7 @@ static size_t present(struct ec_slave *s, char *buf, size_t size, struct ec_caus
 	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
 	u8 want = READ_ONCE(s->requested);
 	const char *doing = READ_ONCE(ec_setup_of(s)->waits_for);
-	bool cyclic = ec_access_is_cyclic(&s->bus->links->access);
+	bool cyclic = ec_access_runs(&s->bus->links->access);
 
 	ec_slave_cause(s, cause);
 	if (READ_ONCE(s->error) != EC_SLAVE_OK)

@@ -182,11 +182,15 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (!c->thread)
 		ec_late_send(c, send.now);
 	ec_write64(&c->links->access.last_send_ns, send.now);
+	if (unlikely(c->links->access.stopped))
+		WRITE_ONCE(c->links->access.stopped, false);
 	if (c->copying)
 		ec_copy_run(c);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
+	if (unlikely(what->queued & ~c->sent_once))
+		ec_write64(&c->sent_once, c->sent_once | what->queued);
 	if (what->flags & EC_CYC_CLOCKS)
 		send.dc = ec_dc_datagrams_wanted(c, what->flags);
 	rcu_read_lock();

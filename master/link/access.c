@@ -204,7 +204,8 @@ bool ec_access_timed_out(struct ec_links *l)
  * @l: links
  *
  * Mailboxes and tools work again; process data stop, and the watchdogs of the slaves take
- * care of the outputs. The next send of the cycle takes the links back.
+ * care of the outputs. The next call of the cycle takes the links back; without a send it is
+ * the same timeout that goes on.
  *
  * Context: Process. May sleep.
  */
@@ -212,8 +213,9 @@ void ec_access_timeout(struct ec_links *l)
 {
 	u64 sent = ec_read64(&l->access.last_send_ns);
 
-	if (!ec_access_change(l, EC_ACCESS_DIRECT))
+	if (!ec_access_change(l, EC_ACCESS_DIRECT) || READ_ONCE(l->access.stopped))
 		return;
+	WRITE_ONCE(l->access.stopped, true);
 	ec_write64(&l->access.timeout_ns, sent);
 	atomic_inc(&l->access.timeouts);
 }

@@ -41,6 +41,8 @@ struct ec_access {
 	bool interval_set;
 	/** @wire_ns: wire time of a cycle: of its layout, or of the last send if that was longer */
 	u32 wire_ns;
+	/** @stopped: no cyclic send since the last cycle timeout, though a receive may have come */
+	bool stopped;
 	/** @timeouts: cycle timeouts so far */
 	atomic_t timeouts;
 	/** @timeout_ns: last cyclic send before the last one of them (ktime) */
@@ -87,6 +89,12 @@ static inline void ec_access_leave(struct ec_access *a)
 static inline bool ec_access_is_cyclic(const struct ec_access *a)
 {
 	return READ_ONCE(a->mode) == EC_ACCESS_CYCLIC;
+}
+
+/* Does the cycle owner send? A receive alone takes the links, until they time out again. */
+static inline bool ec_access_runs(const struct ec_access *a)
+{
+	return ec_access_is_cyclic(a) && !READ_ONCE(a->stopped);
 }
 
 /* The caller of the cycle measures it while others plan by it. */

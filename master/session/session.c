@@ -264,8 +264,9 @@ int ec_session_deactivate(struct ec_session *s)
 	s->cycle.shared = NULL;
 	forget_times(ss);
 	if ((u32)atomic_read(&ss->links->access.timeouts) != s->timeout_log.logged)
-		ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
-			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged);
+		ec_warn(ss, "%u%s\n",
+			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged,
+			ec_timeouts_text(&s->timeout_log));
 	ec_info(ss, "session deactivated\n");
 	ec_event(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
 	return 0;
@@ -647,6 +648,7 @@ int ec_session_activate(struct ec_session *s)
 	/* from now on workers go by the configurations, which stay as they are */
 	smp_store_release(&s->wanted.active, true);
 	s->timeout_log.logged = atomic_read(&ss->links->access.timeouts);
+	WRITE_ONCE(ss->links->access.stopped, false);
 	s->notes = (struct ec_count_notes){ };
 	ec_session_note_counts(s, true, false);
 	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;

@@ -29,6 +29,13 @@ struct ec_timeout_log {
 	bool open;
 };
 
+/* What stands behind a number of timeouts without a message of their own. */
+static inline const char *ec_timeouts_text(const struct ec_timeout_log *l)
+{
+	return l->next_ns ? " more cycle timeout(s) since the last message" :
+			    " cycle timeout(s) since activation";
+}
+
 /**
  * struct ec_count_notes - what the events have of counters; under sessions->lock
  * @count: counters at the last look: cycles skipped, frames lost, frames late

@@ -17,7 +17,7 @@ static void log_timeouts(struct ec_session *s, u64 now)
 {
 	struct ec_sessions *ss = s->sessions;
 	struct ec_timeout_log *l = &s->timeout_log;
-	bool timed_out = READ_ONCE(ss->links->access.mode) == EC_ACCESS_DIRECT;
+	bool timed_out = !ec_access_runs(&ss->links->access);
 	u32 more = atomic_read(&ss->links->access.timeouts) - l->logged;
 
 	if (l->open && !timed_out) {
@@ -26,12 +26,11 @@ static void log_timeouts(struct ec_session *s, u64 now)
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
 		l->since_ns = ec_read64(&ss->links->access.timeout_ns);
-		l->next_ns = now + EC_TIMEOUT_LOG_NS;
 		l->logged += more;
 		l->open = timed_out;
 		if (more > timed_out)
-			ec_warn(ss, "%u more cycle timeout(s) since the last message\n",
-				more - timed_out);
+			ec_warn(ss, "%u%s\n", more - timed_out, ec_timeouts_text(l));
+		l->next_ns = now + EC_TIMEOUT_LOG_NS;
 		if (timed_out)
 			ec_warn(ss,
 				"cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
@@ -51,7 +50,7 @@ static void note_timeouts(struct ec_session *s, u64 now)
 			 timeouts - n->timeouts);
 		n->timeouts = timeouts;
 	}
-	if (n->since_ns && READ_ONCE(ss->links->access.mode) != EC_ACCESS_DIRECT) {
+	if (n->since_ns && ec_access_runs(&ss->links->access)) {
 		ec_event(ss->base, EC_EVENT_RESUMED, div_u64(now - n->since_ns, NSEC_PER_MSEC));
 		n->since_ns = 0;
 	}
