@@ -9,8 +9,7 @@
  * (-E2BIG) an unknown tail that is not zero. Reserved fields are zero, otherwise -EOPNOTSUPP. A
  * structure shorter than its first version is refused (-EINVAL). Numbers are never reused.
  *
- * When a command fails, EC_IOC_REASON on the same open file returns one line of text with the
- * cause and the remedy.
+ * After a failure EC_IOC_REASON on the same open file returns a line with cause and remedy.
  */
 #ifndef EC_UAPI_ETHERCAT_H
 #define EC_UAPI_ETHERCAT_H
@@ -385,6 +384,7 @@ struct ec_ioc_domain {
 	__u32 datagram_bytes;	/* their headers and working counters included */
 	__u32 age;		/* sends since that of the data, while active */
 	__u32 wc_state;		/* EC_STATUS_WC_*, while active */
+	__u32 unsent;		/* sends since activation while none has had it, else 0 */
 };
 
 struct ec_ioc_domain_fmmu {

@@ -189,13 +189,16 @@ int ec_ioc_domain(struct ec_call *call)
 	i->options = d->options;
 	i->max_age = d->max_age;
 	if (ec_domain_session(d)->wanted.active) {
-		const struct ec_status *st = ec_domain_session(d)->cycle.shared->status;
+		const struct ec_cycle *c = &ec_domain_session(d)->cycle;
+		const struct ec_status *st = c->shared->status;
 
 		i->datagram_count = d->n_dgrams;
 		i->datagram_bytes = d->dgram_bytes;
 		i->working_counter = READ_ONCE(st->domains[d->index].working_counter);
 		i->age = READ_ONCE(st->domains[d->index].age);
 		i->wc_state = READ_ONCE(st->domains[d->index].wc_state);
+		if (!(ec_read64(&c->sent_once) & BIT_ULL(d->index)))
+			i->unsent = READ_ONCE(c->send);
 	}
 	return 0;
 }

@@ -352,6 +352,8 @@ struct ec_cycle {
 	u32 judged;
 	/** @sent: domains sent since the last receive, bit n: domain n */
 	u64 sent;
+	/** @sent_once: domains sent since activation, bit n: domain n */
+	aligned_u64 sent_once;
 	/** @back: domains of which data were received */
 	u64 back;
 	/** @sends: so far */

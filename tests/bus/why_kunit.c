@@ -211,6 +211,55 @@ static void why_without_cycle(struct kunit *test)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 }
 
+/* An application that has forgotten ecrt_master_send(): it takes the links again and again. */
+static void why_receive_without_send(struct kunit *test)
+{
+	static struct ec_ioc_master m;
+	struct cyc *c = in_op(test);
+	u32 i, before = atomic_read(&c->b->m->links.access.timeouts);
+
+	for (i = 0; i < 400; i++) {
+		KUNIT_ASSERT_EQ(test, ec_ioc_receive(&c->b->app), 0);
+		msleep(5);
+		if (i < 40)
+			continue;
+		KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_MASTER, &m), 0);
+		KUNIT_ASSERT_EQ_MSG(test, m.no_cycle, 1u, "receive %u", i);
+	}
+	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->links.access.timeouts), before + 1);
+	c->next = ktime_get();
+	cyc_run(c, 1);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_MASTER, &m), 0);
+	KUNIT_EXPECT_EQ(test, m.no_cycle, 0u);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+}
+
+static u32 unsent(struct cyc *c, u32 domain)
+{
+	struct ec_ioc_domain d = { .index = domain };
+
+	KUNIT_EXPECT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_DOMAIN, &d), 0);
+	return d.unsent;
+}
+
+static void why_domain_never_sent(struct kunit *test)
+{
+	struct cyc *c = reserved(test);
+
+	cyc_map(c, cyc_config(c, AI), 3, 0);
+	cyc_map(c, cyc_config(c, D), 3, cyc_domain(c));
+	cyc_activate(c);
+	c->queued = BIT(0);
+	cyc_run(c, 300);
+	KUNIT_EXPECT_EQ(test, unsent(c, 0), 0u);
+	KUNIT_EXPECT_EQ(test, unsent(c, 1), 300u);
+	c->queued = BIT(1);
+	cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, unsent(c, 1), 0u);
+	cyc_run(c, 300);
+	KUNIT_EXPECT_EQ(test, unsent(c, 0), 0u);
+}
+
 static struct kunit_case why_cases[] = {
 	KUNIT_CASE(why_op_has_no_cause),
 	KUNIT_CASE(why_lost_has_place_of_break),
@@ -221,6 +270,8 @@ static struct kunit_case why_cases[] = {
 	KUNIT_CASE(why_startup_sdo_has_object_and_abort),
 	KUNIT_CASE(why_refused_pdos_have_sync_manager),
 	KUNIT_CASE(why_without_cycle),
+	KUNIT_CASE(why_receive_without_send),
+	KUNIT_CASE(why_domain_never_sent),
 	{}
 };
 
