@@ -100,6 +100,7 @@ struct why_finding *why_scan(struct why *w);
 /* rules: each adds what it finds; true: nothing else can be known */
 bool why_bus(struct why *w);
 void why_cycle(struct why *w);
+void why_unsent(struct why *w);
 void why_absent(struct why *w);
 void why_slaves(struct why *w);
 void why_domains(struct why *w);

@@ -172,4 +172,7 @@ void why_cycle(struct why *w)
 		thread(w, &i, &st, short_cycle);
 	if (w->m.no_cycle && !(i.kind == EC_CYCLE_BY_KERNEL && st.state == EC_CYCLE_STATE_STOPPED))
 		no_cycle(w);
+	/* that of the kernel sends a domain in its turn */
+	if (i.kind == EC_CYCLE_BY_APP)
+		why_unsent(w);
 }

@@ -10,6 +10,8 @@
 #include "topology.h"
 #include "why.h"
 
+#define COUNTERS	"%u invalid frame(s), %u receive error(s), link lost %u time(s)"
+
 static void clock_of(struct why *w, const struct why_config *c, const struct ec_ioc_slave *s)
 {
 	struct why_finding *f;
@@ -25,7 +27,7 @@ static void clock_of(struct why *w, const struct why_config *c, const struct ec_
 	else if (s->dc_set && (s->dc_diff > EC_UAPI_DC_WINDOW_NS ||
 			       s->dc_diff < -EC_UAPI_DC_WINDOW_NS))
 		f = why_add(w, "clock_off",
-			    "queue drift compensation in each cycle: ecrt_master_sync_slave_clocks()",
+			    "queue drift compensation in each cycle: ecrt_master_sync_slave_clocks(); if the application does, give it an even cycle: 'ethercat cycle'",
 			    "the clock differs by %d ns from the reference clock, limit %d ns",
 			    s->dc_diff, EC_UAPI_DC_WINDOW_NS);
 	else if (c->c.dc_cycle[0] &&
@@ -90,25 +92,35 @@ static void port_errors(struct why *w, u8 (*regs)[EC_ERRORS_SIZE], unsigned int 
 			unsigned int port)
 {
 	struct errors e = errors_at(regs[at], port), far = { 0 };
-	char name[96], other[96] = "the main device or nothing";
+	char name[96], other[96] = "the main device";
 	unsigned int peer_port;
 	struct why_finding *f;
+	bool connected;
 	u32 peer;
 
 	if (is_cable(w, at, port) || !any(&e))
 		return;
+	/* without a slave behind it, it leads to the main device */
+	connected = w->bus.v[at].ports[port].link_up;
 	if (topo_peer(&w->bus, at, port, &peer, &peer_port)) {
+		connected = true;
 		why_slave_name(w, peer, other, sizeof(other));
 		if (peer_port < EC_UAPI_PORTS)
 			far = errors_at(regs[peer], peer_port);
 		if (peer < at && any(&far))
 			return;
 	}
-	f = why_add(w, "link_errors",
-		    "check this cable and its plugs; then 'ethercat crc reset' and look again",
-		    "between port %u of %s and %s: %u invalid frames, %u receive errors, link lost %u times",
-		    port, why_slave_name(w, at, name, sizeof(name)), other, e.rx + far.rx,
-		    e.phy + far.phy, e.lost + far.lost);
+	why_slave_name(w, at, name, sizeof(name));
+	if (connected)
+		f = why_add(w, "link_errors",
+			    "check this cable and its plugs; then 'ethercat crc reset' and look again",
+			    "between port %u of %s and %s: " COUNTERS, port, name, other,
+			    e.rx + far.rx, e.phy + far.phy, e.lost + far.lost);
+	else
+		f = why_add(w, "link_errors",
+			    "find out what was connected there, then 'ethercat crc reset' and look again",
+			    "at port %u of %s, where nothing is connected now: " COUNTERS, port,
+			    name, e.rx, e.phy, e.lost);
 	f->warning = true;
 	f->slave = (int)at;
 	f->port = (int)port;

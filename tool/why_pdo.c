@@ -40,6 +40,7 @@ static void wanted(struct why *w, const struct why_config *c, unsigned int sm, s
 
 	if (dev_ioctl(w->d, EC_IOC_CONFIG_SM, &s))
 		return;
+	put(l, "%s", s.pdo_count ? "" : " none");
 	for (u32 p = 0; p < s.pdo_count && !l->full; p++) {
 		struct ec_ioc_config_pdo pdo = {
 			.index = c->c.index, .sm = (__u8)sm, .pdo_pos = p,
@@ -68,6 +69,7 @@ static void offered(struct why *w, u16 position, unsigned int sm, struct line *l
 
 	if (dev_ioctl(w->d, EC_IOC_SM, &s))
 		return;
+	put(l, "%s", s.pdo_count ? "" : " none");
 	for (u16 p = 0; p < s.pdo_count && !l->full; p++) {
 		struct ec_ioc_pdo pdo = { .position = position, .sm = (__u8)sm, .pdo_pos = p };
 

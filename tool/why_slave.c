@@ -4,10 +4,12 @@
 #include <string.h>
 
 #include "../master/wire/al.h"
+#include "../master/wire/regs.h"
 #include "../master/wire/sii.h"
 #include "why.h"
 
 #define CODE_WATCHDOG	0x001b
+#define DIR_OUTPUT	1	/* of struct ec_ioc_config_sm */
 
 /* this version writes no EEPROM */
 #define EEPROM_REMEDY \
@@ -94,15 +96,32 @@ static struct why_finding *by_table(struct why *w, const struct ec_cause *cause,
 	return why_add(w, "not_in_op", "see 'ethercat config -v' and the kernel log", "%s", text);
 }
 
+/* what to do about an abort code of which more is known than that the SDO is wrong */
+static const struct {
+	u32 code;
+	u32 mask;
+	const char *remedy;
+} sdo_remedies[] = {
+	{ 0x06070010, 0xfffffffc,
+	  "give the startup SDO the length that the object has: 'ethercat sdos'" },
+	{ 0x06090030, 0xfffffffc,
+	  "give the startup SDO a value that the slave takes: limits in 'ethercat sdos -v', or the manual" },
+	{ 0x08000020, 0xfffffffe,
+	  "release the local control of the slave (panel, other fieldbus), then restart the application" },
+	{ 0, 0,
+	  "correct or remove the startup SDO in the application: 'ethercat sdos', 'ethercat config -v'" },
+};
+
 /* without an abort code the mailbox itself failed */
 static struct why_finding *sdo(struct why *w, const struct ec_cause *cause, const char *text)
 {
 	struct why_finding *f;
+	size_t i = 0;
 
+	while ((cause->code & sdo_remedies[i].mask) != sdo_remedies[i].code)
+		i++;
 	if (cause->code)
-		f = why_add(w, "sdo",
-			    "correct or remove the startup SDO in the application: 'ethercat sdos', 'ethercat config -v'",
-			    "%s", text);
+		f = why_add(w, "sdo", sdo_remedies[i].remedy, "%s", text);
 	else
 		f = why_add(w, "mailbox",
 			    "power-cycle the slave: its mailbox does not reply as the protocol demands", "%s",
@@ -126,12 +145,41 @@ static struct why_finding *pdo(struct why *w, const struct why_config *c,
 	return f;
 }
 
-static struct why_finding *al(struct why *w, const struct ec_cause *cause, const char *text)
+/* The SyncManager that is configured against its direction in the slave, or -1. */
+static int against(struct why *w, const struct why_config *c, bool *output)
+{
+	for (__u8 sm = 0; sm < EC_MAX_SM; sm++) {
+		struct ec_ioc_config_sm want = { .index = c->c.index, .sm = sm };
+		struct ec_ioc_sm have = { .position = (__u16)c->c.slave_position, .sm = sm };
+
+		if (dev_ioctl(w->d, EC_IOC_SM, &have))
+			continue;
+		*output = (have.control & EC_SM_DIR_MASK) == EC_SM_DIR_WRITE;
+		if (!dev_ioctl(w->d, EC_IOC_CONFIG_SM, &want) && want.dir &&
+		    (want.dir == DIR_OUTPUT) != *output)
+			return sm;
+	}
+	return -1;
+}
+
+static struct why_finding *al(struct why *w, const struct why_config *c,
+			      const struct ec_cause *cause, const char *text)
 {
 	const char *name = cause->code == CODE_WATCHDOG ? "watchdog" :
 			   cause->kind == EC_CAUSE_REFUSED ? "al_refused" : "al_error";
-	struct why_finding *f = why_add(w, name, al_remedy(cause->code), "%s", text);
+	struct why_finding *f;
+	bool output = false;
+	int sm = -1;
 
+	if (c && cause->kind == EC_CAUSE_REFUSED && cause->state == EC_AL_SAFEOP)
+		sm = against(w, c, &output);
+	if (sm < 0)
+		f = why_add(w, name, al_remedy(cause->code), "%s", text);
+	else
+		f = why_add(w, name,
+			    "correct the direction of this SyncManager in the application; 'ethercat cstruct' writes what the slave has",
+			    "%s; SM%d is configured for %s, the slave has it for %s", text, sm,
+			    output ? "inputs" : "outputs", output ? "outputs" : "inputs");
 	f->code = cause->code;
 	return f;
 }
@@ -169,7 +217,7 @@ static void add(struct why *w, int position, struct why_config *c, const struct 
 		break;
 	case EC_CAUSE_REFUSED:
 	case EC_CAUSE_AL_ERROR:
-		f = al(w, cause, text);
+		f = al(w, c, cause, text);
 		break;
 	default:
 		f = by_table(w, cause, text);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "../master/wire/al.h"
 #include "../master/wire/regs.h"
 #include "reg.h"
 #include "sys.h"
@@ -11,6 +12,7 @@
 
 #define LOOKS		3	/* at a working counter before it counts as incomplete */
 #define LOOK_MS		20
+#define UNSENT		100	/* sends without a domain; before, its first one may come later */
 #define FMMU_TYPE	11	/* byte of the page: 1 reads, 2 writes */
 #define FMMU_ENABLE	12
 #define OUTPUT		1	/* direction of struct ec_ioc_domain_fmmu */
@@ -128,6 +130,53 @@ static void too_high(struct why *w, const struct ec_ioc_domain *dom)
 		dev_close(&d);
 }
 
+/* What the slaves of a domain do that gets no frames: they wait, or their watchdog expires. */
+static bool follows(const struct ec_cause *cause)
+{
+	return cause->kind == EC_CAUSE_UNDER_WAY ||
+	       (cause->kind == EC_CAUSE_REFUSED && cause->state == EC_AL_OP) ||
+	       (cause->kind == EC_CAUSE_AL_ERROR && cause->code == EC_AL_CODE_SM_WATCHDOG);
+}
+
+static void explain_domain(struct why *w, const struct ec_ioc_domain *dom)
+{
+	for (u32 i = 0; i < dom->fmmu_count; i++) {
+		struct ec_ioc_domain_fmmu f = { .index = dom->index, .fmmu = i };
+
+		if (dev_ioctl(w->d, EC_IOC_DOMAIN_FMMU, &f))
+			return;
+		for (size_t k = 0; k < w->n_configs; k++) {
+			struct why_config *c = &w->configs[k];
+
+			if (c->c.alias == f.alias && c->c.position == f.position &&
+			    !why_in_op(c) && follows(&c->cause))
+				why_explain(w, c);
+		}
+	}
+}
+
+/**
+ * why_unsent() - domains that the application leaves out of its cycle
+ * @w: what is known; the application runs the cycle
+ */
+void why_unsent(struct why *w)
+{
+	if (w->m.no_cycle)
+		return;
+	for (u32 i = 0; i < w->m.domain_count; i++) {
+		struct ec_ioc_domain dom = { .index = i };
+
+		/* an older module does not count them */
+		if (dev_ioctl(w->d, EC_IOC_DOMAIN, &dom) || !dom.fmmu_count || dom.unsent < UNSENT)
+			continue;
+		why_add(w, "not_queued",
+			"let the application call ecrt_domain_queue() for this domain in each cycle, before ecrt_master_send()",
+			"domain %u: the application has not queued it in %u cycles, so its process data are not exchanged",
+			i, dom.unsent)->domain = (int)i;
+		explain_domain(w, &dom);
+	}
+}
+
 /**
  * why_domains() - process data that are not exchanged although all slaves are in OP
  * @w: what is known
@@ -139,7 +188,8 @@ void why_domains(struct why *w)
 	for (u32 i = 0; i < w->m.domain_count; i++) {
 		struct ec_ioc_domain dom = { .index = i };
 
-		if (!incomplete(w, &dom) || (w->late && dom.working_counter <= dom.expected))
+		if (!incomplete(w, &dom) || dom.unsent >= UNSENT ||
+		    (w->late && dom.working_counter <= dom.expected))
 			continue;
 		if (dom.working_counter > dom.expected) {
 			too_high(w, &dom);

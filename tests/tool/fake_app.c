@@ -77,7 +77,7 @@ static int config_sm(struct ec_ioc_config_sm *x)
 	const char *pdos = getenv("FAKE_PDOS");
 
 	if (x->sm == 2 && x->index == 1) {
-		x->dir = 1;
+		x->dir = getenv("FAKE_SM_DIR") ? 2 : 1;
 		x->pdo_count = pdos ? (__u8)atoi(pdos) : 1;
 	}
 	return 0;

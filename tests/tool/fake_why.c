@@ -130,6 +130,14 @@ static const struct {
 	  "startup SDO 0x8010:03 (2 byte(s)) failed: no reply in the mailbox" },
 	{ "pdo", { .kind = EC_CAUSE_PDO, .sm = 2, .object = 0x1600, .code = 0x06010002 },
 	  "SM2 bit 0: registered 0x7010:01, 16 bit; slave has 0x7010:06, 16 bit; PDO mapping 0x1600 refused: abort 0x06010002 (read only)" },
+	{ "local", { .kind = EC_CAUSE_SDO, .object = 0x8010, .subindex = 3, .code = 0x08000021 },
+	  "startup SDO 0x8010:03 (2 byte(s)) failed: abort 0x08000021: the device is under local control" },
+	{ "length", { .kind = EC_CAUSE_SDO, .object = 0x8010, .subindex = 3, .code = 0x06070012 },
+	  "startup SDO 0x8010:03 (2 byte(s)) failed: abort 0x06070012: the length is too high" },
+	{ "direction", { .kind = EC_CAUSE_REFUSED, .state = 4, .code = 0x0017 },
+	  "SAFEOP refused: AL status code 0x0017 (SyncManager configuration invalid)" },
+	{ "unsent_waits", { .kind = EC_CAUSE_UNDER_WAY },
+	  "AL state SAFEOP on the way to OP, waiting for two cycles of its domains" },
 	{ "al_refused", { .kind = EC_CAUSE_REFUSED, .state = 4, .code = 0x001d },
 	  "SAFEOP refused: AL status code 0x001d (invalid output configuration)" },
 	{ "watchdog", { .kind = EC_CAUSE_AL_ERROR, .state = 4, .code = 0x001b },
@@ -166,6 +174,11 @@ static void cycle(struct ec_ioc_cycle_stats *x)
 
 static void domain(struct ec_ioc_domain *x)
 {
+	if ((wrong("unsent") || wrong("unsent_waits") || wrong("unsent_late")) && x->index) {
+		x->working_counter = 0;
+		x->wc_state = EC_STATUS_WC_ZERO;
+		x->unsent = wrong("unsent_late") ? 99 : 100;
+	}
 	if (wrong("cancelled") && x->index)
 		x->wc_state = EC_STATUS_WC_INCOMPLETE;
 	if (!(wrong("working_counter") || wrong("too_high")) || !x->index)
@@ -179,6 +192,8 @@ static void counters(struct ec_ioc_reg *x)
 	/* slave 0 has an FMMU in domain 1, slave 2 that of its configuration */
 	if (x->address == 0x0600 && wrong("too_high") && x->position != 1)
 		memcpy((__u8 *)(uintptr_t)x->data, "\1\0\0\0\6\0\0\7\0\x11\0\1\1", 13);
+	if (wrong("free_port") && x->position == 2)
+		((__u8 *)(uintptr_t)x->data)[6] = 7;	/* at port 3 */
 	if (wrong("both_ends") && x->position == 1)
 		*(__u8 *)(uintptr_t)x->data = 2;	/* at port 0 */
 }

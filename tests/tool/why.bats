@@ -116,8 +116,39 @@ is() {
 	local one='( 0x16..\(7010:01/16\))' slave='SM2 of the slave: 0x1600\(7010:01/16\)$'
 	local text='f["text"]) is not None'
 
+	FAKE_PDOS=0 is pdo "re.search(r'SM2 configured: none; $slave', $text"
 	FAKE_PDOS=16 is pdo "re.search(r'SM2 configured:$one{16}; $slave', $text"
 	FAKE_PDOS=200 is pdo "re.search(r'SM2 configured:$one{30,}( 0x16..)? [.]{3}; $slave', $text"
+}
+
+@test "why: a domain that the application never queues is no fault of a slave" {
+	[ "$(causes unsent)" = not_queued ]
+	is unsent '(f["level"], f["domain"], f["slave"]) == ("fault", 1, None)'
+	is unsent '"has not queued it in 100 cycles" in f["text"] and
+		"ecrt_domain_queue()" in f["remedy"]'
+	# its slaves wait for it
+	[ "$(causes unsent_waits)" = not_queued ]
+	is unsent_waits 'f["affected"] == ["0:2"]'
+	# another fault of the slave stays
+	[ "$(causes "unsent sdo")" = "not_queued sdo" ]
+	# its first turn may come later, or no domain gets a frame
+	[[ $(causes unsent_late) != *not_queued* ]]
+	[ "$(causes "unsent no_cycle")" = no_cycle ]
+	# a cycle of the kernel sends it in its turn
+	[[ $(causes "unsent stall_zero") != *not_queued* ]]
+}
+
+@test "why: a SyncManager against its direction is named" {
+	[ "$(causes direction)" = al_refused ]
+	FAKE_SM_DIR=2 is direction '"; SM2 is configured for inputs, the slave has it for outputs" in f["text"]'
+	FAKE_SM_DIR=2 is direction '"correct the direction" in f["remedy"]'
+	is direction '"SM2" not in f["text"] and "manual" in f["remedy"]'
+}
+
+@test "why: some abort codes of a startup SDO have a remedy of their own" {
+	is sdo '"correct or remove the startup SDO" in f["remedy"]'
+	is local '"release the local control" in f["remedy"]'
+	is length '"the length that the object has" in f["remedy"]'
 }
 
 @test "why reports no consequence of another cause" {
@@ -160,11 +191,12 @@ is() {
 	unset FAKE_READONLY
 	[ "$(causes well)" = link_errors ]
 	is well '(f["level"], f["slave"], f["port"]) == ("warning", 0, 1)'
-	is both_ends '(f["slave"], f["port"]) == (0, 1) and ": 5 invalid frames, " in f["text"]'
+	is both_ends '(f["slave"], f["port"]) == (0, 1) and ": 5 invalid frame(s), " in f["text"]'
 	[ "$(causes both_ends)" = link_errors ]
+	[[ $(FAKE_WHY=free_port out why) == *"at port 3 of slave 2 (EL7201), where nothing is connected now: 7 invalid frame(s), "*"find out what was connected there"* ]]
 	FAKE_WHY=well run ethercat why
 	[ "$status" -eq 0 ]
-	[[ $output == *"between port 1 of slave 0 (EK1100) and slave 1 (EL2008): 3 invalid frames, "* ]]
+	[[ $output == *"between port 1 of slave 0 (EK1100) and slave 1 (EL2008): 3 invalid frame(s), "* ]]
 	[[ $output != *"Not checked"* ]]
 }
 
