@@ -43,10 +43,12 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 		       EC_MATCH_LATE : EC_MATCH_UNMATCHED;
 	}
 	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
-		return EC_MATCH_LATE;
+		/* given up; otherwise a second copy of a frame that is back already */
+		return atomic_read(&slot->state) == EC_SLOT_QUARANTINE ? EC_MATCH_LATE :
+									 EC_MATCH_UNMATCHED;
 	if (!ec_slot_awaits(slot, side)) {
 		ec_slot_release(slot, EC_SLOT_SENT);
-		return EC_MATCH_LATE;
+		return EC_MATCH_UNMATCHED;
 	}
 	/* the iterator only reads; it has no const form */
 	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
