@@ -124,8 +124,8 @@ static struct why_finding *sdo(struct why *w, const struct ec_cause *cause, cons
 		f = why_add(w, "sdo", sdo_remedies[i].remedy, "%s", text);
 	else
 		f = why_add(w, "mailbox",
-			    "power-cycle the slave: its mailbox does not reply as the protocol demands", "%s",
-			    text);
+			    "power-cycle the slave: its mailbox does not reply as the protocol demands; if that stays, compare its mailbox and protocols ('ethercat slaves -v') with the manual",
+			    "%s", text);
 	f->code = cause->code;
 	return f;
 }

@@ -368,7 +368,8 @@ int ec_desc_rate(struct ec_desc *d, const char *key, s64 max_ppb, s64 *ppb)
 	if (!scaled(&w, rates, ppb))
 		return ec_desc_fail(d, "'", &w, "' is not a rate: expected 25ppm or 300ppb");
 	if (*ppb > max_ppb || *ppb < -max_ppb)
-		return ec_desc_fail(d, "'", &w, "' is too much here");
+		return ec_desc_fail(d, "'", &w, max_ppb == 1000000 ? "' is too much: limit 1000ppm" :
+								    "' is too much: limit 1000000ppm");
 	return 0;
 }
 

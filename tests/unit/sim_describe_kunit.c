@@ -67,6 +67,7 @@ static const struct {
 	{ "slave a EL2008 alias=70000", 1, "'70000' is out of range" },
 	{ "slave a EL2008 alias=x", 1, "'x' is not a number" },
 	{ "slave a EL2008 drift=5", 1, "'5' is not a rate" },
+	{ "slave a EL2008 drift=1001ppm", 1, "'1001ppm' is too much: limit 1000ppm" },
 	{ "slave a EL2008\nfault latch a 2", 2, "fault latch NAME 0|1" },
 	{ "slave a EL2008\nfault latch a 1 edge=up", 2, "invalid edge 'up': expected rising, falling or pulse" },
 	{ "slave a EL2008 dc=16", 1, "invalid dc '16': expected 64, 32, delay or none" },
