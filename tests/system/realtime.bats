@@ -73,7 +73,7 @@ clean() {
 	judge "$comm" "$@"
 	[ "$(count cycles)" = "$cycles" ]
 	for name in sleeps contended faults allocs prints; do
-		[ "$(count $name)" = 0 ] || return
+		[ "$(count $name)" = 0 ] || { echo "not so: 0 $name"; return 1; }
 	done
 }
 
