@@ -258,10 +258,9 @@ static void different(struct why *w, struct why_config *c)
 	why_explain(w, c);
 }
 
-/* a slave whose alias is the configured one but for a typing error, of that device if possible */
+/* a slave of that device whose alias is the configured one but for a typing error */
 static const struct ec_ioc_slave *meant(const struct why *w, const struct why_config *c)
 {
-	const struct ec_ioc_slave *other = NULL;
 	char wanted[8], alias[8];
 
 	snprintf(wanted, sizeof(wanted), "%u", c->c.alias);
@@ -269,13 +268,11 @@ static const struct ec_ioc_slave *meant(const struct why *w, const struct why_co
 		const struct ec_ioc_slave *s = &w->bus.v[i];
 
 		snprintf(alias, sizeof(alias), "%u", s->alias);
-		if (!s->alias || (s->config && !s->differs) || typing_errors(wanted, alias) > 1)
-			continue;
-		if (same_device(c, s))
+		if (same_device(c, s) && s->alias && (!s->config || s->differs) &&
+		    typing_errors(wanted, alias) <= 1)
 			return s;
-		other = s;
 	}
-	return other;
+	return NULL;
 }
 
 static void no_alias(struct why *w, struct why_config *c)

@@ -238,7 +238,7 @@ static void events_al_error_has_code_and_return_to_op(struct kunit *test)
 }
 
 /* What a slave had reached, and has left again before the monitor told of it. */
-static void events_al_state_before_error_is_told(struct kunit *test)
+static void events_al_state_before_error_has_record(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct ec_slave *s = bus_slave(c->b, DRIVE);
@@ -478,7 +478,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(events_cut_of_many_slaves_has_few_records),
 	KUNIT_CASE(events_power_loss_of_slave_is_noticed_twice),
 	KUNIT_CASE(events_al_error_has_code_and_return_to_op),
-	KUNIT_CASE(events_al_state_before_error_is_told),
+	KUNIT_CASE(events_al_state_before_error_has_record),
 	KUNIT_CASE(events_link_down_ends_all_slaves),
 	KUNIT_CASE(events_flapping_working_counter_has_few_records),
 	KUNIT_CASE(events_lost_frames_are_counted_in_few_records),

@@ -68,6 +68,8 @@ static void slave(struct ec_ioc_slave *s)
 		strcpy(s->warning, "EEPROM checksum 0x12, expected 0x34; content used anyway");
 		s->cause.kind = EC_CAUSE_EEPROM;
 	}
+	if (!s->position && wrong("alias_other"))
+		s->alias = 1;
 	if (s->position == 2 && wrong("alias_twice")) {
 		strcpy(s->warning, "alias 5 is not unique; configurations use slave 1, the first one");
 		s->cause.kind = EC_CAUSE_ALIAS_TWICE;
@@ -88,13 +90,15 @@ static void slave(struct ec_ioc_slave *s)
 static void config(struct ec_ioc_config *c)
 {
 	bool absent = wrong("cable") || wrong("different") || wrong("wrong_place") ||
-		      wrong("missing") || wrong("no_alias") || wrong("older");
+		      wrong("missing") || wrong("no_alias") || wrong("alias_other") || wrong("older");
 
 	c->slave_position = c->index && absent ? -1 : (__s32)c->index + 1;
 	c->al_status = 8;
 	c->state = EC_STATUS_SC_OP | EC_STATUS_SC_ONLINE | 8;
 	if (wrong("wrong_place") && c->index)
 		c->product_code = 0x044c2c52;
+	if (wrong("alias_other") && c->index)
+		c->alias = 11;
 	if (wrong("missing") && c->index)
 		c->position = getenv("FAKE_FAR") ? 9 : 3;
 }
@@ -112,6 +116,8 @@ static const struct {
 	  "slave 2 is 0x00000002/0x1c213052, configured is 0x00000002/0x044c2c52" },
 	{ "missing", { .kind = EC_CAUSE_NO_SLAVE, .position = 3 },
 	  "no slave at ring position 3: 3 slave(s) connected" },
+	{ "alias_other", { .kind = EC_CAUSE_NO_ALIAS },
+	  "none of the 3 slave(s) on the bus has alias 11" },
 	{ "no_alias", { .kind = EC_CAUSE_NO_ALIAS },
 	  "none of the 3 slave(s) on the bus has alias 0" },
 	{ "older", { .kind = EC_CAUSE_NONE }, "a reason of an older module" },

@@ -105,6 +105,9 @@ is() {
 	is too_high '"working counter 4, expected 3: more slaves answer" in f["text"]'
 	is too_high '"as a user with access to registers" in f["remedy"]'
 	is missing '(f["slave"], f["port"], f["config"]) == (2, 1, "0:3")'
+	# another device is not meant, however similar its alias is
+	is alias_other '(f["cause"], f["config"]) == ("no_alias", "11:2")'
+	is alias_other '"EK1100" not in f["text"] + f["remedy"]'
 	# far behind the end of the ring
 	FAKE_FAR=1 is missing '(f["slave"], f["config"]) == (2, "0:9")'
 	[[ $(FAKE_FAR=1 FAKE_WHY=missing out why) == "Fault: 7 slaves missing from position 3 on: the bus has 3, "* ]]
