@@ -488,9 +488,9 @@ class Half(Cut):
                        (k[0] == "cable" and k not in cuts) for k in f)]
 
     def events(self):
-        # the position of one of the other branch may be that of one of these
-        return super().events() + [Event("slave_lost", i, True, upstream=PARENT[i], port=PORT[i])
-                                   for i in range(N) if behind(i, self.other)]
+        # one of the other branch may be at the position of one of these
+        return [Event("slave_lost", i, True, upstream=PARENT[i], port=PORT[i]) for i in range(N)
+                if behind(i, self.slave) or behind(i, self.other)]
 
 
 MORE = [Late, Lost, Stall, Silenced, Emergency, Ended, Leftover, Odd, Sluggish, Dropped, Twin,
