@@ -165,7 +165,7 @@ slaves_are() {
 	wait $readers 2>/dev/null || true
 	readers=
 	# the last application of a loop may outlive it for a second
-	pkill -KILL -x cyclic || true
+	pkill -KILL -x cyclic || true	# there may be none
 	wait_for 30 gone cyclic
 	echo "# $done of $i changes beside them" >&3
 	[ $done = 12 ]

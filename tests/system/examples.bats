@@ -18,7 +18,7 @@ teardown() {
 	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
 	wait "${app:-}" 2>/dev/null || true
 	# a case that failed leaves its cycle to the kernel
-	ethercat release >/dev/null 2>&1 || true
+	ethercat release >/dev/null 2>&1 || true	# there may be none
 	wait_for 60 all_slaves_are PREOP 5
 }
 
