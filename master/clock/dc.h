@@ -296,6 +296,7 @@ u64 ec_dc_phase(struct ec_dc *dc);
 u64 ec_dc_now(struct ec_dc *dc);
 u64 ec_dc_app_at(struct ec_dc *dc, u64 at_ns);
 void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set);
+bool ec_dc_app_due(const struct ec_dc *dc);
 void ec_dc_app_log(struct ec_dc *dc);
 
 /* dc_time.c */

@@ -355,6 +355,20 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 }
 
 /**
+ * ec_dc_app_due() - may ec_dc_app_log() have something to log?
+ * @dc: clocks
+ *
+ * Context: Any. RT-safe.
+ * Return: whether it may, or has to wait until its last message is old enough.
+ */
+bool ec_dc_app_due(const struct ec_dc *dc)
+{
+	const struct ec_dc_app *a = &dc->app;
+
+	return READ_ONCE(a->jumps) || READ_ONCE(a->ignored) || READ_ONCE(a->deviating);
+}
+
+/**
  * ec_dc_app_log() - log jumps of the application time, which the cycle cannot
  * @dc: clocks
  *

@@ -331,7 +331,7 @@ native_cost() {
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
 			"${v[total_mean]} <= limit"
-		limit=$((n == 1 ? 3900 : 7000))
+		limit=$((n == 1 ? 3300 : 6500))
 		row "$above" $limit "of these above the floor of a sleeping thread: $n drive(s)"
 		gate "$n slave(s), native device: $above instructions above the floor, at most $limit" \
 			"$above > ${v[total_mean]} / 2 && $above <= limit"
