@@ -12,7 +12,7 @@
 #include "wire/compat.h"
 #include "wire/event_ring.h"
 
-#define LOOKS	49	/* of the timer, between two of the monitor: a second, as the rates need */
+#define LOOKS	49	/* of the timer, between two of the monitor: the rates need one a second */
 
 static u64 frames_missed(const struct ec_links *l)
 {
@@ -37,7 +37,8 @@ static bool is_quiet(struct ec_quiet *q)
 	return ktime_get_ns() < q->until_ns && is_reply_as_before(q) &&
 	       (u32)atomic_read(&m->bus.changes) == q->changes &&
 	       ec_event_ring_head(&m->base->events.ring) == q->event &&
-	       frames_missed(&m->links) == q->missed && !ec_dc_due(&m->dc) && !ec_dc_app_due(&m->dc) &&
+	       frames_missed(&m->links) == q->missed && !ec_dc_due(&m->dc) &&
+	       !ec_dc_app_due(&m->dc) &&
 	       ec_access_is_cyclic(&m->links.access) && !ec_access_timed_out(&m->links);
 }
 
