@@ -608,7 +608,7 @@ static int monitor(void *data)
 			WRITE_ONCE(m->bus.looked, true);
 		ec_bus_settled(&m->bus);
 		ec_session_status(&m->sessions, w.scanned);
-		ec_told_flush(&m->bus, false);
+		ec_pending_flush(&m->bus, false);
 		ec_event_log(m->base, &w.event);
 		ec_log_flush(m->base, false);
 		ec_event_readers_kick(m);

@@ -61,10 +61,10 @@ struct ec_bus {
 	/** @n_slaves: entries in @slaves */
 	unsigned int n_slaves;
 
-	/** @untold: slaves have changed, and there is no event of it so far */
-	bool untold;
-	/** @untold_ns: the monitor has seen it first (ktime), 0: not yet; the monitor's */
-	u64 untold_ns;
+	/** @pending: slaves have changed, and there is no event of it so far */
+	bool pending;
+	/** @pending_ns: the monitor has seen it first (ktime), 0: not yet; the monitor's */
+	u64 pending_ns;
 
 	/** @rescan: a scan is requested; it waits while @held */
 	bool rescan;

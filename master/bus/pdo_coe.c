@@ -191,8 +191,11 @@ void ec_slave_clear_warning(struct ec_slave *s)
 			     "PDOs could not be read over CoE; those of the EEPROM are used" : "");
 }
 
-/* Says once that it failed; what a slave answers wrongly it would answer again. */
-static void note_unread(struct ec_slave *s, int ret)
+/*
+ * Says once that it failed; what a slave answers wrongly it would answer again. One that only makes
+ * the master wait has its worker for a tenth of the time.
+ */
+static void note_unread(struct ec_slave *s, int ret, u64 took_ns)
 {
 	bool before = s->pdos_unread;
 	u64 again = 0;
@@ -203,7 +206,8 @@ static void note_unread(struct ec_slave *s, int ret)
 	if (s->pdos_unread && ret != -EBADMSG) {
 		s->pdos_again_ms = clamp_t(u32, before ? 2 * s->pdos_again_ms : 0, AGAIN_MIN_MS,
 					   AGAIN_MAX_MS);
-		again = ktime_get_ns() + s->pdos_again_ms * (u64)NSEC_PER_MSEC;
+		again = ktime_get_ns() +
+			max(s->pdos_again_ms * (u64)NSEC_PER_MSEC, 9 * took_ns);
 	}
 	ec_write64(&s->pdos_again_ns, again);
 	if (s->pdos_unread && !before)
@@ -224,6 +228,7 @@ static void note_unread(struct ec_slave *s, int ret)
  */
 void ec_slave_read_coe_pdos(struct ec_slave *s)
 {
+	u64 began = ktime_get_ns();
 	unsigned int sm;
 	int ret = 0;
 
@@ -236,7 +241,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	/* then the monitor lets it begin again */
 	if (ret == -ECANCELED || ret == -EINTR || ret == -ENOMEM)
 		return;
-	note_unread(s, ret);
+	note_unread(s, ret, ktime_get_ns() - began);
 	if (!s->pdos_unread || !s->pdos_known)
 		WRITE_ONCE(s->names_done, false);
 	WRITE_ONCE(s->pdos_known, true);

@@ -290,7 +290,7 @@ static bool same_break(const struct ec_slave *a, const struct ec_slave *b)
 	return a->lost_at.station == b->lost_at.station && a->lost_at.port == b->lost_at.port;
 }
 
-static bool is_lost(const struct ec_slave *s)
+static bool is_off_list(const struct ec_slave *s)
 {
 	return READ_ONCE(s->stop.gone) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 }
@@ -319,9 +319,9 @@ static void note_lost(struct scan *sc, struct ec_slave **old, unsigned int n_old
 		u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
 
 		first = i++;
-		if (!is_lost(s))
+		if (!is_off_list(s))
 			continue;
-		while (i < n_old && is_lost(old[i]) && same_break(old[i], s))
+		while (i < n_old && is_off_list(old[i]) && same_break(old[i], s))
 			i++;
 		if (lines++ < LOST_LINES)
 			log_lost(sc, s, old[i - 1], ms);
@@ -389,7 +389,7 @@ static bool publish(struct scan *sc)
 	struct ec_slave **old;
 	unsigned int i, n_old;
 
-	ec_told_flush(bus, true);
+	ec_pending_flush(bus, true);
 	down_write(&bus->topo);
 	if (bus->held) {
 		up_write(&bus->topo);

@@ -191,7 +191,7 @@ static void report_failure(struct ec_slave *slave, const char *text, u8 error,
 			   const struct ec_cause *cause)
 {
 	ec_slave_warn(slave, "%s\n", text);
-	ec_told_before(slave);
+	ec_pending_before(slave);
 	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code), cause->kind,
 		       cause->code, cause->object, cause->subindex, cause->sm, cause->state);
 }
@@ -279,16 +279,16 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 	if (status == before && code == READ_ONCE(slave->al_code))
 		return;
 	if (moved && !requested)
-		ec_told_before(slave);
+		ec_pending_before(slave);
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
 	ec_slave_changed(slave);
 	if (moved && requested)
-		ec_told_al(slave, was, state);
+		ec_pending_al(slave, was, state);
 	else if (moved)
 		ec_slave_event(slave, EC_EVENT_AL_LEFT, state, was);
 	if (status & EC_AL_ERROR && !(before & EC_AL_ERROR)) {
-		ec_told_before(slave);
+		ec_pending_before(slave);
 		ec_slave_event(slave, EC_EVENT_AL_ERROR, state, code);
 	}
 }

@@ -12,7 +12,7 @@
 #include "dict.h"
 #include "names.h"
 #include "pdo.h"
-#include "told.h"
+#include "pending.h"
 #include "../wire/al.h"
 #include "../wire/regs.h"
 #include "../wire/sii.h"
@@ -97,8 +97,8 @@ struct ec_break {
  * @awaited: AL state that was asked for and is not reached so far, 0: none. It is taken when it
  *	comes after its time limit
  * @awaited_ms: that limit
- * @told: changes that have no event so far
- * @note_lock: protects @told, @why, @cause and @warning, and @error where it changes; without
+ * @pending: changes that have no event so far
+ * @note_lock: protects @pending, @why, @cause and @warning, and @error where it changes; without
  *	@lock a caller copies the texts by ec_slave_why() and ec_slave_warning()
  * @error: EC_SLAVE_OK...
  * @why: cause of @error
@@ -179,7 +179,7 @@ struct ec_slave {
 	u32 limit_ms;
 	u8 awaited;
 	u32 awaited_ms;
-	struct ec_told told;
+	struct ec_pending pending;
 	raw_spinlock_t note_lock;
 	u8 error;
 	char why[EC_UAPI_REASON];

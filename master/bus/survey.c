@@ -48,7 +48,7 @@ void ec_survey(const struct ec_bus *bus, struct ec_survey *survey)
 {
 	u64 now = ktime_get_ns();
 
-	*survey = (struct ec_survey){ .chores = READ_ONCE(bus->untold) };
+	*survey = (struct ec_survey){ .chores = READ_ONCE(bus->pending) };
 	ec_for_each_slave(s, bus) {
 		u8 want = READ_ONCE(s->requested);
 

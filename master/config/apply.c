@@ -556,7 +556,7 @@ static void log_return(struct ec_slave *s)
 	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
 
 	if (s->seen_ns && c && READ_ONCE(s->al_status) == EC_AL_OP)
-		ec_told_back(s, ms);
+		ec_pending_back(s, ms);
 	if (!c || READ_ONCE(s->al_status) == EC_AL_OP)
 		s->seen_ns = 0;
 }

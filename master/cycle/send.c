@@ -182,7 +182,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (!c->thread)
 		ec_late_send(c, send.now);
 	ec_write64(&c->links->access.last_send_ns, send.now);
-	if (unlikely(c->links->access.stopped))
+	if (unlikely(READ_ONCE(c->links->access.stopped)))
 		WRITE_ONCE(c->links->access.stopped, false);
 	if (c->copying)
 		ec_copy_run(c);

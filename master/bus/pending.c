@@ -6,14 +6,14 @@
  */
 #include <linux/ktime.h>
 #include "slave.h"
-#include "told.h"
+#include "pending.h"
 
 #define TOGETHER_MS	1000	/* a slave that needs longer than others has its own event */
 
 /* neighbours that have changed alike */
 struct group {
 	struct ec_bus *bus;
-	struct ec_told told;
+	struct ec_pending pending;
 	u8 state;
 	u16 first;
 	u32 n;
@@ -21,98 +21,99 @@ struct group {
 
 static void put_al(const struct group *g)
 {
-	ec_event_slave(g->bus->base, EC_EVENT_AL_STATE, g->first, g->state, g->told.from, g->n,
-		       g->told.lowest < min(g->state, g->told.from) ? g->told.lowest : 0);
+	ec_event_slave(g->bus->base, EC_EVENT_AL_STATE, g->first, g->state, g->pending.from, g->n,
+		       g->pending.lowest < min(g->state, g->pending.from) ? g->pending.lowest : 0);
 }
 
 static void put_back(const struct group *g)
 {
-	ec_event_slave(g->bus->base, EC_EVENT_SLAVE_BACK, g->first, g->told.back_ms, g->n);
+	ec_event_slave(g->bus->base, EC_EVENT_SLAVE_BACK, g->first, g->pending.back_ms, g->n);
 	if (g->n == 1)
 		ec_log_event(g->bus->base, g->first, 0, KERN_INFO,
-			     "back in OP, %u ms after it was last seen\n", g->told.back_ms);
+			     "back in OP, %u ms after it was last seen\n", g->pending.back_ms);
 	else
 		ec_info(g->bus, "slaves %u to %u back in OP, %u ms after they were last seen\n",
-			g->first, g->first + g->n - 1, g->told.back_ms);
+			g->first, g->first + g->n - 1, g->pending.back_ms);
 }
 
 /**
- * ec_told_al() - an AL state was reached on request
+ * ec_pending_al() - an AL state was reached on request
  * @s: slave
  * @before: AL state before
  * @state: AL state
  *
- * Context: Any.
+ * Context: Process.
  */
-void ec_told_al(struct ec_slave *s, u8 before, u8 state)
+void ec_pending_al(struct ec_slave *s, u8 before, u8 state)
 {
 	raw_spin_lock(&s->note_lock);
-	if (!s->told.from)
-		s->told = (struct ec_told){ .from = before, .lowest = before,
-					    .back_ms = s->told.back_ms };
-	s->told.lowest = min(s->told.lowest, state);
+	if (!s->pending.from) {
+		s->pending.from = before;
+		s->pending.lowest = before;
+	}
+	s->pending.lowest = min(s->pending.lowest, state);
 	raw_spin_unlock(&s->note_lock);
 	/* after it: the monitor clears it first */
-	WRITE_ONCE(s->bus->untold, true);
+	WRITE_ONCE(s->bus->pending, true);
 }
 
 /**
- * ec_told_back() - a slave that was lost or silent is in OP again
+ * ec_pending_back() - a slave that was lost or silent is in OP again
  * @s: slave
  * @ms: since it was last seen
  *
- * Context: Any.
+ * Context: Process.
  */
-void ec_told_back(struct ec_slave *s, u64 ms)
+void ec_pending_back(struct ec_slave *s, u64 ms)
 {
 	raw_spin_lock(&s->note_lock);
-	s->told.back_ms = clamp_t(u64, ms, 1, U32_MAX);
+	s->pending.back_ms = clamp_t(u64, ms, 1, U32_MAX);
 	raw_spin_unlock(&s->note_lock);
-	WRITE_ONCE(s->bus->untold, true);
+	WRITE_ONCE(s->bus->pending, true);
 }
 
-/* What is told of @s from now on. */
-static struct group take(struct ec_slave *s, bool al)
+/* What has changed, for its event. */
+static struct group take_changes(struct ec_slave *s, bool al)
 {
 	struct group g = { .bus = s->bus, .first = s->position, .n = 1 };
 
 	raw_spin_lock(&s->note_lock);
-	g.told = s->told;
+	g.pending = s->pending;
 	g.state = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
 	if (al)
-		s->told.from = 0;
+		s->pending.from = 0;
 	else
-		s->told.back_ms = 0;
+		s->pending.back_ms = 0;
 	raw_spin_unlock(&s->note_lock);
 	return g;
 }
 
 /**
- * ec_told_before() - record what a slave has reached, before an event of it alone
+ * ec_pending_before() - record what a slave has reached, before an event of it alone
  * @s: slave
  *
- * Context: Any.
+ * Context: Process.
  */
-void ec_told_before(struct ec_slave *s)
+void ec_pending_before(struct ec_slave *s)
 {
-	const struct group g = take(s, true);
+	const struct group g = take_changes(s, true);
 
-	if (g.told.from)
+	if (g.pending.from)
 		put_al(&g);
 }
 
 static bool alike_al(const struct group *a, const struct group *b)
 {
-	return a->state == b->state && a->told.from == b->told.from &&
-	       a->told.lowest == b->told.lowest;
+	return a->state == b->state && a->pending.from == b->pending.from &&
+	       a->pending.lowest == b->pending.lowest;
 }
 
-/* Has one more slave joined its neighbours? Otherwise these are told. */
+/* Has one more slave joined its neighbours? Otherwise these are recorded. */
 static bool joins(struct group *all, const struct group *g, bool any, bool al)
 {
 	if (all->n && any && (!al || alike_al(all, g))) {
 		all->n++;
-		all->told.back_ms = max(all->told.back_ms, g->told.back_ms);
+		all->pending.back_ms = max(all->pending.back_ms, g->pending.back_ms);
 		return true;
 	}
 	if (all->n && al)
@@ -122,13 +123,13 @@ static bool joins(struct group *all, const struct group *g, bool any, bool al)
 	return false;
 }
 
-static void flush(struct ec_bus *bus, bool al)
+static void record(struct ec_bus *bus, bool al)
 {
 	struct group all = { .bus = bus };
 
 	ec_for_each_slave(s, bus) {
-		const struct group g = take(s, al);
-		bool any = al ? g.told.from : g.told.back_ms;
+		const struct group g = take_changes(s, al);
+		bool any = al ? g.pending.from : g.pending.back_ms;
 
 		if (joins(&all, &g, any, al))
 			continue;
@@ -139,26 +140,26 @@ static void flush(struct ec_bus *bus, bool al)
 }
 
 /**
- * ec_told_flush() - record what slaves have reached
+ * ec_pending_flush() - record what slaves have reached
  * @bus: bus
  * @all: now; otherwise once none is on its way any more, or after %TOGETHER_MS
  *
  * Context: The monitor thread.
  */
-void ec_told_flush(struct ec_bus *bus, bool all)
+void ec_pending_flush(struct ec_bus *bus, bool all)
 {
 	u64 now;
 
-	if (!READ_ONCE(bus->untold))
+	if (!READ_ONCE(bus->pending))
 		return;
 	now = ktime_get_ns();
-	bus->untold_ns = bus->untold_ns ?: now;
-	if (now - bus->untold_ns < TOGETHER_MS * NSEC_PER_MSEC)
+	bus->pending_ns = bus->pending_ns ?: now;
+	if (now - bus->pending_ns < TOGETHER_MS * NSEC_PER_MSEC)
 		ec_for_each_slave(s, bus)
 			if (!all && ec_slave_busy(s))
 				return;
-	bus->untold_ns = 0;
-	WRITE_ONCE(bus->untold, false);
-	flush(bus, true);
-	flush(bus, false);
+	bus->pending_ns = 0;
+	WRITE_ONCE(bus->pending, false);
+	record(bus, true);
+	record(bus, false);
 }
