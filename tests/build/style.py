@@ -25,7 +25,7 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "tests"): 133,
+    ("lines", "tests"): 132,
     ("lines", "master"): 5,
     ("lines", "Documentation"): 0,
     ("lines", "README.md"): 2,

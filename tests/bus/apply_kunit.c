@@ -28,7 +28,7 @@ static void write_obj(struct bus *b, u16 index, u8 sub, u32 value, size_t bytes)
 
 	put_unaligned_le32(value, v);
 	KUNIT_ASSERT_EQ(b->test,
-			ec_coe_download(&bus_slave(b, 0)->mbox, index, sub, false, v, bytes,
+			ec_coe_download(bus_mbox(b, 0), index, sub, false, v, bytes,
 						 &abort, NULL), 0);
 }
 
@@ -131,7 +131,7 @@ static void apply_op_only_late(struct kunit *test)
 	bus_slave(b, 0)->sms[0].enable |= EC_SII_SM_OP_ONLY;
 	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
 	cyc_map_all(c, 0, 1, 0);
-	b->m->sessions.session->wanted.configs[0]->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
+	bus_config(b, 0)->timeout_ms[EC_AL_SAFEOP][EC_AL_OP] = 20;
 	cyc_activate(c);
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS] & EC_AL_STATE_MASK, EC_AL_OP);
@@ -190,14 +190,14 @@ static void apply_late_states_taken(struct kunit *test)
 		 l->ms);
 	b = bus_new(test, text);
 	bus_plug(b);
-	while (READ_ONCE(b->m->bus.n_slaves) != 1)
+	while (bus_n_slaves(b) != 1)
 		usleep_range(1000, 1001);
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	for (from = EC_AL_INIT; from <= EC_AL_OP; from *= 2)
 		for (to = EC_AL_INIT; to <= EC_AL_OP; to *= 2)
-			b->m->sessions.session->wanted.configs[0]->timeout_ms[from][to] =
+			bus_config(b, 0)->timeout_ms[from][to] =
 				l->limit_ms;
 	cyc_activate(c);
 	begun.app = bus_app(b, "a");
@@ -262,7 +262,7 @@ static void apply_found_pdos(struct kunit *test)
 	WRITE_ONCE(bus_slave(b, 0)->pdos_known, false);
 	bus_request(b, 0, EC_AL_PREOP);
 	cyc_map_all(c, 0, 1, 0);
-	KUNIT_ASSERT_EQ(test, b->m->sessions.session->wanted.configs[0]->fmmus[0].size, 2u);
+	KUNIT_ASSERT_EQ(test, bus_config(b, 0)->fmmus[0].size, 2u);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 0, 0, 0, 0);

@@ -69,7 +69,7 @@ static void attach_one_pulled(struct kunit *test)
 		cyc_run(c, 1);
 		not_op += (READ_ONCE(s1->al_status) & 0xf) != EC_AL_OP;
 	}
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N - 1);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N - 1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
 	KUNIT_EXPECT_EQ(test, not_op, 0u);
 	for (i = 1; i < N - 1; i++)
@@ -105,7 +105,7 @@ static void attach_failed_one(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, 2, 0, 0, 0);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
 	cyc_run(c, 1000);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N - 1);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N - 1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
 	KUNIT_ASSERT_NOT_NULL(test, ec_setup_of(s1)->config);
 	KUNIT_EXPECT_EQ(test, ec_setup_of(s1)->config->position, 2u);
@@ -187,7 +187,7 @@ static void attach_twin_keeps_off(struct kunit *test)
 			   "alias 5 is not unique; configurations use slave 1, the first one");
 	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 1, 0, 0);
 	cyc_run(c, 1000);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 3u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 3u);
 	KUNIT_EXPECT_NULL(test, ec_setup_of(bus_slave(b, 1))->config);
 	KUNIT_EXPECT_EQ(test, output(c, "b"), 0ll);
 	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 1, 0, 0);
@@ -206,7 +206,7 @@ static void attach_same_device_elsewhere(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 1, 0, 0);
 	bus_fault(b, EC_SIM_FAULT_CUT, HUB, 2, 0, 0);
 	cyc_run(c, 500);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 1u);
 	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 2, 0, 0);
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_EQ(test, output(c, "b"), 20ll);
@@ -228,7 +228,7 @@ static void attach_alike_by_place(struct kunit *test)
 	for (i = A; i <= X; i++)
 		bus_fault(b, EC_SIM_FAULT_POWER_OFF, i, 0, 0, 0);
 	cyc_run(c, 500);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 1u);
 	for (i = A; i <= X; i++)
 		bus_fault(b, EC_SIM_FAULT_POWER_ON, i, 0, 0, 0);
 	cyc_run(c, 2000);

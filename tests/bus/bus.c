@@ -105,10 +105,10 @@ bool bus_settled(struct bus *b)
 {
 	u32 i;
 
-	if (READ_ONCE(b->m->bus.scan_busy) || READ_ONCE(b->m->bus.rescan))
+	if (bus_scan_busy(b) || bus_rescan_due(b))
 		return false;
-	for (i = 0; i < b->m->bus.n_slaves; i++)
-		if (ec_slave_busy(b->m->bus.slaves[i]))
+	for (i = 0; i < bus_n_slaves(b); i++)
+		if (ec_slave_busy(bus_slave_at(b, i)))
 			return false;
 	return true;
 }
@@ -125,9 +125,9 @@ void bus_plug_scanned(struct bus *b, u32 slaves, u32 limit_ms)
 
 	bus_plug(b);
 	end = b->t0 + (u64)limit_ms * NSEC_PER_MSEC;
-	while (ktime_get_ns() < end && !(b->m->bus.n_slaves == slaves && bus_settled(b)))
+	while (ktime_get_ns() < end && !(bus_n_slaves(b) == slaves && bus_settled(b)))
 		usleep_range(1000, 1001);
-	KUNIT_ASSERT_EQ(b->test, b->m->bus.n_slaves, slaves);
+	KUNIT_ASSERT_EQ(b->test, bus_n_slaves(b), slaves);
 }
 
 /**
@@ -185,7 +185,7 @@ void bus_crowd(struct bus *b)
 	for (i = 0; i < n; i++) {
 		b->crowd->guests[i].crowd = b->crowd;
 		b->crowd->guests[i].job = (struct ec_job){ .run = stay, .end = go };
-		ec_workers_queue(&b->m->bus.workers, &b->crowd->guests[i].job);
+		ec_workers_queue(bus_workers(b), &b->crowd->guests[i].job);
 	}
 	msleep(20);
 }
@@ -208,10 +208,10 @@ static bool all_in(const struct bus *b, u32 slaves, u8 state)
 {
 	u32 i;
 
-	if (b->m->bus.n_slaves != slaves || READ_ONCE(b->m->bus.scan_busy))
+	if (bus_n_slaves(b) != slaves || bus_scan_busy(b))
 		return false;
 	for (i = 0; i < slaves; i++)
-		if (b->m->bus.slaves[i]->al_status != state)
+		if (bus_slave_at(b, i)->al_status != state)
 			return false;
 	return true;
 }
@@ -260,8 +260,8 @@ u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms)
 
 struct ec_slave *bus_slave(struct bus *b, u32 position)
 {
-	KUNIT_ASSERT_LT(b->test, position, b->m->bus.n_slaves);
-	return b->m->bus.slaves[position];
+	KUNIT_ASSERT_LT(b->test, position, bus_n_slaves(b));
+	return bus_slave_at(b, position);
 }
 
 struct ec_esc *bus_esc(struct bus *b, u32 index)
@@ -278,16 +278,6 @@ struct ec_app *bus_app(struct bus *b, const char *name)
 
 	KUNIT_ASSERT_NOT_NULL_MSG(b->test, app, "no slave %s", name);
 	return app;
-}
-
-u64 bus_frames(const struct bus *b)
-{
-	return atomic64_read(&b->m->links.link[0].stats.tx_frames);
-}
-
-u64 bus_lost(const struct bus *b)
-{
-	return atomic64_read(&b->m->links.link[0].stats.lost);
 }
 
 /**

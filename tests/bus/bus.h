@@ -17,8 +17,6 @@
 #include "master/boundary/master.h"
 #include "master/monitor.h"
 #include "master/session/session.h"
-#include "master/bus/slave.h"
-#include "master/link/xfer.h"
 
 /**
  * struct bus - what a case works with
@@ -59,14 +57,14 @@ void bus_crowd_leaves(struct bus *b);
 struct ec_slave *bus_slave(struct bus *b, u32 position);
 struct ec_esc *bus_esc(struct bus *b, u32 index);
 struct ec_app *bus_app(struct bus *b, const char *name);
-u64 bus_frames(const struct bus *b);
-u64 bus_lost(const struct bus *b);
 u32 bus_log_lines(const char *words);
 void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, u32 arg,
 	       u32 arg2);
 void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes);
 void bus_strip_names(struct bus *b, u32 index);
 void bus_request(struct bus *b, u32 position, u8 state);
+
+#include "access.h"
 
 /* A figure of this run; bench scripts look for these lines. */
 #define bus_figure(fmt, ...)	pr_info("# figure: " fmt "\n", ##__VA_ARGS__)

@@ -167,7 +167,6 @@ static u64 wake_late(struct cyc *c)
  */
 void cyc_run(struct cyc *c, u32 cycles)
 {
-	struct ec_session *s = c->b->m->sessions.session;
 	struct ec_ioc_send send = { 0 };
 	u32 i, d;
 
@@ -180,8 +179,8 @@ void cyc_run(struct cyc *c, u32 cycles)
 		set_current_state(TASK_UNINTERRUPTIBLE);
 		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
 		KUNIT_ASSERT_EQ(c->b->test, ec_ioc_receive(&c->b->app), 0);
-		for (d = 0; d < s->wanted.n_domains; d++)
-			whole &= s->cycle.shared->status->domains[d].wc_state == 2;
+		for (d = 0; d < bus_wanted(c->b)->n_domains; d++)
+			whole &= bus_domain_status(c->b, d)->wc_state == 2;
 		c->incomplete += !whole;
 		if (c->each)
 			c->each(c);
@@ -305,14 +304,14 @@ struct cyc *cyc_drives_of(struct kunit *test, u32 n, u32 period_us, s32 host_ppb
 
 bool cyc_all_op(struct cyc *c)
 {
-	struct ec_session *s = c->b->m->sessions.session;
 	u32 i;
 
-	for (i = 0; i < s->wanted.n_configs; i++)
-		if (!s->wanted.configs[i]->slave ||
-		    s->wanted.configs[i]->slave->al_status != EC_AL_OP ||
-		    s->wanted.configs[i]->slave->reconfigure)
+	for (i = 0; i < bus_wanted(c->b)->n_configs; i++) {
+		const struct ec_slave *s = bus_config(c->b, i)->slave;
+
+		if (!s || s->al_status != EC_AL_OP || s->reconfigure)
 			return false;
+	}
 	return true;
 }
 
@@ -346,9 +345,9 @@ u8 cyc_config_status(struct bus *b, u32 config)
 {
 	u8 v;
 
-	mutex_lock(&b->m->sessions.lock);
-	v = ec_config_status(b->m->sessions.session->wanted.configs[config]);
-	mutex_unlock(&b->m->sessions.lock);
+	mutex_lock(bus_mutex(b));
+	v = ec_config_status(bus_config(b, config));
+	mutex_unlock(bus_mutex(b));
 	return v;
 }
 
@@ -362,11 +361,10 @@ u8 cyc_config_status(struct bus *b, u32 config)
  */
 u8 *cyc_pd(struct cyc *c, u32 position, u8 sm)
 {
-	struct ec_session *s = c->b->m->sessions.session;
 	u32 i, k;
 
-	for (i = 0; i < s->wanted.n_configs; i++) {
-		struct ec_config *sc = s->wanted.configs[i];
+	for (i = 0; i < bus_wanted(c->b)->n_configs; i++) {
+		struct ec_config *sc = bus_config(c->b, i);
 
 		for (k = 0; k < sc->n_fmmus; k++)
 			if (sc->position == position && sc->fmmus[k].sm == sm)
@@ -379,14 +377,12 @@ u8 *cyc_pd(struct cyc *c, u32 position, u8 sm)
 
 u8 *cyc_data(struct cyc *c, u32 domain)
 {
-	struct ec_session *s = c->b->m->sessions.session;
-
-	return s->cycle.shared->image + s->wanted.domains[domain]->offset;
+	return bus_shared(c->b)->image + bus_domain(c->b, domain)->offset;
 }
 
 struct ec_status_domain *cyc_state(struct cyc *c, u32 domain)
 {
-	return &c->b->m->sessions.session->cycle.shared->status->domains[domain];
+	return bus_domain_status(c->b, domain);
 }
 
 void cyc_release(struct cyc *c)

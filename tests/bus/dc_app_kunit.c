@@ -147,13 +147,13 @@ static void expect_steady(struct cyc *c, u32 cycles, u64 drift_ns, s64 apart_ns,
 /* the log tells nothing more until expect_told() */
 static void hush(struct cyc *c)
 {
-	c->b->m->dc.app.log_ns = ~0ull;
+	bus_dc_app(c->b)->log_ns = ~0ull;
 }
 
 /* What it was given to tell since then; now it does, and not again for 10 s. */
 static void expect_told(struct cyc *c, u32 jumps, bool ignored)
 {
-	struct ec_dc_app *a = &c->b->m->dc.app;
+	struct ec_dc_app *a = bus_dc_app(c->b);
 	struct kunit *test = c->b->test;
 
 	KUNIT_EXPECT_EQ(test, a->jumps, jumps);
@@ -180,17 +180,17 @@ static void app_jumps(struct kunit *test)
 	struct cyc *c = start(test, &t, v->text);
 
 	cyc_run(c, 3000);
-	KUNIT_EXPECT_EQ(test, c->b->m->dc.app.log_ns, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_dc_app(c->b)->log_ns, 0ull);
 	hush(c);
 	t.add += NSEC_PER_SEC;
 	expect_steady(c, 2000, drift(&t, 2000), 2000, "1 s forth");
-	KUNIT_EXPECT_LT(test, abs(c->b->m->dc.app.jump_ns - NSEC_PER_SEC), 10000l);
+	KUNIT_EXPECT_LT(test, abs(bus_dc_app(c->b)->jump_ns - NSEC_PER_SEC), 10000l);
 	expect_told(c, 1, false);
 	t.add -= c->app_time + PERIOD_NS;
 	expect_steady(c, 2000, drift(&t, 2000), 2000, "begins with 0 again");
 	expect_told(c, 1, false);
 	/* and it is followed */
-	KUNIT_EXPECT_FALSE(test, c->b->m->sessions.session->cycle.dc_hold);
+	KUNIT_EXPECT_FALSE(test, bus_dc_hold(c->b));
 }
 
 /* A single 0, and a time that stands still. */
@@ -208,7 +208,7 @@ static void app_is_off(struct kunit *test)
 	/* nobody leads meanwhile */
 	t.still = true;
 	expect_steady(c, 1000, drift(&t, 1000) + 20000, 2000, "stands still");
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.dc_hold, t.leads);
+	KUNIT_EXPECT_EQ(test, bus_dc_hold(c->b), t.leads);
 	t.still = false;
 	expect_steady(c, 3000, drift(&t, 3000) + 20000, 5000, "goes on");
 	expect_told(c, 0, true);
@@ -223,10 +223,10 @@ static void expect_one_grid(struct cyc *c)
 	u32 i;
 
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 100 && b->m->bus.n_slaves != 1; i++)
+	for (i = 0; i < 100 && bus_n_slaves(b) != 1; i++)
 		cyc_run(c, 10);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
-	for (i = 0; i < 100 && b->m->bus.n_slaves != 2; i++)
+	for (i = 0; i < 100 && bus_n_slaves(b) != 2; i++)
 		cyc_run(c, 10);
 	KUNIT_ASSERT_NE(b->test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 1000);
@@ -264,7 +264,7 @@ static void app_begins_then_slave(struct kunit *test)
 	/* 300 us behind the grid that SYNC has without an application */
 	t.add += 300000 - do_div(next, PERIOD_NS) - v->told.add % PERIOD_NS;
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_NE(test, c->b->m->dc.app_time, 0ull);
+	KUNIT_EXPECT_NE(test, bus_app_time(c->b), 0ull);
 	expect_one_grid(c);
 }
 
@@ -276,20 +276,20 @@ static void app_jumps_in_send_without_data(struct kunit *test)
 	u64 lost, frames;
 
 	cyc_run(c, 2000);
-	KUNIT_ASSERT_TRUE(test, c->b->m->dc.ref_wide);
+	KUNIT_ASSERT_TRUE(test, bus_dc(c->b)->ref_wide);
 	lost = bus_lost(c->b);
 	t.alone = true;
 	c->queued = 0;
 	cyc_run(c, 2);
 	t.add += NSEC_PER_SEC;
-	frames = c->b->m->sessions.session->cycle.last.frames;
+	frames = bus_last_wire(c->b)->frames;
 	KUNIT_EXPECT_EQ(test, frames, 1ull);
 	cyc_run(c, 10);
-	KUNIT_EXPECT_TRUE(test, c->b->m->sessions.session->cycle.dc_hold);
-	frames = c->b->m->sessions.session->cycle.last.frames;
+	KUNIT_EXPECT_TRUE(test, bus_dc_hold(c->b));
+	frames = bus_last_wire(c->b)->frames;
 	KUNIT_EXPECT_EQ(test, frames, 0ull);
 	cyc_run(c, 30);
-	KUNIT_EXPECT_FALSE(test, c->b->m->sessions.session->cycle.dc_hold);
+	KUNIT_EXPECT_FALSE(test, bus_dc_hold(c->b));
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), lost);
 }
 
@@ -299,7 +299,7 @@ static s64 begin(struct cyc *c, const struct told *t)
 	u64 now;
 	u32 i;
 
-	for (i = 0; i < 1000 && READ_ONCE(c->b->m->dc.mode) == EC_DC_IDLE; i++)
+	for (i = 0; i < 1000 && bus_dc_mode(c->b) == EC_DC_IDLE; i++)
 		cyc_run(c, 1);
 	now = ktime_get_ns();
 	ec_sim_advance(c->b->sim, now);
@@ -312,10 +312,10 @@ static void power(struct cyc *c, bool on)
 
 	for (i = 0; i < 2; i++)
 		bus_fault(c->b, on ? EC_SIM_FAULT_POWER_ON : EC_SIM_FAULT_POWER_OFF, i, 0, 0, 0);
-	for (i = 0; i < 100 && (c->b->m->bus.n_slaves != (on ? 2 : 0) ||
-			       (!on && READ_ONCE(c->b->m->dc.mode) != EC_DC_IDLE)); i++)
+	for (i = 0; i < 100 && (bus_n_slaves(c->b) != (on ? 2 : 0) ||
+			       (!on && bus_dc_mode(c->b) != EC_DC_IDLE)); i++)
 		cyc_run(c, 10);
-	KUNIT_ASSERT_EQ(c->b->test, c->b->m->bus.n_slaves, on ? 2u : 0u);
+	KUNIT_ASSERT_EQ(c->b->test, bus_n_slaves(c->b), on ? 2u : 0u);
 }
 
 /* All clocks are set anew within a session: to the time of now, not of its start. */
@@ -332,7 +332,7 @@ static void app_drift_then_new_synchronization(struct kunit *test)
 	cyc_run(c, 4000);
 	t.drift_ns = 0;
 	cyc_run(c, 100);
-	KUNIT_EXPECT_EQ(test, c->b->m->dc.app.jumps, 0u);
+	KUNIT_EXPECT_EQ(test, bus_dc_app(c->b)->jumps, 0u);
 	power(c, false);
 	power(c, true);
 	off = (s32)begin(c, &t);
@@ -351,7 +351,7 @@ static u32 held(struct cyc *c, const struct told *t, u32 tellings)
 		while (c->cycles % t->every)
 			cyc_run(c, 1);
 		cyc_run(c, 1);
-		n += c->b->m->sessions.session->cycle.dc_hold;
+		n += bus_dc_hold(c->b);
 	}
 	return n;
 }
@@ -361,7 +361,7 @@ static void app_leads_rarely(struct kunit *test)
 {
 	struct told t = { .leads = true, .every = 1000, .add = 123456789, .drift_ns = 100 };
 	struct cyc *c = start(test, &t, "");
-	struct ec_dc_app *a = &c->b->m->dc.app;
+	struct ec_dc_app *a = bus_dc_app(c->b);
 	u32 n = held(c, &t, 20);
 
 	bus_figure("leads once a second, 100 ppm off: %u of 20 times are held back", n);
@@ -383,7 +383,7 @@ static void app_led_once(struct kunit *test)
 {
 	struct told t = { .leads = true, .add = 123456789 };
 	struct cyc *c = start(test, &t, "");
-	struct ec_dc_app *a = &c->b->m->dc.app;
+	struct ec_dc_app *a = bus_dc_app(c->b);
 
 	cyc_run(c, 1000);
 	t.leads = false;
@@ -419,7 +419,7 @@ static void app_is_late(struct kunit *test)
 		worst = max_t(s64, worst, abs(begin(c, &t)));
 		/* lateness is no jump */
 		cyc_run(c, 500);
-		KUNIT_EXPECT_EQ(test, b->m->dc.app.log_ns, 0ull);
+		KUNIT_EXPECT_EQ(test, bus_dc_app(b)->log_ns, 0ull);
 		cyc_release(c);
 		bus_idle(b);
 	}

@@ -12,7 +12,7 @@ static u64 worst(struct bus *b)
 	u32 i;
 
 	ec_sim_advance(b->sim, now);
-	for (i = 1; i < b->m->bus.n_slaves; i++) {
+	for (i = 1; i < bus_n_slaves(b); i++) {
 		s64 d = ec_esc_system_time(bus_esc(b, i), now) -
 			ec_esc_system_time(bus_esc(b, 0), now);
 
@@ -55,7 +55,7 @@ static void dc_delays_are_true(struct kunit *test)
 	u32 i;
 
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(bus_dc(b)), 0);
 	for (i = 0; i < 22; i++) {
 		const struct ec_slave *s = bus_slave(b, i);
 
@@ -97,18 +97,17 @@ static u64 set(struct cyc *c)
 	u32 i;
 
 	cyc_activate(c);
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->sessions.session->cycle.shared->status->dc_ref, 1u);
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->sessions.session->cycle.shared->status->dc_monitor,
-			~0u);
-	for (i = 0; i < 2000 && READ_ONCE(c->b->m->dc.state) != EC_DC_READY; i++)
+	KUNIT_EXPECT_EQ(c->b->test, bus_status(c->b)->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(c->b->test, bus_status(c->b)->dc_monitor, ~0u);
+	for (i = 0; i < 2000 && bus_dc_state(c->b) != EC_DC_READY; i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_EQ(c->b->test, c->b->m->dc.state, (int)EC_DC_READY);
+	KUNIT_ASSERT_EQ(c->b->test, bus_dc_state(c->b), (int)EC_DC_READY);
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
 }
 
 static const struct ec_status *cyc_status(const struct cyc *c)
 {
-	return c->b->m->sessions.session->cycle.shared->status;
+	return bus_status(c->b);
 }
 
 static void dc_clocks_agree(struct kunit *test)
@@ -128,8 +127,8 @@ static void dc_clocks_agree(struct kunit *test)
 		cyc_run(c, 100);
 		max = max_t(u64, max, worst(c->b));
 	}
-	KUNIT_EXPECT_LT(test, c->b->m->sessions.session->cycle.shared->status->dc_monitor, 128u);
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_LT(test, bus_status(c->b)->dc_monitor, 128u);
+	KUNIT_EXPECT_EQ(test, bus_status(c->b)->dc_time_valid, 1u);
 	/* the application's time, a cycle ago */
 	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
@@ -238,7 +237,7 @@ static void dc_sync0_phase(struct kunit *test)
 		}
 		cyc_activate(c);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-		phase = b->m->dc.phase;
+		phase = bus_dc_phase(b);
 		for (k = 0; k < 2; k++) {
 			const u8 *mem = bus_esc(b, k)->mem;
 			u64 t = get_unaligned_le64(mem + EC_REG_DC_START) - phase;
@@ -298,7 +297,7 @@ static void dc_chosen_reference(struct kunit *test)
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	set(c);
-	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 2));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(c->b), bus_slave(c->b, 2));
 	max = watch(c, 2, 2, 100);
 	bus_figure("reference behind two others: worst true difference %llu ns", max);
 	/* a prediction is as good as the cycle is punctual */
@@ -322,12 +321,12 @@ static void dc_mixed(struct kunit *test)
 	u64 max;
 
 	set(c);
-	KUNIT_EXPECT_PTR_EQ(test, c->b->m->dc.ref, bus_slave(c->b, 1));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(c->b), bus_slave(c->b, 1));
 	/* longer than 32 bits of ns; n has no clock, so its branches share a guess */
 	max = watch(c, 1, 1, 200);
 	bus_figure("32 and 64 bits, without clock between: worst true difference %llu ns", max);
 	KUNIT_EXPECT_LT(test, max, 500ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.shared->status->dc_time_valid, 1u);
+	KUNIT_EXPECT_EQ(test, bus_status(c->b)->dc_time_valid, 1u);
 	KUNIT_EXPECT_LT(test, abs((s64)(c->app_time - cyc_status(c)->dc_time)),
 			5000000ll);
 }
@@ -345,7 +344,7 @@ static void sync_config(struct cyc *c, u32 config, u32 c0, s32 s0, u32 c1)
 /* where the SYNC0 of a slave lies against the application's grid */
 static u32 grid_phase(struct bus *b, u32 slave, u32 period)
 {
-	u64 since = bus_esc(b, slave)->dc.start - b->m->dc.phase;
+	u64 since = bus_esc(b, slave)->dc.start - bus_dc_phase(b);
 
 	return do_div(since, period);
 }
@@ -374,7 +373,7 @@ static void dc_start_extreme_shifts_and_epoch(struct kunit *test)
 	/* the clocks have the cycle's time, not the other one */
 	KUNIT_EXPECT_LT(test, abs((s64)(ec_esc_system_time(bus_esc(b, 0), ktime_get_ns()) -
 					c->app_time)), 5000000ll);
-	KUNIT_EXPECT_EQ(test, b->m->dc.phase, (u64)early.app_time);
+	KUNIT_EXPECT_EQ(test, bus_dc_phase(b), (u64)early.app_time);
 	KUNIT_EXPECT_EQ(test, grid_phase(b, 0, 1000000), 999999u);
 	KUNIT_EXPECT_EQ(test, grid_phase(b, 1, 1000000), 750000u);
 	KUNIT_EXPECT_EQ(test, grid_phase(b, 2, 1000000), 0u);
@@ -407,7 +406,7 @@ static void dc_slave_comes_back(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 2, 0, 0, 0);
 	max = watch(c, 0, 2, 20);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 2, 0, 0, 0);
-	for (i = 0; i < 100 && !(b->m->bus.n_slaves == 3 && cyc_all_op(c)); i++)
+	for (i = 0; i < 100 && !(bus_n_slaves(b) == 3 && cyc_all_op(c)); i++)
 		max = max(max, watch(c, 0, 2, 1));
 	KUNIT_EXPECT_LT(test, i, 100u);
 	bus_figure("a slave comes back: the others differ by %llu ns at most, the slave by %llu ns",
@@ -436,20 +435,20 @@ static void dc_reference_is_lost(struct kunit *test)
 	u32 i;
 
 	cyc_activate(c);
-	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+	for (i = 0; i < 2000 && bus_dc_state(b) != EC_DC_READY; i++)
 		cyc_run(c, 1);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 0));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(b), bus_slave(b, 0));
 	cyc_run(c, 3000);
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	cyc_run(c, 300);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
-	for (i = 0; i < 100 && !(b->m->bus.n_slaves == 3 && cyc_all_op(c)); i++)
+	for (i = 0; i < 100 && !(bus_n_slaves(b) == 3 && cyc_all_op(c)); i++)
 		cyc_run(c, 50);
 	KUNIT_EXPECT_LT(test, i, 100u);
 	cyc_run(c, 1000);
 	max = watch(c, 0, 3, 50);
 	KUNIT_EXPECT_LT(test, max, 100ull);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 0));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(b), bus_slave(b, 0));
 }
 
 /* Without power at the chosen one, which is the last of a line. */
@@ -467,28 +466,26 @@ static void dc_chosen_is_lost(struct kunit *test)
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_REF_CLOCK, &ref), 0);
 	cyc_activate(c);
-	for (i = 0; i < 5000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+	for (i = 0; i < 5000 && bus_dc_state(b) != EC_DC_READY; i++)
 		cyc_run(c, 1);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 2));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(b), bus_slave(b, 2));
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_LT(test, worst_to(b, 2, 2), 500ull);
 	bus_fault(b, EC_SIM_FAULT_CUT, 0, 2, 0, 0);
-	for (i = 0; i < 100 && READ_ONCE(b->m->dc.ref_station) != bus_slave(b, 0)->station; i++)
+	for (i = 0; i < 100 && bus_dc_ref_station(b) != bus_slave(b, 0)->station; i++)
 		cyc_run(c, 10);
 	KUNIT_EXPECT_LT(test, i, 100u);
 	cyc_run(c, 10);
 	/* another one stands in */
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.shared->status->dc_ref, 1u);
+	KUNIT_EXPECT_EQ(test, bus_status(b)->dc_ref, 1u);
 	max = watch(c, 0, 2, 20);
 	bus_figure("chosen reference gone: the others differ by %llu ns after 1 s", max);
 	KUNIT_EXPECT_LT(test, max, 200ull);
 	bus_fault(b, EC_SIM_FAULT_HEAL, 0, 2, 0, 0);
-	for (i = 0; i < 100 &&
-	     !(b->m->bus.n_slaves == 3 && READ_ONCE(b->m->dc.state) == EC_DC_READY);
-	     i++)
+	for (i = 0; i < 100 && !(bus_n_slaves(b) == 3 && bus_dc_state(b) == EC_DC_READY); i++)
 		cyc_run(c, 50);
 	KUNIT_EXPECT_LT(test, i, 100u);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 2));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(b), bus_slave(b, 2));
 	cyc_run(c, 2000);
 	max = watch(c, 2, 3, 50);
 	KUNIT_EXPECT_LT(test, max, 500ull);
@@ -518,22 +515,18 @@ static void dc_latch(struct kunit *test)
 	station = bus_slave(b, 1)->station;
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test,
-			ec_xfer_fpwr(&b->m->links, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
+	KUNIT_ASSERT_EQ(test, bus_fpwr(b, station, EC_REG_DC_LATCH0_CTRL, control, 1), 0);
 	at = ktime_get_ns();
 	bus_fault(b, EC_SIM_FAULT_LATCH, 1, 0, 0, EC_SIM_EDGE_RISING);
 	usleep_range(2000, 2001);
-	KUNIT_ASSERT_EQ(test,
-			ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_ASSERT_EQ(test, bus_fprd(b, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
 	KUNIT_EXPECT_EQ(test, status[0], 5);	/* event, pin high */
-	KUNIT_ASSERT_EQ(test, ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_POS, times, 16),
-			0);
+	KUNIT_ASSERT_EQ(test, bus_fprd(b, station, EC_REG_DC_LATCH0_POS, times, 16), 0);
 	ec_sim_advance(b->sim, ktime_get_ns());
 	/* the edge was when the fault was added, by the reference clock, too */
 	off = get_unaligned_le64(times) - ec_esc_system_time(bus_esc(b, 0), at);
 	KUNIT_EXPECT_LT(test, abs(off), 5000ll);
-	KUNIT_ASSERT_EQ(test,
-			ec_xfer_fprd(&b->m->links, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
+	KUNIT_ASSERT_EQ(test, bus_fprd(b, station, EC_REG_DC_LATCH0_STATUS, status, 1), 0);
 	KUNIT_EXPECT_EQ(test, status[0], 4);
 }
 
@@ -569,7 +562,7 @@ struct read_time {
 
 static void time_each(struct cyc *c)
 {
-	const struct ec_status *st = c->b->m->sessions.session->cycle.shared->status;
+	const struct ec_status *st = bus_status(c->b);
 	struct read_time *r = c->ctx;
 
 	if (!st->dc_time_valid)
@@ -620,7 +613,7 @@ static u32 since_sync0(struct bus *b, u32 slave, u64 now)
 /* what an application reads of a reference that is ever further from its own time */
 static void far_each(struct cyc *c)
 {
-	const struct ec_status *st = c->b->m->sessions.session->cycle.shared->status;
+	const struct ec_status *st = bus_status(c->b);
 	struct read_time *r = c->ctx;
 
 	sync_each(c);

@@ -40,7 +40,7 @@ static void look(struct cyc *c, struct seen *s)
 
 	ec_sim_advance(c->b->sim, now);
 	ref = ec_esc_system_time(bus_esc(c->b, 0), now);
-	for (i = 1; i < c->b->m->bus.n_slaves; i++) {
+	for (i = 1; i < bus_n_slaves(c->b); i++) {
 		s64 d = ec_esc_system_time(bus_esc(c->b, i), now) - ref;
 
 		apart = max_t(u64, apart, abs(d));

@@ -27,7 +27,7 @@ struct app {
 
 static struct ec_status_cycle *status(const struct app *a)
 {
-	return &a->c->b->m->sessions.session->cycle.shared->status->kernel;
+	return bus_kernel_status(a->c->b);
 }
 
 /* All slaves with SYNC0, shifts of a quarter of a period from one to the next. */
@@ -92,7 +92,7 @@ static u32 until_locked(struct app *a)
 static u32 phase(struct app *a, u32 slave)
 {
 	struct bus *b = a->c->b;
-	u64 sent = READ_ONCE(b->m->links.access.last_send_ns) + b->sim->route[0].step[0].pu_ns, since;
+	u64 sent = bus_last_send_ns(b) + b->sim->route[0].step[0].pu_ns, since;
 	const struct ec_esc *esc = bus_esc(b, slave);
 
 	ec_sim_advance(b->sim, ktime_get_ns());
@@ -218,7 +218,7 @@ static void lock_holdover_keeps_slaves_in_phase(struct kunit *test)
 
 	until_locked(a);
 	msleep(2000);
-	WRITE_ONCE(b->m->bus.held, true);
+	WRITE_ONCE(bus_table(b)->held, true);
 	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 1, 0);
 	msleep(5000);
 	error = phase_error(a, 1, 50000);
@@ -226,7 +226,7 @@ static void lock_holdover_keeps_slaves_in_phase(struct kunit *test)
 	bus_figure("reference clock silent for 5 s: SYNC0 of the other slave %d ns off", error);
 	KUNIT_EXPECT_LT(test, abs(error), 5000);
 	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 0, 0);
-	WRITE_ONCE(b->m->bus.held, false);
+	WRITE_ONCE(bus_table(b)->held, false);
 	until_locked(a);
 }
 
@@ -327,7 +327,7 @@ static void lock_refused(struct kunit *test)
 static void lock_cycle_count_wraps_time_continues(struct kunit *test)
 {
 	struct app *a = start(test, two, 2, 0);
-	struct ec_cycle *c = &a->c->b->m->sessions.session->cycle;
+	struct ec_cycle *c = bus_cycle(a->c->b);
 	u64 due = ktime_get_ns(), first;
 	struct ec_pll l;
 

@@ -36,9 +36,9 @@ static struct cyc *synchronized(struct kunit *test, const char *text, u32 slaves
 	cyc_map_all(c, 0, slaves, 0);
 	c->each = each;
 	cyc_activate(c);
-	for (*ms = 0; *ms < 3000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; ++*ms)
+	for (*ms = 0; *ms < 3000 && bus_dc_state(b) != EC_DC_READY; ++*ms)
 		cyc_run(c, 1);
-	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	return c;
 }
 
@@ -88,34 +88,33 @@ static void dc_log_delay_only(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, bus_log_lines("no valid reply to DC register access"), 0u);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("not synchronized"), 0u);
-	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	/* none of them can be the reference clock */
-	KUNIT_EXPECT_FALSE(test, ec_dc_can_be(&b->m->dc, bus_slave(b, 5)->station));
-	KUNIT_EXPECT_TRUE(test, ec_dc_can_be(&b->m->dc, bus_slave(b, 21)->station));
+	KUNIT_EXPECT_FALSE(test, ec_dc_can_be(bus_dc(b), bus_slave(b, 5)->station));
+	KUNIT_EXPECT_TRUE(test, ec_dc_can_be(bus_dc(b), bus_slave(b, 21)->station));
 }
 
 /* Delayed sends do not change the interval that was learned. */
 static void dc_log_interval_ignores_outliers(struct kunit *test)
 {
 	struct cyc *c = configure(test, 1, 1000);
-	struct ec_master *m = c->b->m;
 	u32 i;
 
-	m->links.access.interval_set = false;
+	bus_set_interval_told(c->b, false);
 	cyc_activate(c);
 	cyc_run(c, 200);
-	KUNIT_EXPECT_LE(test, abs((int)m->links.access.interval_us - 1000), 10);
+	KUNIT_EXPECT_LE(test, abs((int)bus_interval_us(c->b) - 1000), 10);
 	for (i = 0; i < 10; i++) {
 		/* one send is 15 ms late */
 		c->next = ktime_add_ms(c->next, 15);
 		cyc_run(c, 1);
-		KUNIT_EXPECT_LE(test, abs((int)m->links.access.interval_us - 1000), 10);
+		KUNIT_EXPECT_LE(test, abs((int)bus_interval_us(c->b) - 1000), 10);
 		cyc_run(c, 50);
 	}
 	/* but it follows a cycle that has become another one */
 	c->period_ns = 4 * NSEC_PER_MSEC;
 	cyc_run(c, 20);
-	KUNIT_EXPECT_LE(test, abs((int)m->links.access.interval_us - 4000), 40);
+	KUNIT_EXPECT_LE(test, abs((int)bus_interval_us(c->b) - 4000), 40);
 }
 
 /* The difference that controllers of which the rate changes have for a while. */

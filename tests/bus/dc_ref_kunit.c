@@ -119,16 +119,15 @@ static void forget(struct run *r, u32 first, u32 last)
 
 static void sync0(struct run *r)
 {
-	struct ec_session *s = r->b->m->sessions.session;
 	u32 i;
 
-	for (i = 0; i < s->wanted.n_configs; i++) {
+	for (i = 0; i < bus_wanted(r->b)->n_configs; i++) {
 		struct ec_ioc_sc_dc dc = {
 			.config = i, .assign_activate = 0x0300, .cycle0 = PERIOD_NS,
 			.shift0 = 100000 * i,
 		};
 
-		if (!(ec_slave_features(s->wanted.configs[i]->slave) & EC_FEAT_DC))
+		if (!(ec_slave_features(bus_config(r->b, i)->slave) & EC_FEAT_DC))
 			continue;
 		KUNIT_ASSERT_EQ(r->b->test, ec_ioc(&r->b->app, EC_IOC_SC_DC, &dc), 0);
 	}
@@ -139,8 +138,7 @@ static void until_op(struct run *r)
 	u32 i;
 
 	for (i = 0; i < 5000; i++) {
-		if (cyc_all_op(r->c) && READ_ONCE(r->b->m->dc.state) == EC_DC_READY &&
-		    bus_settled(r->b))
+		if (cyc_all_op(r->c) && bus_dc_state(r->b) == EC_DC_READY && bus_settled(r->b))
 			return;
 		run(r, 1);
 	}
@@ -202,13 +200,13 @@ static void until(struct run *r, u32 slaves)
 {
 	u32 i;
 
-	for (i = 0; i < 100 && r->b->m->bus.n_slaves != slaves; i++)
+	for (i = 0; i < 100 && bus_n_slaves(r->b) != slaves; i++)
 		run(r, 20);
-	KUNIT_ASSERT_EQ(r->b->test, r->b->m->bus.n_slaves, slaves);
+	KUNIT_ASSERT_EQ(r->b->test, bus_n_slaves(r->b), slaves);
 	run(r, 20);
-	for (i = 0; i < 200 && ec_dc_busy(&r->b->m->dc); i++)
+	for (i = 0; i < 200 && ec_dc_busy(bus_dc(r->b)); i++)
 		run(r, 20);
-	KUNIT_ASSERT_FALSE(r->b->test, ec_dc_busy(&r->b->m->dc));
+	KUNIT_ASSERT_FALSE(r->b->test, ec_dc_busy(bus_dc(r->b)));
 }
 
 /* what "ethercat master" shows */
@@ -258,7 +256,7 @@ static void note_starts(struct run *r, u64 *starts)
 
 static void expect_locked(struct run *r)
 {
-	struct ec_status_cycle *st = &r->b->m->sessions.session->cycle.shared->status->kernel;
+	struct ec_status_cycle *st = bus_kernel_status(r->b);
 
 	if (r->v->mode != KERNEL)
 		return;
@@ -280,10 +278,10 @@ static void ref_power_off(struct kunit *test)
 	until(r, 3);
 	/* at ring position 1 is b now */
 	KUNIT_EXPECT_EQ(test, shown_ref(r), 1);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.shared->status->dc_ref, 1u);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 1));
+	KUNIT_EXPECT_EQ(test, bus_status(b)->dc_ref, 1u);
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(b), bus_slave(b, 1));
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, 2)->mem + EC_REG_STATION),
-			b->m->dc.ref_station);
+			bus_dc_ref_station(b));
 	run(r, 3000);
 	expect_quiet(r, "reference without power");
 	expect_sync(r, starts);
@@ -384,7 +382,7 @@ static void ref_lost_without_substitute(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
 	until(r, 1);
 	KUNIT_EXPECT_EQ(test, shown_ref(r), -1);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.shared->status->dc_ref, 0u);
+	KUNIT_EXPECT_EQ(test, bus_status(b)->dc_ref, 0u);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
 	until(r, 2);
 	until_op(r);
@@ -393,7 +391,7 @@ static void ref_lost_without_substitute(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, bus_esc(b, 1)->dc.running);
 	/* it has the time the others would have: the application's */
 	KUNIT_EXPECT_LT(test, abs((s64)(ec_esc_system_time(bus_esc(b, 1), ktime_get_ns()) -
-					ec_dc_now(&b->m->dc))), 5000000ll);
+					ec_dc_now(bus_dc(b)))), 5000000ll);
 }
 
 /* Four of ten frames are lost while the clocks are being set: it is tried again. */
@@ -407,14 +405,14 @@ static void ref_lost_frames(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	until(r, 3);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 2000 && !ec_dc_busy(&b->m->dc); i++)
+	for (i = 0; i < 2000 && !ec_dc_busy(bus_dc(b)); i++)
 		run(r, 1);
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 400000);
-	for (i = 0; i < 500 && ec_dc_busy(&b->m->dc); i++)
+	for (i = 0; i < 500 && ec_dc_busy(bus_dc(b)); i++)
 		run(r, 1);
 	bus_fault(b, EC_SIM_FAULT_LOSE, 0, -1, 0, 0);
 	until(r, 4);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	until_op(r);
 	run(r, 1000);
 	forget(r, 0, 3);
@@ -435,12 +433,12 @@ static void ref_set_again(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	until(r, 3);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 2000 && !ec_dc_busy(&b->m->dc); i++)
+	for (i = 0; i < 2000 && !ec_dc_busy(bus_dc(b)); i++)
 		run(r, 1);
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 1, 0);
 	forget(r, 0, 2);
 	run(r, 800);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	KUNIT_EXPECT_FALSE(test, ec_clock_is_set(bus_slave(b, 3)));
 	expect_within(r, "setting fails for 0.8 s", r->v->together / 2);
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
@@ -448,7 +446,7 @@ static void ref_set_again(struct kunit *test)
 		run(r, 1);
 	until(r, 4);
 	KUNIT_EXPECT_TRUE(test, ec_clock_is_set(bus_slave(b, 3)));
-	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 }
 
 /* Sends in which the application is told a time of the reference clock. */
@@ -458,7 +456,7 @@ static u32 heard(struct run *r, u32 cycles)
 
 	while (cycles--) {
 		run(r, 1);
-		n += READ_ONCE(r->b->m->sessions.session->cycle.shared->status->dc_time_valid);
+		n += READ_ONCE(bus_status(r->b)->dc_time_valid);
 	}
 	return n;
 }
@@ -471,7 +469,7 @@ static void ref_silent(struct kunit *test)
 {
 	struct run *r = start(test, TREE("drift=-20ppm"), 4, 1);
 	struct bus *b = r->b;
-	struct ec_cycle *c = &b->m->sessions.session->cycle;
+	struct ec_cycle *c = bus_cycle(b);
 	u64 last;
 
 	run(r, 1000);

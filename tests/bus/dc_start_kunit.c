@@ -38,7 +38,7 @@ static u64 worst(struct bus *b)
 
 	ec_sim_advance(b->sim, now);
 	ref = ec_esc_system_time(bus_esc(b, 0), now);
-	for (i = 1; i < b->m->bus.n_slaves; i++) {
+	for (i = 1; i < bus_n_slaves(b); i++) {
 		s64 d = ec_esc_system_time(bus_esc(b, i), now) - ref;
 
 		max = max_t(u64, max, abs(d));
@@ -47,14 +47,14 @@ static u64 worst(struct bus *b)
 }
 
 /* Clock frames that have left with the last send, and since: nobody else has run yet. */
-static u32 clock_frames(struct ec_master *m)
+static u32 clock_frames(struct bus *b)
 {
 	u32 i, n = 0;
 
 	for (i = 0; i < EC_SLOTS; i++) {
-		const struct ec_slot *s = &m->links.slots.slot[i];
+		const struct ec_slot *s = bus_slot(b, i);
 
-		n += s->xfer && s->clock && atomic_read(&s->state) != EC_SLOT_QUEUED && s->sent_ns >= m->links.access.last_send_ns;
+		n += s->xfer && s->clock && atomic_read(&s->state) != EC_SLOT_QUEUED && s->sent_ns >= bus_last_send_ns(b);
 	}
 	return n;
 }
@@ -65,11 +65,11 @@ static void count(struct load *l, struct cyc *c)
 	u32 i, row = 0;
 
 	/* everything since the send before was sent by it */
-	n = frames - l->before - c->b->m->sessions.session->cycle.last.frames;
+	n = frames - l->before - bus_last_wire(c->b)->frames;
 	if (l->before && c->cycles) {
 		l->most = max_t(u64, l->most, n);
 		l->all += n;
-		n = clock_frames(c->b->m);
+		n = clock_frames(c->b);
 		l->clock[c->cycles % SENDS] = n;
 		l->clocks = max_t(u32, l->clocks, n);
 		l->all_clocks += n;
@@ -249,7 +249,7 @@ static void each_flap(struct cyc *c)
 {
 	struct flap *f = c->ctx;
 
-	f->busy += READ_ONCE(c->b->m->dc.state) == EC_DC_BUSY;
+	f->busy += bus_dc_state(c->b) == EC_DC_BUSY;
 	if (f->busy == f->after && !f->down++)
 		bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	else if (f->down && f->down++ == 10)
@@ -270,11 +270,10 @@ static void dc_start_link_flap(struct kunit *test)
 		c->each = each_flap;
 		c->ctx = &f;
 		cyc_activate(c);
-		for (ms = 0; ms < 5000 && (f.down < 10 ||
-					   READ_ONCE(c->b->m->dc.state) != EC_DC_READY); ms++)
+		for (ms = 0; ms < 5000 && (f.down < 10 || bus_dc_state(c->b) != EC_DC_READY); ms++)
 			cyc_run(c, 1);
 		KUNIT_EXPECT_LT_MSG(test, ms, 5000u, "link down after %u ms, state %d", after,
-				    c->b->m->dc.state);
+				    bus_dc_state(c->b));
 		for (i = 0; i < 4; i++)
 			KUNIT_EXPECT_TRUE(test, ec_clock_is_set(bus_slave(c->b, i)));
 		most = max(most, ms);
@@ -300,7 +299,7 @@ static void dc_start_reference_falls_silent(struct kunit *test)
 
 		cyc_activate(c);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-		KUNIT_ASSERT_EQ(test, c->b->m->dc.mode, (int)EC_DC_READ);
+		KUNIT_ASSERT_EQ(test, bus_dc_mode(c->b), (int)EC_DC_READ);
 		bus_fault(c->b, EC_SIM_FAULT_DEAD, 0, 0, 1, 0);
 		for (k = 0; k < 100; k++) {
 			cyc_run(c, 1);
@@ -327,7 +326,7 @@ static void each_clocks(struct cyc *c)
 static void dc_start_measurement_ends_with_session(struct kunit *test)
 {
 	struct cyc *c = configure(test, 4, 1000, NULL);
-	struct ec_dc *dc = &c->b->m->dc;
+	struct ec_dc *dc = bus_dc(c->b);
 	u64 t0, ms;
 	u32 i;
 

@@ -95,8 +95,8 @@ static u32 until_op(struct cyc *c, u32 mask, u32 limit_ms)
 	for (ms = 0; ms < limit_ms; ms++) {
 		for (i = 0; mask >> i; i++)
 			if (mask & BIT(i) &&
-			    (b->m->bus.n_slaves <= i || b->m->bus.slaves[i]->reconfigure ||
-					      b->m->bus.slaves[i]->al_status != EC_AL_OP))
+			    (bus_n_slaves(b) <= i || bus_slave_at(b, i)->reconfigure ||
+					      bus_slave_at(b, i)->al_status != EC_AL_OP))
 				break;
 		if (!(mask >> i))
 			break;
@@ -219,7 +219,7 @@ static void sync_bad_slave(struct kunit *test)
 	bus_figure("three of four slaves in OP %u ms after activation, the clock of the last one silent",
 		   until_op(c, 7, 3000));
 	cyc_run(c, 8000);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->dc.state), (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	KUNIT_EXPECT_FALSE(test, ec_clock_is_set(bus_slave(b, 3)));
 	expect_in_step(b, 7);
 	for (i = 0; i < 3; i++)
@@ -248,7 +248,7 @@ static void sync_bad_reference(struct kunit *test)
 	cyc_activate(c);
 	until_op(c, 14, 3000);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->dc.ref, bus_slave(b, 1));
+	KUNIT_EXPECT_PTR_EQ(test, bus_dc_ref(b), bus_slave(b, 1));
 	expect_in_step(b, 14);
 }
 
@@ -267,20 +267,20 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 1000);
 	s = bus_slave(b, 1);
-	mutex_lock(&b->m->sessions.lock);
+	mutex_lock(bus_mutex(b));
 	/* as the scan leaves it */
 	WRITE_ONCE(ec_clock_of(s)->state, EC_CLOCK_UNSET);
-	WRITE_ONCE(b->m->dc.changed, true);
+	WRITE_ONCE(bus_dc(b)->changed, true);
 	WRITE_ONCE(s->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
 	cyc_run(c, 2000);
-	KUNIT_EXPECT_TRUE(test, READ_ONCE(b->m->dc.changed));
+	KUNIT_EXPECT_TRUE(test, READ_ONCE(bus_dc(b)->changed));
 	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_DC_ACTIVATION], 0);
-	mutex_unlock(&b->m->sessions.lock);
+	mutex_unlock(bus_mutex(b));
 	ms = until_op(c, 15, 5000);
 	KUNIT_EXPECT_GT(test, ms, 50u);
-	KUNIT_EXPECT_FALSE(test, READ_ONCE(b->m->dc.changed));
+	KUNIT_EXPECT_FALSE(test, READ_ONCE(bus_dc(b)->changed));
 	KUNIT_EXPECT_TRUE(test, ec_clock_is_set(s));
 	cyc_run(c, 500);
 	expect_in_step(b, 15);
@@ -306,10 +306,10 @@ static void sync_from_preop(struct kunit *test)
 
 static void expect_reason(struct bus *b, u32 i, const char *what)
 {
-	KUNIT_EXPECT_NE(b->test, b->m->bus.slaves[i]->al_status, EC_AL_OP);
-	KUNIT_EXPECT_EQ(b->test, b->m->bus.slaves[i]->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->m->bus.slaves[i]->why, what), "%s",
-				  b->m->bus.slaves[i]->why);
+	KUNIT_EXPECT_NE(b->test, bus_slave_at(b, i)->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(b->test, bus_slave_at(b, i)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(bus_slave_at(b, i)->why, what), "%s",
+				  bus_slave_at(b, i)->why);
 }
 
 /* Without any cycle time there is nothing to start. */
@@ -396,7 +396,7 @@ static void sync1_is_slower(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
 	expect_in_step(b, 15);
 	for (i = 0; i < 4; i++)
-		KUNIT_EXPECT_EQ(test, b->m->bus.slaves[i]->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave_at(b, i)->error, EC_SLAVE_OK);
 }
 
 /* What a controller without register 0x0984 answers there means nothing: OP is tried. */
@@ -423,7 +423,7 @@ static void sync_without_status(struct kunit *test)
 	until_op(c, 15, 5000);
 	expect_in_step(b, 15);
 	for (i = 0; i < 4; i++)
-		KUNIT_EXPECT_EQ(test, b->m->bus.slaves[i]->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave_at(b, i)->error, EC_SLAVE_OK);
 }
 
 static void not_started_again(struct cyc *c)
@@ -477,10 +477,10 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	bus_request(b, 1, EC_AL_OP);
 	until_op(c, 15, 5000);
 
-	mutex_lock(&b->m->sessions.lock);
+	mutex_lock(bus_mutex(b));
 	/* as the scan leaves it */
 	WRITE_ONCE(ec_clock_of(s)->state, EC_CLOCK_UNSET);
-	WRITE_ONCE(b->m->dc.changed, true);
+	WRITE_ONCE(bus_dc(b)->changed, true);
 	WRITE_ONCE(s->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
 	cyc_run(c, 1000);
@@ -488,7 +488,7 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	bus_request(b, 1, EC_AL_PREOP);
 	cyc_run(c, 150);
 	KUNIT_EXPECT_NULL(test, READ_ONCE(s->stop.worker));
-	mutex_unlock(&b->m->sessions.lock);
+	mutex_unlock(bus_mutex(b));
 	cyc_run(c, 2000);
 	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
@@ -525,12 +525,12 @@ static void sync_set_clock_lost_then_set(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, clock->state, (u32)EC_CLOCK_SET);
 	offset = clock->offset;
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 1, 0);
-	WRITE_ONCE(b->m->dc.changed, true);
+	WRITE_ONCE(bus_dc(b)->changed, true);
 	until_state(c, clock, EC_CLOCK_LOST);
 	KUNIT_EXPECT_TRUE(test, ec_clock_is_set(bus_slave(b, 3)));
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_EQ(test, clock->state, (u32)EC_CLOCK_LOST);
-	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	bus_fault(b, EC_SIM_FAULT_WKC, 3, 0, 0, 0);
 	until_state(c, clock, EC_CLOCK_SET);
 	KUNIT_EXPECT_EQ(test, clock->offset, offset);
@@ -551,7 +551,7 @@ static u32 begun;
 static void never_set(struct cyc *c)
 {
 	static bool was;
-	bool busy = ec_dc_busy(&c->b->m->dc);
+	bool busy = ec_dc_busy(bus_dc(c->b));
 
 	each(c);
 	if (busy != was)
@@ -583,7 +583,7 @@ static void sync_unset_clock_excluded_after_retries(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 3, 0, 0, 0);
 	cyc_run(c, 500);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 3, 0, 0, 0);
-	for (i = 0; i < 10000 && (b->m->bus.n_slaves < 4 || !ec_clock_is_set(bus_slave(b, 3))); i++)
+	for (i = 0; i < 10000 && (bus_n_slaves(b) < 4 || !ec_clock_is_set(bus_slave(b, 3))); i++)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 10000u);
 	until_op(c, 15, 5000);
@@ -607,7 +607,7 @@ static int set_back(void *priv, u8 *buf, size_t len)
 	if (!ec_frame_iter_init(&it, buf + EC_ETH_HDR, len - EC_ETH_HDR))
 		while (ec_frame_iter_next(&it, &d) == 1)
 			if (d.cmd == EC_CMD_FPWR && d.ado == EC_REG_DC_START &&
-			    d.adp == year.b->m->bus.slaves[1]->station && !year.starts++)
+			    d.adp == bus_slave_at(year.b, 1)->station && !year.starts++)
 				bus_esc(year.b, 1)->dc.base_local -= 365 * 86400 * NSEC_PER_SEC;
 	return year.real->tx_send(priv, buf, len);
 }
@@ -616,7 +616,7 @@ static int set_back(void *priv, u8 *buf, size_t len)
 static void sync_clock_set_back_during_start(struct kunit *test)
 {
 	struct cyc *c = start(test, four, 4, 1000, PERIOD_NS);
-	struct ecdev *dev = c->b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(c->b);
 
 	year.b = c->b;
 	year.starts = 0;
@@ -643,14 +643,14 @@ static void sync_waits_for_attempt_that_is_due(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 1000);
 	lines = bus_log_lines("SYNC signals started, but");
-	mutex_lock(&b->m->sessions.lock);
-	ec_dc_set_state(&b->m->dc, EC_DC_RETRY_DUE);
+	mutex_lock(bus_mutex(b));
+	ec_dc_set_state(bus_dc(b), EC_DC_RETRY_DUE);
 	WRITE_ONCE(bus_slave(b, 1)->reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_RETRY_DUE);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_RETRY_DUE);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
-	mutex_unlock(&b->m->sessions.lock);
+	mutex_unlock(bus_mutex(b));
 	until_op(c, 15, 5000);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("SYNC signals started, but"), lines);
 	cyc_run(c, 500);

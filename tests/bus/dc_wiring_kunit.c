@@ -62,9 +62,9 @@ static void judge_wiring(struct kunit *test, const char *text, u32 n)
 	cyc_map_all(c, 0, n, 0);
 	c->each = each;
 	cyc_activate(c);
-	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+	for (i = 0; i < 2000 && bus_dc_state(b) != EC_DC_READY; i++)
 		cyc_run(c, 1);
-	KUNIT_EXPECT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
+	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
 	cyc_run(c, 2000);
 	now = ktime_get_ns();
 	ec_sim_advance(b->sim, now);
@@ -193,7 +193,7 @@ static void wiring_by_any_port(struct kunit *test)
 		describe(t, text, sizeof(text));
 		b = bus_up(test, text, TREE);
 		bus_idle(b);
-		KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
+		KUNIT_ASSERT_EQ(test, ec_dc_measure(bus_dc(b)), 0);
 		max = max(max, expect_wiring(b, text));
 		bus_down(b);
 		test->priv = NULL;
@@ -224,12 +224,12 @@ static void wiring_that_does_not_fit(struct kunit *test)
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_FALSE(test, shown_odd(b, i));
 	bus_esc(b, 1)->cfg.drift_ppb = 2000000000;
-	KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(bus_dc(b)), 0);
 	KUNIT_EXPECT_FALSE(test, shown_odd(b, 0));
 	KUNIT_EXPECT_TRUE(test, shown_odd(b, 1));
 	KUNIT_EXPECT_TRUE(test, shown_odd(b, 2));
 	bus_esc(b, 1)->cfg.drift_ppb = 0;
-	KUNIT_ASSERT_EQ(test, ec_dc_measure(&b->m->dc), 0);
+	KUNIT_ASSERT_EQ(test, ec_dc_measure(bus_dc(b)), 0);
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_FALSE(test, shown_odd(b, i));
 	bus_down(b);
@@ -243,8 +243,8 @@ static void wiring_that_does_not_fit(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
 	/* an EEPROM that cannot be read changes nothing of that */
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 0, 0, ~0u, 0);
-	ec_bus_rescan(&b->m->bus);
-	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
+	bus_rescan(b);
+	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(bus_table(b)), 0);
 	KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_SCAN_FAILED);
 	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
 }
@@ -276,7 +276,7 @@ static void wiring_slave_inserted(struct kunit *test)
 	for (i = 0; i < 4; i++)
 		before[i] = ec_clock_of(bus_slave(b, i))->delay;
 	/* as after a scan beside the application before: the delays are measured again */
-	b->m->bus.scan_count++;
+	bus_table(b)->scan_count++;
 	bus_esc(b, 1)->cfg.eeprom_busy_ns = 15 * NSEC_PER_MSEC;
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
 	msleep(500);
@@ -287,12 +287,11 @@ static void wiring_slave_inserted(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 15);
 	c->each = each;
-	for (i = 0; i < 2000 &&
-	     (READ_ONCE(b->m->dc.state) != EC_DC_READY || !READ_ONCE(b->m->bus.scan_busy)); i++)
+	for (i = 0; i < 2000 && (bus_dc_state(b) != EC_DC_READY || !bus_scan_busy(b)); i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_TRUE(test, b->m->bus.scan_busy);
-	KUNIT_ASSERT_EQ(test, b->m->dc.state, (int)EC_DC_READY);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 4u);
+	KUNIT_ASSERT_TRUE(test, bus_scan_busy(b));
+	KUNIT_ASSERT_EQ(test, bus_dc_state(b), (int)EC_DC_READY);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 4u);
 	for (i = 1; i < 4; i++) {
 		s32 delay = ec_clock_of(bus_slave(b, i))->delay;
 
@@ -304,7 +303,7 @@ static void wiring_slave_inserted(struct kunit *test)
 			   delay, before[i], true_delay(b, i + 1));
 	}
 	cyc_run(c, 5000);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 5u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 5u);
 	KUNIT_EXPECT_LE(test, expect_wiring(b, "x between k and l"), 10u);
 }
 

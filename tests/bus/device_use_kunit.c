@@ -57,11 +57,11 @@ static void device_use_other(struct kunit *test)
 	for (i = 0; i < 3; i++) {
 		KUNIT_ASSERT_EQ_MSG(test, use(b, i & 1 ? "bus0" : "bus1"), 0, "%s", reason(b));
 		/* it has waited for the scan */
-		KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 3u);
+		KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 3u);
 		KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->info.product == product, (bool)(i & 1));
 		KUNIT_EXPECT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 10000), ~0ull);
 	}
-	KUNIT_EXPECT_STREQ(test, b->m->links.link[0].dev->name, "bus1");
+	KUNIT_EXPECT_STREQ(test, bus_dev(b)->name, "bus1");
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	KUNIT_EXPECT_GE(test, bus_log_lines("main device bus1 instead of bus0"), 1u);
 }
@@ -69,16 +69,16 @@ static void device_use_other(struct kunit *test)
 static void device_use_same(struct kunit *test)
 {
 	struct bus *b = two_up(test);
-	u32 scans = b->m->bus.scan_count;
+	u32 scans = bus_scans(b);
 	char name[32];
 
-	snprintf(name, sizeof(name), "%pM", b->m->links.link[0].dev->mac);
+	snprintf(name, sizeof(name), "%pM", bus_dev(b)->mac);
 	KUNIT_EXPECT_EQ(test, use(b, "bus0"), 0);
 	KUNIT_EXPECT_EQ(test, use(b, name), 0);
 	KUNIT_EXPECT_EQ(test, use(b, "ff:ff:ff:ff:ff:ff"), 0);
-	KUNIT_EXPECT_STREQ(test, b->m->links.main, "ff:ff:ff:ff:ff:ff");
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 3u);
+	KUNIT_EXPECT_STREQ(test, bus_links(b)->main, "ff:ff:ff:ff:ff:ff");
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 3u);
 }
 
 /* what cannot be used changes nothing */
@@ -89,7 +89,7 @@ static void device_use_absent(struct kunit *test)
 
 	KUNIT_EXPECT_EQ(test, use(b, "eth7"), -ENODEV);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(reason(b), "master 0 keeps bus0"));
-	KUNIT_EXPECT_STREQ(test, b->m->links.link[0].dev->name, "bus0");
+	KUNIT_EXPECT_STREQ(test, bus_dev(b)->name, "bus0");
 	KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 10000), ~0ull);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->info.product, product);
 }
@@ -102,7 +102,7 @@ static void device_use_bad_name(struct kunit *test)
 	};
 	struct bus *b = two_up(test);
 	struct ec_ioc_device_use i;
-	u32 scans = b->m->bus.scan_count, k;
+	u32 scans = bus_scans(b), k;
 
 	for (k = 0; k < ARRAY_SIZE(bad); k++)
 		KUNIT_EXPECT_EQ_MSG(test, use(b, bad[k]), -EINVAL, "%s", bad[k]);
@@ -113,21 +113,21 @@ static void device_use_bad_name(struct kunit *test)
 	i.flags = 0;
 	i.reserved = 0;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEVICE_USE, &i), -EINVAL);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
-	KUNIT_EXPECT_STREQ(test, b->m->links.main, "bus0");
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans);
+	KUNIT_EXPECT_STREQ(test, bus_links(b)->main, "bus0");
 }
 
 /* no application loses its slaves, and none reserves the master meanwhile */
 static void device_use_reserved(struct kunit *test)
 {
 	struct bus *b = two_up(test);
-	struct ec_sessions *ss = &b->m->sessions;
+	struct ec_sessions *ss = bus_sessions(b);
 	struct ec_file second;
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, use(b, "bus1"), -EBUSY);
 	KUNIT_EXPECT_NOT_NULL(test, strstr(reason(b), "stop that application first"));
-	KUNIT_EXPECT_STREQ(test, b->m->links.link[0].dev->name, "bus0");
+	KUNIT_EXPECT_STREQ(test, bus_dev(b)->name, "bus0");
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), 0);
 
 	ec_file_init(&second, b->m, true);

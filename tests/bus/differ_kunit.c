@@ -254,7 +254,7 @@ static void differ_alias_is_found_by_scan(struct kunit *test)
 	bus_idle(b);
 	cyc_new(b, 1000);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
-	c = b->m->sessions.session->wanted.configs[sc.index];
+	c = bus_config(b, sc.index);
 	KUNIT_EXPECT_EQ(test, c->alias_at, 1u);
 	EXPECT_WHY(b, sc.index, "no slave at ring position 10");
 	sc.alias = 8;
@@ -262,7 +262,7 @@ static void differ_alias_is_found_by_scan(struct kunit *test)
 	none = sc.index;
 	EXPECT_WHY(b, none, "has alias 8");
 	/* what was found before the slaves changed is not taken for it */
-	b->m->sessions.session->wanted.configs[none]->alias_at = 1;
+	bus_config(b, none)->alias_at = 1;
 	EXPECT_WHY(b, none, "has alias 8");
 }
 

@@ -19,7 +19,7 @@ static struct cyc *in_op(struct kunit *test, struct slow **s)
 	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 10000), ~0ull);
 	c = cyc_in_op(b, 0, N);
 	cyc_run(c, 10);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	return c;
 }
 
@@ -40,7 +40,7 @@ static void doorbell_once_per_cycle(struct kunit *test)
 /* frames that have come back */
 static u64 back(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.rx_frames);
+	return bus_rx_frames(b);
 }
 
 /* the frames before the one that the device refuses must not wait for the next cycle */
@@ -57,7 +57,7 @@ static void doorbell_when_last_frame_fails(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, slow_doorbells(s) - rings, 1u);
 	/* they are back before the next send */
 	usleep_range(900, 901);
-	ec_link_poll(&c->b->m->links.link[0]);
+	ec_link_poll(bus_link(c->b, 0));
 	KUNIT_EXPECT_EQ(test, back(c->b) - frames, (u64)FRAMES - 1 + FRAMES);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }

@@ -67,8 +67,8 @@ static void emergency_of_drive(struct kunit *test)
 {
 	struct bus *b = ready(test);
 
-	KUNIT_EXPECT_EQ(test, bus_slave(b, DRIVE)->mbox.profile, 402u);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->mbox.profile, 0u);
+	KUNIT_EXPECT_EQ(test, bus_mbox(b, DRIVE)->profile, 402u);
+	KUNIT_EXPECT_EQ(test, bus_mbox(b, 0)->profile, 0u);
 	ec_app_emergency(bus_app(b, "drive"), 0x7305, 0x21, (u8[5]){ 0 }, ktime_get_ns());
 	msleep(2 * SOON_MS);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("code 0x7305 (fault of encoder 1), error"), 1u);
@@ -82,13 +82,13 @@ static void emergency_list(struct kunit *test)
 	u64 before = ktime_get_real_ns();
 	u32 i, total;
 
-	KUNIT_EXPECT_EQ(test, ec_emerg_last(&bus_slave(b, DRIVE)->mbox, e, &total), 0u);
+	KUNIT_EXPECT_EQ(test, ec_emerg_last(bus_mbox(b, DRIVE), e, &total), 0u);
 	for (i = 0; i < EC_EMERGENCIES + 2; i++) {
 		ec_app_emergency(bus_app(b, "drive"), 0x3200 + i, 0x04, (u8[5]){ i, 2, 3, 4, 5 },
 				 ktime_get_ns());
 		msleep(50);
 	}
-	KUNIT_ASSERT_EQ(test, ec_emerg_last(&bus_slave(b, DRIVE)->mbox, e, &total),
+	KUNIT_ASSERT_EQ(test, ec_emerg_last(bus_mbox(b, DRIVE), e, &total),
 			(u32)EC_EMERGENCIES);
 	KUNIT_EXPECT_EQ(test, total, EC_EMERGENCIES + 2u);
 	for (i = 0; i < EC_EMERGENCIES; i++) {
@@ -107,7 +107,7 @@ static void emergency_list(struct kunit *test)
 static void emergency_list_read_without_lock_of_mailbox(struct kunit *test)
 {
 	struct bus *b = ready(test);
-	struct ec_mbox *mb = &bus_slave(b, DRIVE)->mbox;
+	struct ec_mbox *mb = bus_mbox(b, DRIVE);
 	struct ec_emergency e[EC_EMERGENCIES];
 	u32 total;
 
@@ -196,8 +196,8 @@ static void emergency_unshown(struct kunit *test)
 	struct bus *b = ready(test);
 	u32 i;
 
-	KUNIT_ASSERT_EQ(test, ec_xfer_fpwr(&b->m->links, bus_slave(b, DRIVE)->station,
-					   EC_REG_ECAT_MASK, none, 2), 0);
+	KUNIT_ASSERT_EQ(test, bus_fpwr(b, bus_slave(b, DRIVE)->station,
+				       EC_REG_ECAT_MASK, none, 2), 0);
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_LE(test, longest(b, 1), 1000u + SOON_MS);
 	KUNIT_EXPECT_LE(test, longest(b, 20), (u32)SOON_MS);

@@ -27,7 +27,7 @@ static struct log *log_new(struct bus *b)
 
 	KUNIT_ASSERT_NOT_NULL(b->test, l);
 	l->test = b->test;
-	l->ring = &b->m->base->events.ring;
+	l->ring = bus_events(b);
 	l->at = ec_event_ring_head(l->ring);
 	return l;
 }
@@ -448,7 +448,7 @@ static void events_reader_begins_at_oldest_or_newest(struct kunit *test)
 	struct ec_ioc_events arg = { .size = sizeof(struct ec_event) }, bad = { .size = 60 };
 	struct bus *b = bus_up(test, line, N);
 	struct ec_file *f = kunit_kzalloc(test, sizeof(*f), GFP_KERNEL);
-	u64 head = ec_event_ring_head(&b->m->base->events.ring);
+	u64 head = ec_event_ring_head(bus_events(b));
 
 	KUNIT_ASSERT_NOT_NULL(test, f);
 	ec_file_init(f, b->m, false);
@@ -463,11 +463,11 @@ static void events_reader_begins_at_oldest_or_newest(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &arg), 0);
 	KUNIT_EXPECT_EQ(test, arg.first, head);
 	KUNIT_EXPECT_FALSE(test, ec_file_poll(f, NULL, NULL) & EPOLLIN);
-	ec_event(b->m->base, EC_EVENT_DEBUG, 1);
+	ec_event(bus_base(b), EC_EVENT_DEBUG, 1);
 	KUNIT_EXPECT_TRUE(test, ec_file_poll(f, NULL, NULL) & EPOLLIN);
-	KUNIT_EXPECT_EQ(test, b->m->readers.count, 1u);
+	KUNIT_EXPECT_EQ(test, bus_readers(b), 1u);
 	ec_event_reader_end(f);
-	KUNIT_EXPECT_EQ(test, b->m->readers.count, 0u);
+	KUNIT_EXPECT_EQ(test, bus_readers(b), 0u);
 	arg.flags = 2;
 	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &arg), -EOPNOTSUPP);
 }

@@ -27,7 +27,7 @@ static struct cyc *in_op(struct kunit *test)
 {
 	struct cyc *c = cyc_in_op(bus_up(test, three_frames, N), 0, N);
 
-	KUNIT_ASSERT_GE(test, c->b->m->sessions.session->cycle.n_dgrams, 3u);
+	KUNIT_ASSERT_GE(test, bus_n_dgrams(c->b), 3u);
 	c->ctx = kunit_kzalloc(test, sizeof(u32), GFP_KERNEL);
 	c->each = count_up;
 	cyc_run(c, 20);
@@ -39,7 +39,7 @@ static struct cyc *in_op(struct kunit *test)
 
 static u64 late(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.late);
+	return bus_late(b);
 }
 
 /* the @n-th frame from now on, or with 0 all of them */
@@ -59,9 +59,9 @@ static bool slots_free(struct bus *b)
 	u32 i, tries, busy;
 
 	for (tries = 0; tries < 100; tries++) {
-		busy = b->m->links.link[0].acyclic.used;
+		busy = bus_acyclic(b);
 		for (i = 0; i < EC_SLOTS; i++) {
-			int state = atomic_read(&b->m->links.slots.slot[i].state);
+			int state = atomic_read(&bus_slot(b, i)->state);
 
 			busy += state != EC_SLOT_FREE && state != EC_SLOT_QUARANTINE;
 		}
@@ -117,8 +117,7 @@ static void exchange_always_late(struct kunit *test)
 
 	frame_fault(c->b, EC_SIM_FAULT_DELAY, 0, 1200 * NSEC_PER_USEC);
 	cyc_run(c, 100);
-	KUNIT_EXPECT_GE(test, late(c->b) - before,
-			98ull * c->b->m->sessions.session->cycle.n_dgrams);
+	KUNIT_EXPECT_GE(test, late(c->b) - before, 98ull * bus_n_dgrams(c->b));
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_GE(test, *(u32 *)c->ctx + 4, (u32)c->cycles);
 }
@@ -235,13 +234,13 @@ KUNIT_ARRAY_PARAM(pause, pauses, pause_desc);
 static void exchange_reply_after_pause_is_taken(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
-	struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
+	struct ec_cycle *cycle = bus_cycle(c->b);
 	u32 i, seen;
 
 	c->each = NULL;
 	c->queued = 0;
 	cyc_run(c, 3);
-	KUNIT_ASSERT_EQ(test, cycle->n_flight, 0u);
+	KUNIT_ASSERT_EQ(test, bus_n_flight(c->b), 0u);
 	cycle->send += *(const u32 *)test->param_value;
 	cycle->judged = cycle->send;
 	c->queued = BIT_ULL(0);
@@ -278,7 +277,7 @@ static void exchange_send_twice(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	msleep(1);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&c->b->app), 0);
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.n_flight, 0u);
+	KUNIT_EXPECT_EQ(test, bus_n_flight(c->b), 0u);
 	KUNIT_EXPECT_EQ(test, late(c->b), 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
@@ -343,7 +342,7 @@ static void exchange_all_lost(struct kunit *test)
 	cyc_run(c, 2000);
 	/* every send found a slot */
 	KUNIT_EXPECT_GE(test, bus_frames(b) - before, 6000ull);
-	KUNIT_EXPECT_EQ(test, atomic64_read(&b->m->links.link[0].stats.tx_errors), 0ll);
+	KUNIT_EXPECT_EQ(test, bus_tx_errors(b), 0ll);
 	KUNIT_EXPECT_GE(test, bus_lost(b), 5800ull);
 	KUNIT_EXPECT_GE(test, c->incomplete, 1998ull);
 	/* the slaves forget their inputs on the way back to OP */
@@ -374,9 +373,9 @@ static void exchange_end_in_flight(struct kunit *test)
 
 	frame_fault(b, EC_SIM_FAULT_DELAY, 0, 5 * NSEC_PER_MSEC);
 	cyc_run(c, 10);
-	KUNIT_EXPECT_GE(test, b->m->sessions.session->cycle.n_flight, 12u);
+	KUNIT_EXPECT_GE(test, bus_n_flight(b), 12u);
 	cyc_release(c);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->sessions.session, NULL);
+	KUNIT_EXPECT_PTR_EQ(test, bus_session(b), NULL);
 	msleep(20);
 	ec_sim_clear_faults(b->sim);
 	/* each of them was late for the master, none was taken */
@@ -395,7 +394,7 @@ static void exchange_device_gone(struct kunit *test)
 	struct ec_file *app = &c->b->app;
 
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
-	ec_device_release(&c->b->m->links, "none", NULL);
+	bus_no_device(c->b);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(app), -ENODEV);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, 0u);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);

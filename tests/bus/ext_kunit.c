@@ -17,7 +17,7 @@ static void tell_time(struct cyc *c)
 
 static const struct ec_status *status(const struct cyc *c)
 {
-	return c->b->m->sessions.session->cycle.shared->status;
+	return bus_status(c->b);
 }
 
 /* The whole time is the true one, of when the frame passed. */
@@ -34,7 +34,7 @@ static void ext_whole_time(struct kunit *test)
 	c->each = tell_time;
 	cyc_activate(c);
 	KUNIT_EXPECT_EQ(test, status(c)->dc_time64_valid, 0u);
-	for (i = 0; i < 2000 && READ_ONCE(b->m->dc.state) != EC_DC_READY; i++)
+	for (i = 0; i < 2000 && bus_dc_state(b) != EC_DC_READY; i++)
 		cyc_run(c, 1);
 	cyc_run(c, 3);
 	for (i = 0; i < 20; i++) {
@@ -78,12 +78,12 @@ static void preset(struct kunit *test, bool kernel)
 	put_unaligned_le16(0x5678, image + 16);
 	if (kernel)
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &k), 0);
-	mutex_lock(&b->m->sessions.lock);
-	KUNIT_EXPECT_EQ(test, ec_session_place(b->m->sessions.session), 32u);
-	b->m->sessions.session->preset = image;
-	KUNIT_ASSERT_EQ(test, ec_session_activate(b->m->sessions.session), 0);
-	b->m->sessions.session->preset = NULL;
-	mutex_unlock(&b->m->sessions.lock);
+	mutex_lock(bus_mutex(b));
+	KUNIT_EXPECT_EQ(test, ec_session_place(bus_session(b)), 32u);
+	bus_session(b)->preset = image;
+	KUNIT_ASSERT_EQ(test, ec_session_activate(bus_session(b)), 0);
+	bus_session(b)->preset = NULL;
+	mutex_unlock(bus_mutex(b));
 	c->next = ktime_get();
 	for (i = 0; i < 5000 && !cyc_all_op(c); i++) {
 		if (kernel)
@@ -134,7 +134,7 @@ static bool all_in(struct bus *b, u8 state)
 {
 	u32 i;
 
-	for (i = 0; i < b->m->bus.n_slaves; i++)
+	for (i = 0; i < bus_n_slaves(b); i++)
 		if (ec_app_state(ec_app_of(bus_esc(b, i))) != state)
 			return false;
 	return true;

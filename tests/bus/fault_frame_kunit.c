@@ -29,7 +29,7 @@ static void expect_at(struct bus *b, struct expected *e, u8 *frame)
 {
 	struct ec_frame_buf fb;
 
-	e->slot = ec_slot_get(&b->m->links.slots, true, ktime_get_ns());
+	e->slot = ec_slot_get(bus_slots(b), true, ktime_get_ns());
 	KUNIT_ASSERT_NOT_NULL(b->test, e->slot);
 	memset(e->slot->frame, 0xff, sizeof(e->slot->frame));
 	frame = frame ?: e->slot->frame;
@@ -38,7 +38,7 @@ static void expect_at(struct bus *b, struct expected *e, u8 *frame)
 	memset(ec_frame_add(&fb, EC_CMD_LRW, e->slot->index, 0x0000, 0x0001, 8), 0, 8);
 	e->len = ec_frame_end(&fb);
 	e->slot->eth_len = EC_ETH_HDR + e->len;
-	ec_slot_arm(&b->m->links.slots, e->slot, frame, BIT(0), ktime_get_ns());
+	ec_slot_arm(bus_slots(b), e->slot, frame, BIT(0), ktime_get_ns());
 	memcpy(e->src, frame + 6, 6);
 	e->src[0] |= 2;
 	memcpy(e->reply, frame + EC_ETH_HDR, e->len);
@@ -52,18 +52,18 @@ static void expect(struct bus *b, struct expected *e)
 static void give(struct bus *b, const u8 *src, const u8 *data, size_t len)
 {
 	rcu_read_lock();
-	ecdev_receive(b->m->links.link[0].dev, src, data, len);
+	ecdev_receive(bus_dev(b), src, data, len);
 	rcu_read_unlock();
 }
 
 static u64 unmatched(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.unmatched);
+	return bus_unmatched(b);
 }
 
 static u64 late(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.late);
+	return bus_late(b);
 }
 
 static int state(const struct expected *e)
@@ -129,7 +129,7 @@ static void frame_changed(struct kunit *test)
 static void frame_noted_within_its_length(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, N);
-	struct ec_slot *slot = ec_slot_get(&b->m->links.slots, true, ktime_get_ns());
+	struct ec_slot *slot = ec_slot_get(bus_slots(b), true, ktime_get_ns());
 	size_t i, last = EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD + 4;
 
 	KUNIT_ASSERT_NOT_NULL(test, slot);
@@ -138,14 +138,14 @@ static void frame_noted_within_its_length(struct kunit *test)
 	/* one datagram of 4 bytes; lengths and "more" of all behind it are the largest */
 	put_unaligned_le16(4 | 0x8000, buffer + EC_ETH_HDR + EC_FRAME_HDR + 6);
 	slot->eth_len = last + EC_DGRAM_OVERHEAD;
-	ec_slot_arm(&b->m->links.slots, slot, buffer, BIT(0), ktime_get_ns());
+	ec_slot_arm(bus_slots(b), slot, buffer, BIT(0), ktime_get_ns());
 	KUNIT_EXPECT_EQ(test, slot->frame[last + EC_DGRAM_HDR - 1], 0xff);
 	for (i = last + EC_DGRAM_HDR; i < sizeof(slot->frame); i++)
 		KUNIT_ASSERT_EQ(test, slot->frame[i], 0);
 	/* the frame itself ends where there is room for no header */
 	slot->eth_len = last + EC_DGRAM_OVERHEAD - 1;
 	memset(slot->frame, 0, sizeof(slot->frame));
-	ec_slot_arm(&b->m->links.slots, slot, buffer, BIT(0), ktime_get_ns());
+	ec_slot_arm(bus_slots(b), slot, buffer, BIT(0), ktime_get_ns());
 	KUNIT_EXPECT_EQ(test, slot->frame[last], 0);
 	ec_slot_put(slot);
 }
@@ -190,7 +190,7 @@ static void frame_of_before(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(e.slot, ktime_get_ns()));
 	msleep(50);
 	next = e;
-	ec_slot_arm(&b->m->links.slots, next.slot, next.slot->frame, BIT(0), ktime_get_ns());
+	ec_slot_arm(bus_slots(b), next.slot, next.slot->frame, BIT(0), ktime_get_ns());
 	memcpy(next.src, next.slot->frame + 6, 6);
 	before = late(b);
 	give(b, e.src, e.reply, e.len);
@@ -212,7 +212,7 @@ static void frame_on_two_links_done_with_both_copies(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(e.slot, ktime_get_ns()));
 	e.slot->backup = kunit_kzalloc(test, EC_ETH_MAX, GFP_KERNEL);
 	KUNIT_ASSERT_NOT_NULL(test, e.slot->backup);
-	ec_slot_arm(&b->m->links.slots, e.slot, e.slot->frame, BIT(0) | BIT(1), ktime_get_ns());
+	ec_slot_arm(bus_slots(b), e.slot, e.slot->frame, BIT(0) | BIT(1), ktime_get_ns());
 	memcpy(e.src, e.slot->frame + 6, 6);
 	e.src[1] = 1;
 	e.reply[EC_FRAME_HDR + EC_DGRAM_HDR] = 0x11;
@@ -251,7 +251,7 @@ static void frame_foreign(struct kunit *test)
 		if (i % 100)
 			continue;
 		KUNIT_ASSERT_EQ(test,
-				ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, EC_REG_TYPE,
+				bus_fprd(b, bus_slave(b, 1)->station, EC_REG_TYPE,
 						   type, 2), 0);
 		KUNIT_ASSERT_MEMEQ(test, type, bus_slave(b, 1)->regs, 2);
 	}
@@ -273,7 +273,7 @@ static void read_type(struct ec_job *job)
 	struct reader *r = container_of(job, struct reader, job);
 	u8 type[2];
 
-	r->ret = ec_xfer_fprd(&r->b->m->links, r->station, EC_REG_TYPE, type, 2);
+	r->ret = bus_fprd(r->b, r->station, EC_REG_TYPE, type, 2);
 	WRITE_ONCE(r->done, true);
 }
 
@@ -282,7 +282,7 @@ static u32 change_slots(struct bus *b, int from, int to)
 	u32 i, n = 0;
 
 	for (i = 0; i < EC_SLOTS; i++)
-		n += atomic_cmpxchg(&b->m->links.slots.slot[i].state, from, to) == from;
+		n += atomic_cmpxchg(&bus_slot(b, i)->state, from, to) == from;
 	return n;
 }
 
@@ -301,7 +301,7 @@ static void frame_compared(struct kunit *test)
 	r = (struct reader){
 		.job.run = read_type, .b = b, .station = bus_slave(b, 1)->station,
 	};
-	ec_workers_queue(&b->m->bus.workers, &r.job);
+	ec_workers_queue(bus_workers(b), &r.job);
 	for (ms = 0; ms < 60; ms++) {
 		held += change_slots(b, EC_SLOT_SENT, EC_SLOT_FILL);
 		usleep_range(1000, 1001);
@@ -349,7 +349,7 @@ static void frame_trouble(struct kunit *test)
 		u32 k = i % N;
 
 		memset(v, 0xee, sizeof(v));
-		ret = ec_xfer_fprd(&b->m->links, bus_slave(b, k)->station, EC_REG_TYPE, v, 4);
+		ret = bus_fprd(b, bus_slave(b, k)->station, EC_REG_TYPE, v, 4);
 		errors += ret != 0;
 		if (!ret)
 			KUNIT_ASSERT_MEMEQ(test, v, bus_slave(b, k)->regs, 4);
@@ -361,7 +361,7 @@ static void frame_trouble(struct kunit *test)
 	/* a second copy is no late frame */
 	if (!strcmp(t->name, "doubled"))
 		KUNIT_EXPECT_EQ(test, late(b), 0ull);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, N);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), N);
 }
 
 /* A device that refuses frames to which another station has sent a good reply already. */
@@ -400,7 +400,7 @@ static int forge(void *priv, u8 *buf, size_t len)
 
 static void begin_forging(struct bus *b, u8 cmd, u16 wkc)
 {
-	struct ecdev *dev = b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(b);
 
 	forger = (struct forger){
 		.real = dev->ops, .ops = *dev->ops, .dev = dev, .cmd = cmd, .wkc = wkc,
@@ -418,14 +418,14 @@ static void end_forging(struct bus *b)
 	for (ms = 0; ms < 100 && used; ms++) {
 		usleep_range(1000, 1001);
 		for (i = 0, used = 0; i < EC_SLOTS; i++) {
-			int state = atomic_read(&b->m->links.slots.slot[i].state);
+			int state = atomic_read(&bus_slot(b, i)->state);
 
 			used += state != EC_SLOT_FREE && state != EC_SLOT_QUARANTINE;
 		}
 	}
 	KUNIT_EXPECT_EQ(b->test, used, 0u);
-	KUNIT_EXPECT_EQ(b->test, b->m->links.link[0].acyclic.used, 0u);
-	KUNIT_EXPECT_EQ(b->test, atomic_read(&b->m->links.link[0].acyclic_ns), 0);
+	KUNIT_EXPECT_EQ(b->test, bus_acyclic(b), 0u);
+	KUNIT_EXPECT_EQ(b->test, bus_acyclic_ns(b), 0);
 }
 
 /* Refused once, and always: the frame counts as sent. */
@@ -443,14 +443,14 @@ static void frame_refused_after_reply_is_not_sent_again(struct kunit *test)
 		forger.times = i % 2 ? U32_MAX : 1;
 		forger.seen = 0;
 		memset(v, 0, sizeof(v));
-		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, station, 0, v, sizeof(v)), 0);
+		KUNIT_EXPECT_EQ(test, bus_fprd(b, station, 0, v, sizeof(v)), 0);
 		KUNIT_EXPECT_MEMEQ(test, v, good, sizeof(v));
 		KUNIT_EXPECT_EQ(test, forger.seen, 1u);
 		if (forger.seen != 1)
 			break;
 	}
 	end_forging(b);
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, station, 0, v, sizeof(v)), 0);
+	KUNIT_EXPECT_EQ(test, bus_fprd(b, station, 0, v, sizeof(v)), 0);
 	KUNIT_EXPECT_MEMEQ(test, v, bus_slave(b, 1)->regs, sizeof(v));
 }
 
@@ -462,8 +462,8 @@ static void every_second(struct cyc *c)
 static void frame_refused_after_reply_is_taken_by_cycle(struct kunit *test)
 {
 	struct cyc *c = cyc_in_op(bus_up(test, text, N), 0, N);
-	struct ec_cyc_dgram *d = c->b->m->sessions.session->cycle.dgrams;
-	u64 errors = atomic64_read(&c->b->m->links.link[0].stats.tx_errors);
+	struct ec_cyc_dgram *d = bus_dgrams(c->b);
+	u64 errors = bus_tx_errors(c->b);
 
 	cyc_run(c, 10);
 	c->incomplete = 0;
@@ -472,7 +472,7 @@ static void frame_refused_after_reply_is_taken_by_cycle(struct kunit *test)
 	cyc_run(c, 600);
 	KUNIT_EXPECT_EQ(test, forger.seen, 600u);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0u);
-	KUNIT_EXPECT_EQ(test, atomic64_read(&c->b->m->links.link[0].stats.tx_errors), errors);
+	KUNIT_EXPECT_EQ(test, bus_tx_errors(c->b), errors);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	c->each = NULL;
 	cyc_release(c);
@@ -518,8 +518,8 @@ static void frame_without_number_matched_by_index(struct kunit *test)
 {
 	static const u8 source[] = { 0x02, 0, 0, 0, 0, 0 };
 	struct bus *b = bus_up(test, text, N);
-	struct ecdev *dev = b->m->links.link[0].dev;
-	struct ec_slots *s = &b->m->links.slots;
+	struct ecdev *dev = bus_dev(b);
+	struct ec_slots *s = bus_slots(b);
 	static struct expected e;
 	struct cyc *c;
 

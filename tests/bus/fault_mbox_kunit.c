@@ -34,7 +34,7 @@ static s64 serial(struct bus *b, u32 position)
 	u32 abort;
 	int ret;
 
-	ret = ec_coe_upload(&bus_slave(b, position)->mbox, 0x1018, 4, false, v, sizeof(v), &got,
+	ret = ec_coe_upload(bus_mbox(b, position), 0x1018, 4, false, v, sizeof(v), &got,
 			    &abort,
 			    &(struct ec_mbox_limit){ .timeout_ms = 100 });
 	KUNIT_EXPECT_LE_MSG(b->test, ktime_get_ns() - t0, 300 * NSEC_PER_MSEC,
@@ -134,7 +134,7 @@ static int read_object(void *arg)
 	u32 abort;
 
 	allow_signal(SIGKILL);
-	r->ret = ec_coe_upload(&bus_slave(r->b, BAD)->mbox, r->index, 0, false, r->v,
+	r->ret = ec_coe_upload(bus_mbox(r->b, BAD), r->index, 0, false, r->v,
 			       sizeof(r->v), &got, &abort, &r->limit);
 	r->ended_ns = ktime_get_ns();
 	complete(&r->done);
@@ -240,10 +240,10 @@ static void mbox_stale_messages_leave_session(struct kunit *test)
 	cyc_new(b, 1000);
 	read_names(b, EC_SIM_MAILBOX_STALE);
 	t0 = ktime_get_ns();
-	ec_sessions_lock(&b->m->sessions);
-	c = ec_session_configure(b->m->sessions.session, 0, BAD, s->info.vendor,
+	bus_lock(b);
+	c = ec_session_configure(bus_session(b), 0, BAD, s->info.vendor,
 				 s->info.product);
-	ec_sessions_unlock(&b->m->sessions);
+	bus_unlock(b);
 	t0 = ktime_get_ns() - t0;
 	KUNIT_EXPECT_FALSE(test, IS_ERR(c));
 	bus_figure("configuration of a slave whose worker reads stale messages: %llu us",

@@ -27,7 +27,7 @@ static struct bus *scan(struct kunit *test, u32 n, size_t bytes, bool eight)
 	us = bus_wait(b, n, EC_AL_PREOP, 20000);
 	KUNIT_ASSERT_NE(test, us, ~0ull);
 	bus_figure("scan to PREOP, %u slaves, %zu bytes of EEPROM, %u-byte ESCs: %llu us of bus time; the scan itself %u us, %llu frames",
-		   n, bytes, eight ? 8 : 4, us, b->m->bus.scan_us, b->m->bus.scan_frames);
+		   n, bytes, eight ? 8 : 4, us, bus_table(b)->scan_us, bus_scan_frames(b));
 	for (i = 0; i < n; i++)
 		KUNIT_ASSERT_EQ(test, bus_slave(b, i)->sii_bytes, bytes);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
@@ -64,9 +64,9 @@ static void figures_scan_frames(struct kunit *test)
 	struct bus *b = scan(test, 100, 2048, true);
 
 	/* reading PDOs comes later and is another matter */
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, 1u);
-	bus_row(b->m->bus.scan_frames, 2200, "frames: scan of 100 slaves with 2 KiB to PREOP");
-	KUNIT_EXPECT_LE(test, b->m->bus.scan_frames, 2200ull);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), 1u);
+	bus_row(bus_scan_frames(b), 2200, "frames: scan of 100 slaves with 2 KiB to PREOP");
+	KUNIT_EXPECT_LE(test, bus_scan_frames(b), 2200ull);
 }
 
 /* Frames for each of @n slaves until all are in PREOP, in hundredths. */
@@ -86,7 +86,7 @@ static u64 frames_to_preop(struct kunit *test, u32 n, const char *transition, u3
 		bus_plug(b);
 	us = bus_wait(b, n, EC_AL_PREOP, 60000);
 	KUNIT_ASSERT_NE(test, us, ~0ull);
-	frames = ec_links_sent(&b->m->links);
+	frames = ec_links_sent(bus_links(b));
 	frames = div_u64(100 * frames, n);
 	whole = (u32)div_u64_rem(frames, 100, &rest);
 	bus_figure("frames to PREOP, %u slaves, transition of %s%s: %u.%02u a slave, %llu us",

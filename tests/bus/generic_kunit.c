@@ -94,12 +94,12 @@ KUNIT_ARRAY_PARAM(result, results, result_desc);
 
 static u64 sent(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.tx_frames);
+	return bus_frames(b);
 }
 
 static u64 errors(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.tx_errors);
+	return bus_tx_errors(b);
 }
 
 static void expect_result(struct bus *b, struct fake *o, const struct result *r)
@@ -131,16 +131,16 @@ static struct net_device *fake_new(struct bus *b)
 	u32 i;
 
 	KUNIT_ASSERT_EQ(b->test, register_netdev(nd), 0);
-	for (i = 0; i < 100 && !READ_ONCE(b->m->links.link[0].dev); i++)
+	for (i = 0; i < 100 && !bus_dev(b); i++)
 		msleep(1);
-	KUNIT_EXPECT_NOT_NULL(b->test, b->m->links.link[0].dev);
+	KUNIT_EXPECT_NOT_NULL(b->test, bus_dev(b));
 	return nd;
 }
 
 static void fake_free(struct bus *b, struct net_device *nd)
 {
 	unregister_netdev(nd);
-	KUNIT_EXPECT_NULL(b->test, b->m->links.link[0].dev);
+	KUNIT_EXPECT_NULL(b->test, bus_dev(b));
 	free_netdev(nd);
 }
 
@@ -176,14 +176,14 @@ static void generic_rename_shown(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave a EK1100\n");
 	struct net_device *nd = fake_new(b);
-	const struct ecdev *dev = b->m->links.link[0].dev;
+	const struct ecdev *dev = bus_dev(b);
 	unsigned int rival;
 
 	rename_to(test, nd, "lan7");
 	msleep(100);
-	KUNIT_EXPECT_PTR_EQ(test, (const struct ecdev *)b->m->links.link[0].dev, dev);
+	KUNIT_EXPECT_PTR_EQ(test, (const struct ecdev *)bus_dev(b), dev);
 	KUNIT_EXPECT_STREQ(test, dev->name, "lan7");
-	KUNIT_EXPECT_EQ(test, ec_device_release(&b->m->links, "lan7", &rival), -EEXIST);
+	KUNIT_EXPECT_EQ(test, ec_device_release(bus_links(b), "lan7", &rival), -EEXIST);
 	fake_free(b, nd);
 }
 
@@ -247,13 +247,13 @@ static void generic_mtu_in_cycle_refused_before_driver(struct kunit *test)
 	rtnl_lock();
 	KUNIT_EXPECT_EQ(test, netdev_upper_dev_link(low, nd, NULL), 0);
 	rtnl_unlock();
-	ec_access_change(&b->m->links, EC_ACCESS_CYCLIC);
+	ec_access_change(bus_links(b), EC_ACCESS_CYCLIC);
 	KUNIT_EXPECT_EQ(test, set_mtu(nd, 600), -EBUSY);
 	KUNIT_EXPECT_EQ(test, set_mtu(nd, 2000), -EBUSY);
 	KUNIT_EXPECT_EQ(test, set_mtu(low, 600), -EBUSY);
 	KUNIT_EXPECT_EQ(test, o->resets + below->resets, 0u);
 	KUNIT_EXPECT_EQ(test, nd->mtu, (u32)ETH_DATA_LEN);
-	ec_access_change(&b->m->links, EC_ACCESS_DIRECT);
+	ec_access_change(bus_links(b), EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, set_mtu(nd, 2000), 0);
 	KUNIT_EXPECT_EQ(test, set_mtu(low, 600), 0);
 	KUNIT_EXPECT_EQ(test, set_mtu(nd, 600), -EBUSY);

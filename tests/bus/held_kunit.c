@@ -67,9 +67,9 @@ static void wait_responding(struct bus *b, u32 n)
 	u32 i;
 
 	/* a cycle that has stopped may have to time out first */
-	for (i = 0; i < 10000 && READ_ONCE(b->m->bus.responding) != n; i++)
+	for (i = 0; i < 10000 && bus_responding(b) != n; i++)
 		usleep_range(100, 101);
-	KUNIT_ASSERT_EQ(b->test, READ_ONCE(b->m->bus.responding), n);
+	KUNIT_ASSERT_EQ(b->test, bus_responding(b), n);
 }
 
 /* The list is that of before, however many slaves there are by now. */
@@ -134,7 +134,7 @@ static void held_after_deactivation(struct kunit *test)
 	msleep(1000);
 	expect_held(b, N + 1);
 	KUNIT_EXPECT_EQ(test, state(b)->scan_count, scans);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	expect_found(b);
 }
 
@@ -244,7 +244,7 @@ static void held_lost_slaves(struct kunit *test)
 	expect_held(b, N + 1);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_OK);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	expect_found(b);
 }
 
@@ -269,7 +269,7 @@ static void held_power_cycled_slave(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_esc(b, C)->mem[EC_REG_AL_STATUS], EC_AL_INIT);
 	/* at release its scan is due, although the number of slaves is right */
 	t0 = ktime_get_ns();
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_EXPECT_TRUE(test, state(b)->scan_busy);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 2 * NSEC_PER_SEC);
@@ -301,7 +301,7 @@ static void held_station_address_twice(struct kunit *test)
 	expect_held(b, N);
 	plug(b, true);
 	msleep(300);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	expect_found(b);
 }
 
@@ -352,7 +352,7 @@ static void held_after_due_scan(struct kunit *test)
 	in_op(b);
 	plug(b, true);
 	wait_responding(b, N + 1);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	t0 = ktime_get_ns();
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 	bus_figure("deactivation while a scan is due: %llu ms",
@@ -360,7 +360,7 @@ static void held_after_due_scan(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, state(b)->held, 1u);
 	KUNIT_EXPECT_EQ(test, state(b)->slave_count, N + 1u);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 3 * NSEC_PER_SEC);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	expect_found(b);
 	plug(b, false);
 	wait_responding(b, N);
@@ -375,14 +375,14 @@ static void held_although_scans_do_not_end(struct kunit *test)
 	u64 t0, ms;
 
 	in_op(b);
-	WRITE_ONCE(b->m->bus.due, true);
+	WRITE_ONCE(bus_table(b)->due, true);
 	t0 = ktime_get_ns();
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 	KUNIT_EXPECT_GE(test, ms, (u64)EC_SCAN_WAIT_MS);
 	KUNIT_EXPECT_LE(test, ms, EC_SCAN_WAIT_MS + 1000ull);
 	expect_held(b, N);
-	WRITE_ONCE(b->m->bus.due, false);
+	WRITE_ONCE(bus_table(b)->due, false);
 }
 
 /* What the scan has found when the list is held is thrown away; it is found again afterwards. */
@@ -392,16 +392,16 @@ static void held_during_scan(struct kunit *test)
 	u32 i;
 
 	plug(b, true);
-	for (i = 0; i < 1000 && !READ_ONCE(b->m->bus.scan_busy); i++)
+	for (i = 0; i < 1000 && !bus_scan_busy(b); i++)
 		usleep_range(100, 101);
-	KUNIT_ASSERT_TRUE(test, READ_ONCE(b->m->bus.scan_busy));
-	KUNIT_EXPECT_FALSE(test, ec_bus_hold(&b->m->bus, false));
-	KUNIT_EXPECT_TRUE(test, ec_bus_hold(&b->m->bus, true));
+	KUNIT_ASSERT_TRUE(test, bus_scan_busy(b));
+	KUNIT_EXPECT_FALSE(test, ec_bus_hold(bus_table(b), false));
+	KUNIT_EXPECT_TRUE(test, ec_bus_hold(bus_table(b), true));
 	msleep(3000);
 	KUNIT_EXPECT_EQ(test, state(b)->slave_count, (u32)N);
 	KUNIT_EXPECT_EQ(test, serial(b, 1), 11);
 	KUNIT_EXPECT_EQ(test, state(b)->scan_busy, 0);
-	ec_bus_unhold(&b->m->bus);
+	ec_bus_unhold(bus_table(b));
 	expect_found(b);
 }
 
@@ -415,12 +415,12 @@ static void held_for_candidate(struct kunit *test)
 	struct kcyc *a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
 
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, state(b)->held, 0u);
 	plug(b, true);
 	wait_responding(b, N + 1);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_EQ(test, state(b)->held, 1u);
 	KUNIT_EXPECT_EQ(test, state(b)->slave_count, N + 1u);
@@ -430,7 +430,7 @@ static void held_for_candidate(struct kunit *test)
 	expect_lost(b, 1);
 	bus_idle(b);
 	KUNIT_EXPECT_EQ(test, serial(b, 2), 11);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 5000), ~0ull);
 }
 
@@ -441,7 +441,7 @@ static void held_after_takeover(struct kunit *test)
 	struct kcyc *a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
 
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_TRUE(test, a->taken_over);
@@ -450,7 +450,7 @@ static void held_after_takeover(struct kunit *test)
 	plug(b, true);
 	msleep(1000);
 	expect_held(b, N + 1);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	expect_found(b);
 }
 

@@ -11,7 +11,6 @@ static void image_several_datagrams(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "segment seed=23\nrepeat 3 slave s io in=8000 out=8000\n"
 			       "connect s2.200 -> s2.200\n", 3);
-	struct ec_cycle *cycle;
 	bool split = false;
 	char name[8];
 	struct cyc *c;
@@ -22,10 +21,9 @@ static void image_several_datagrams(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 3, 0);
 	cyc_activate(c);
-	cycle = &b->m->sessions.session->cycle;
-	KUNIT_EXPECT_GE(test, cycle->n_dgrams, 5u);
-	for (i = 0; i < cycle->n_dgrams; i++)
-		split |= cycle->dgrams[i].logical % 1000 != 0;
+	KUNIT_EXPECT_GE(test, bus_n_dgrams(b), 5u);
+	for (i = 0; i < bus_n_dgrams(b); i++)
+		split |= bus_dgrams(b)[i].logical % 1000 != 0;
 	KUNIT_EXPECT_FALSE(test, split);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	for (i = 0; i < 3; i++)
@@ -53,7 +51,6 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 			       "connect s1.1 -> s1.1\nconnect s16.128 -> s16.128\n"
 			       "connect s8.128 -> s8.128\n", 16);
 	struct ec_ioc_domain_options o = { .options = options };
-	struct ec_session *s;
 	struct cyc *c;
 	char name[8];
 	u32 i, k, round;
@@ -64,9 +61,8 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OPTIONS, &o), 0);
 	cyc_map_all(c, 0, 16, 0);
 	cyc_activate(c);
-	s = b->m->sessions.session;
-	KUNIT_EXPECT_EQ(test, s->wanted.domains[0]->size, 16384u);
-	KUNIT_EXPECT_EQ(test, s->cycle.plain.frames, frames);
+	KUNIT_EXPECT_EQ(test, bus_domain(b, 0)->size, 16384u);
+	KUNIT_EXPECT_EQ(test, bus_plain_wire(b)->frames, frames);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
 	for (round = 1; round < 4; round++) {
 		for (i = 0; i < 16; i++)
@@ -89,7 +85,7 @@ static void image_16k(struct kunit *test, u32 options, u32 frames)
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(cyc_pd(c, 7, 1) + 4 * 127),
 				7 * 31 + (127 + round) * 0x01000193u);
 	}
-	KUNIT_EXPECT_EQ(test, s->cycle.last.frames, frames);
+	KUNIT_EXPECT_EQ(test, bus_last_wire(b)->frames, frames);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 
@@ -129,11 +125,11 @@ static void image_cut(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 2, 0);
 	cyc_activate(c);
-	cycle = &b->m->sessions.session->cycle;
+	cycle = bus_cycle(b);
 	KUNIT_ASSERT_EQ(test, cycle->n_cuts, 1u);
 	KUNIT_EXPECT_EQ(test, cycle->cuts[0].parts, 3);
 	KUNIT_EXPECT_EQ(test, cycle->cuts[0].len, 4000u);
-	KUNIT_EXPECT_EQ(test, cycle->plain.frames, 6u);
+	KUNIT_EXPECT_EQ(test, bus_plain_wire(b)->frames, 6u);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	c->each = count_outputs;
 	cyc_run(c, 10);
@@ -173,9 +169,9 @@ static void image_own_frame(struct kunit *test)
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	cyc_run(c, 5);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.plain.frames, 3u);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.last.frames, 3u);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.last.ns, (84 + 84 + 96) * 80u);
+	KUNIT_EXPECT_EQ(test, bus_plain_wire(b)->frames, 3u);
+	KUNIT_EXPECT_EQ(test, bus_last_wire(b)->frames, 3u);
+	KUNIT_EXPECT_EQ(test, bus_last_wire(b)->ns, (84 + 84 + 96) * 80u);
 	for (i = 0; i < 4; i++)
 		KUNIT_EXPECT_EQ(test, cyc_state(c, i)->wc_state, 2);
 }
@@ -193,8 +189,8 @@ static void image_full_datagram(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	d = b->m->sessions.session->cycle.dgrams;
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.n_dgrams, 1u);
+	d = bus_dgrams(b);
+	KUNIT_EXPECT_EQ(test, bus_n_dgrams(b), 1u);
 	KUNIT_EXPECT_EQ(test, d->len, EC_DGRAM_DATA_MAX);
 	KUNIT_EXPECT_EQ(test, d->cmd, EC_CMD_LWR);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
@@ -349,7 +345,7 @@ static void refused(struct kunit *test, struct cyc *c, const char *why)
 
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &a), -EOVERFLOW);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, why), "%s", b->app.reason);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(b), EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&b->app), -EPERM);
 	cyc_release(c);
 	bus_idle(b);
@@ -372,8 +368,7 @@ static void image_many_frames(struct kunit *test)
 
 	c->period_ns = 10 * NSEC_PER_MSEC;
 	cyc_activate(c);
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->cycle.plain.frames,
-			(u32)EC_MAX_CYCLE_FRAMES);
+	KUNIT_EXPECT_EQ(test, bus_plain_wire(c->b)->frames, (u32)EC_MAX_CYCLE_FRAMES);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 60000), ~0ull);
 	cyc_run(c, 5);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);

@@ -112,8 +112,7 @@ static void kapi_sdo_complete(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_sdo_download_complete(k->m, 1, 0x2001, whole, 0, &abort),
 			-EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_complete_sdo(k->sc[1], 0x3fff, whole, 4), 0);
-	KUNIT_EXPECT_EQ(test, k->m->sessions.session->wanted.configs[1]->n_startup[EC_STARTUP_SDO],
-			1u);
+	KUNIT_EXPECT_EQ(test, bus_config(k->b, 1)->n_startup[EC_STARTUP_SDO], 1u);
 	ecrt_release_master(k->m);
 }
 
@@ -457,8 +456,8 @@ static void kapi_clocks(struct kunit *test)
 	KUNIT_EXPECT_LT(test, ecrt_master_sync_monitor_process(k->m), 1000u);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock(k->m), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_reference_clock_to(k->m, now), 0);
-	KUNIT_EXPECT_EQ(test, k->m->sessions.session->wanted.configs[1]->sync.shift[0], 100);
-	KUNIT_EXPECT_EQ(test, k->m->sessions.session->ref_config, 0u);
+	KUNIT_EXPECT_EQ(test, bus_config(k->b, 1)->sync.shift[0], 100);
+	KUNIT_EXPECT_EQ(test, bus_session(k->b)->ref_config, 0u);
 	ecrt_release_master(k->m);
 }
 
@@ -519,7 +518,7 @@ static void kapi_hardirq(struct kunit *test)
 static void kapi_needs_thread(struct kunit *test)
 {
 	struct kapp *k = start(test, 1000);
-	struct ecdev *dev = k->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(k->b);
 	const struct ecdev_ops *ops = dev->ops;
 	struct ecdev_ops thread = *ops;
 	int ret[3];
@@ -552,7 +551,7 @@ static void kapi_stall(struct kunit *test)
 
 	kapp_op(k);
 	msleep(500);
-	KUNIT_EXPECT_EQ(test, atomic_read(&k->m->links.access.timeouts), 1);
+	KUNIT_EXPECT_EQ(test, bus_timeouts(k->b), 1);
 	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EAGAIN);
 	KUNIT_EXPECT_EQ(test, ecrt_master_send(k->m), -EAGAIN);
 	k->next = ktime_get();
@@ -579,7 +578,7 @@ static void kapi_device_gone(struct kunit *test)
 	u32 i;
 
 	kapp_op(k);
-	ec_device_release(&k->m->links, "none", NULL);
+	bus_no_device(k->b);
 	for (i = 0; i < 3; i++) {
 		kapp_wait(k);
 		KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -ENODEV);

@@ -163,7 +163,7 @@ static void kcycle_device_goes(struct kunit *test)
 	u64 count;
 
 	kapp_op(k);
-	ec_device_release(&k->m->links, "none", NULL);
+	bus_no_device(k->b);
 	kapp_wait(k);
 	kapp_wait(k);
 	count = ecrt_master_cycle_count(k->m);
@@ -192,8 +192,8 @@ static void kcycle_divisions_and_copies(struct kunit *test)
 	kapp_run(k, 30);
 	KUNIT_EXPECT_EQ(test, ec_app_channel(bus_app(k->b, "s1"), EC_APP_OUT, 1), 1234);
 	KUNIT_EXPECT_EQ(test, ecrt_master_cycle_state(k->m, &state), 0);
-	KUNIT_EXPECT_LE(test, k->m->sessions.session->cycle.sends, state.cycles);
-	KUNIT_EXPECT_EQ(test, k->b->m->sessions.session->wanted.domains[0]->division, 5u);
+	KUNIT_EXPECT_LE(test, bus_sends(k->b), state.cycles);
+	KUNIT_EXPECT_EQ(test, bus_domain(k->b, 0)->division, 5u);
 	ecrt_release_master(k->m);
 }
 
@@ -337,7 +337,7 @@ static void kcycle_wait_ends_with_cycle(struct kunit *test)
 static void kcycle_wait_beside_another(struct kunit *test)
 {
 	struct kapp *k = start_slow(test);
-	__u64 *seen = &k->m->api->cycle.seen, before;
+	__u64 *seen = &bus_api(k->b)->cycle.seen, before;
 	struct waiter w;
 
 	begin(&w, k, 0);
@@ -391,14 +391,14 @@ static void kcycle_two_callers(struct kunit *test)
 
 	kapp_op(k);
 	init_completion(&w.done);
-	atomic_set(&k->m->api->busy, 1);	/* a call that is preempted inside */
+	atomic_set(&bus_api(k->b)->busy, 1);	/* a call that is preempted inside */
 	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ecrt_master_send(k->m), -EBUSY);
 	w.task = kthread_run(deactivate, &w, "kapp-deact");
 	msleep(20);
 	KUNIT_EXPECT_FALSE(test, completion_done(&w.done));
-	KUNIT_EXPECT_NOT_NULL(test, k->m->api->cycle.exchange);
-	atomic_set(&k->m->api->busy, 0);
+	KUNIT_EXPECT_NOT_NULL(test, bus_api(k->b)->cycle.exchange);
+	atomic_set(&bus_api(k->b)->busy, 0);
 	wait_for_completion(&w.done);
 	KUNIT_EXPECT_EQ(test, kthread_stop(w.task), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EINVAL);
@@ -409,19 +409,18 @@ static void kcycle_two_callers(struct kunit *test)
 static void kcycle_calls_beside_deactivation(struct kunit *test)
 {
 	struct kapp *k = start_slow(test);
-	struct ec_sessions *ss = &k->m->sessions;
 	struct ec_shared *shared;
 
-	ec_sessions_lock(ss);
-	shared = ss->session->cycle.shared;
-	ss->session->cycle.shared = NULL;	/* the thread sleeps for a second */
-	atomic_set(&k->m->api->busy, 1);
+	bus_lock(k->b);
+	shared = bus_shared(k->b);
+	bus_cycle(k->b)->shared = NULL;	/* the thread sleeps for a second */
+	atomic_set(&bus_api(k->b)->busy, 1);
 	KUNIT_EXPECT_EQ(test, ecrt_master_receive(k->m), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ecrt_master_send(k->m), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ecrt_master_wait_cycle(k->m, 1000), -ETIMEDOUT);
-	atomic_set(&k->m->api->busy, 0);
-	ss->session->cycle.shared = shared;
-	ec_sessions_unlock(ss);
+	atomic_set(&bus_api(k->b)->busy, 0);
+	bus_cycle(k->b)->shared = shared;
+	bus_unlock(k->b);
 	ecrt_release_master(k->m);
 }
 
@@ -457,10 +456,10 @@ static void kcycle_waits_for_outputs(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_reset(k->m), 0);
 	for (i = 0; i < 10; i++)
 		kapp_wait(k);
-	KUNIT_EXPECT_EQ(test, (u32)READ_ONCE(k->m->links.access.mode), (u32)EC_ACCESS_DIRECT);
-	KUNIT_EXPECT_EQ(test, (u64)k->m->sessions.session->cycle.sends, 0ull);
+	KUNIT_EXPECT_EQ(test, (u32)bus_access_mode(k->b), (u32)EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, (u64)bus_sends(k->b), 0ull);
 	kapp_run(k, 3);
-	KUNIT_EXPECT_EQ(test, (u32)READ_ONCE(k->m->links.access.mode), (u32)EC_ACCESS_CYCLIC);
+	KUNIT_EXPECT_EQ(test, (u32)bus_access_mode(k->b), (u32)EC_ACCESS_CYCLIC);
 	ecrt_release_master(k->m);
 }
 
@@ -516,10 +515,10 @@ static void kcycle_taken_over(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_deactivate(k->m), 0);
 	bus_wait(k->b, 3, EC_AL_PREOP, 3000);
 	ecrt_release_master(k->m);
-	KUNIT_EXPECT_NULL(test, k->b->m->sessions.session);
+	KUNIT_EXPECT_NULL(test, bus_session(k->b));
 	/* work on requests may end a moment later */
 	msleep(50);
-	KUNIT_EXPECT_EQ(test, atomic_long_read(&k->b->m->sessions.memory), 0L);
+	KUNIT_EXPECT_EQ(test, bus_memory(k->b), 0L);
 	/* only the table of slaves has one */
 	KUNIT_EXPECT_EQ(test, kref_read(&bus_slave(k->b, 2)->kref), 1u);
 }

@@ -52,8 +52,8 @@ static void kapi_without_device(struct kunit *test)
 
 	KUNIT_EXPECT_NULL(test, ecrt_request_master(0));
 	KUNIT_EXPECT_NOT_NULL_MSG(test,
-				  strstr(b->m->api->file.reason, "waiting for its device bus0"),
-				  "%s", b->m->api->file.reason);
+				  strstr(bus_api(b)->file.reason, "waiting for its device bus0"),
+				  "%s", bus_api(b)->file.reason);
 	/* nothing but the device was missing */
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
@@ -121,7 +121,7 @@ static void kapi_signal_ends_call(struct kunit *test)
 	struct task_struct *t;
 
 	KUNIT_ASSERT_NOT_NULL(test, m);
-	ec_sessions_lock(&m->sessions);
+	bus_lock(b);
 	t = kthread_create(ask_signalled, m, "kapi-signal");
 	if (!IS_ERR(t)) {
 		get_task_struct(t);
@@ -130,10 +130,10 @@ static void kapi_signal_ends_call(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, kthread_stop(t), -EINTR);
 		put_task_struct(t);
 	}
-	ec_sessions_unlock(&m->sessions);
+	bus_unlock(b);
 	KUNIT_EXPECT_FALSE(test, IS_ERR(t));
 	ecrt_release_master(m);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
+	KUNIT_EXPECT_NULL(test, bus_session(b));
 }
 
 /* What a slave describes: SyncManagers, PDOs, entries; errors as in userspace. */
@@ -420,7 +420,7 @@ static void kapi_stored(struct kunit *test)
 	k = kapp_new(b, 1000);
 	kapp_map(k, 0);
 	sc = k->sc[0];
-	c = k->m->sessions.session->wanted.configs[0];
+	c = bus_config(k->b, 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_watchdog(sc, 2498, 500), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_slave_config_flag(sc, "AssignToPdi", 1), 0);
 	KUNIT_EXPECT_EQ(test, c->n_flags, 1u);

@@ -3,7 +3,7 @@
 
 struct ec_shared *kcyc_shared(const struct kcyc *a)
 {
-	return a->c->b->m->sessions.session->cycle.shared;
+	return bus_shared(a->c->b);
 }
 
 struct ec_status_cycle *kcyc_status(const struct kcyc *a)

@@ -13,7 +13,7 @@ static const struct ec_ioc_cycle zero = {
 /* What the kernel does when the process has gone. */
 static void die(struct kcyc *a)
 {
-	ec_session_end(&a->c->b->m->sessions, &a->c->b->app);
+	bus_end(a->c->b);
 }
 
 static u32 session_state(struct bus *b)
@@ -28,7 +28,7 @@ static bool plant_in_op(struct bus *b)
 {
 	u32 i;
 
-	for (i = 0; i < b->m->bus.n_slaves; i++)
+	for (i = 0; i < bus_n_slaves(b); i++)
 		if (bus_esc(b, i)->mem[EC_REG_AL_STATUS] != EC_AL_OP)
 			return false;
 	return true;
@@ -121,7 +121,7 @@ static void takeover_continues_session(struct kunit *test)
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, n->taken_over);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
+	KUNIT_EXPECT_NULL(test, bus_candidate(b));
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_ACTIVE);
 	/* outputs and inputs as they are, before anything is given */
 	for (i = 0; i < 2; i++) {
@@ -158,7 +158,7 @@ static struct kcyc *taken_with(struct bus *b, u32 priority)
 {
 	struct kcyc *n = kcyc_configure(b, hold);
 
-	b->m->sessions.candidate->cycle.priority = priority;
+	bus_candidate(b)->cycle.priority = priority;
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_TRUE(b->test, n->taken_over);
 	return n;
@@ -171,9 +171,9 @@ static void takeover_priority_follows_rights(struct kunit *test)
 	struct bus *b = a->c->b;
 	struct task_struct *task;
 
-	ec_sessions_lock(&b->m->sessions);
-	task = ec_cycle_thread_task(&b->m->sessions.session->cycle);
-	ec_sessions_unlock(&b->m->sessions);
+	bus_lock(b);
+	task = ec_cycle_thread_task(bus_cycle(b));
+	bus_unlock(b);
 	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
 	KUNIT_EXPECT_EQ(test, task->rt_priority, 50u);
 	die(a);
@@ -262,7 +262,7 @@ static void emerg_put(const struct kcyc *a, u16 code)
 {
 	u8 message[EC_EMERG_BYTES] = { code & 0xff, code >> 8 };
 
-	ec_emerg_push(&bus_slave(a->c->b, 1)->mbox, message);
+	ec_emerg_push(bus_mbox(a->c->b, 1), message);
 }
 
 /* What an application that runs wild may do to all it can write. */
@@ -350,15 +350,15 @@ static void takeover_late_cycles(struct kunit *test)
 	struct bus *b = a->c->b;
 	struct ec_ioc_cycle tight = hold;
 
-	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, (u32)EC_LATE_PER_S);
+	KUNIT_EXPECT_EQ(test, bus_late_per_s(b), (u32)EC_LATE_PER_S);
 	die(a);
 	a = kcyc_configure(b, hold);
 	set_late(b, 7);
-	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, (u32)EC_LATE_PER_S);
+	KUNIT_EXPECT_EQ(test, bus_late_per_s(b), (u32)EC_LATE_PER_S);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
-	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 7u);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->cycle.late_per_s, 7u);
+	KUNIT_EXPECT_EQ(test, bus_late_per_s(b), 7u);
+	KUNIT_EXPECT_EQ(test, bus_cycle_late_per_s(b), 7u);
 	die(a);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	/* without them a cycle that leaves no room is refused, as any is; it takes 273 us */
@@ -373,7 +373,7 @@ static void takeover_late_cycles(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, session_state(b), (u32)EC_SESSION_DETACHED);
 	set_late(b, 1);
 	KUNIT_EXPECT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
-	KUNIT_EXPECT_EQ(test, b->m->links.share.late_per_s, 1u);
+	KUNIT_EXPECT_EQ(test, bus_late_per_s(b), 1u);
 }
 
 /* Everything else than the same is refused, and what is different is told. */
@@ -384,7 +384,7 @@ static void refused(struct bus *b, const char *what)
 	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &act), -EEXIST);
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(b->app.reason, what), "%s", b->app.reason);
 	KUNIT_EXPECT_NOT_NULL(b->test, strstr(b->app.reason, "ethercat release"));
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_EXPECT_EQ(b->test, session_state(b), (u32)EC_SESSION_DETACHED);
 }
 
@@ -405,14 +405,14 @@ static void takeover_watchdog_order_is_no_difference(struct kunit *test)
 	for (i = 0; i < ARRAY_SIZE(wd); i++)
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_WATCHDOG, &wd[i]), 0);
 	for (i = 0; i < 2; i++) {
-		const struct ec_config *c = b->m->sessions.candidate->wanted.configs[i];
+		const struct ec_config *c = bus_candidate_config(b, i);
 
 		KUNIT_ASSERT_EQ(test, c->n_startup[EC_STARTUP_REG], 2u);
 		last[i] = list_last_entry(&c->startup, struct ec_startup, list);
 	}
 	KUNIT_EXPECT_EQ(test, last[0]->index, 0x0420);
 	KUNIT_EXPECT_EQ(test, last[1]->index, 0x0420);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 }
 
 static void takeover_refused(struct kunit *test)
@@ -464,10 +464,9 @@ static void takeover_refused(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &flag), 0);
 	refused(b, "slave 0:0 has 0 flags, not 1");
 	kcyc_configure(b, hold);
-	ec_sessions_lock(&b->m->sessions);
-	ret = ec_config_sdo_add(b->m->sessions.candidate->wanted.configs[1], 0x8000, 1, false,
-				(const u8 *)"\1", 1);
-	ec_sessions_unlock(&b->m->sessions);
+	bus_lock(b);
+	ret = ec_config_sdo_add(bus_candidate_config(b, 1), 0x8000, 1, false, (const u8 *)"\1", 1);
+	bus_unlock(b);
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	refused(b, "slave 0:1, startup SDO 0x8000:01");
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
@@ -493,10 +492,10 @@ static void candidate_changes_no_running_session(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &interval), -EBUSY);
 	die(a);
 	cyc_new(b, 500);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
-	app_time = b->m->dc.app_time;
+	KUNIT_EXPECT_EQ(test, bus_interval_us(b), 1000u);
+	app_time = bus_app_time(b);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &time), 0);
-	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
+	KUNIT_EXPECT_GE(test, bus_app_time(b), app_time);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_RESERVE, NULL), -EBUSY);
 	cyc_domain(a->c);
 	/* it sees its own domain, the others the one that runs */
@@ -566,9 +565,9 @@ static void slave_is_away(struct kunit *test)
 	kcyc_wait_cycles(a, 3);
 	die(a);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 3000 && b->m->bus.n_slaves != 1; i++)
+	for (i = 0; i < 3000 && bus_n_slaves(b) != 1; i++)
 		msleep(1);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 1u);
 	a = kunit_kzalloc(test, sizeof(*a), GFP_KERNEL);
 	a->c = cyc_new(b, 1000);
 	cyc_domain(a->c);
@@ -582,7 +581,7 @@ static void slave_is_away(struct kunit *test)
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
-	for (i = 0; i < 5000 && !(b->m->bus.n_slaves == 2 && plant_in_op(b)); i++)
+	for (i = 0; i < 5000 && !(bus_n_slaves(b) == 2 && plant_in_op(b)); i++)
 		msleep(1);
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	msleep(100);

@@ -155,13 +155,13 @@ static void division_phases(struct kunit *test)
 	begin(a);
 	kcyc_wait_cycles(a, 10);
 	for (i = 0; i < 3; i++)
-		sends[i] = b->m->sessions.session->cycle.domains[i].send;
+		sends[i] = bus_domain_send(b, i);
 	for (i = 0; i < 300; i++) {
 		u32 now = 0;
 
 		kcyc_wait_cycles(a, 1);
 		for (k = 0; k < 3; k++) {
-			u32 send = b->m->sessions.session->cycle.domains[k].send;
+			u32 send = bus_domain_send(b, k);
 
 			now += send != sends[k];
 			turns[k] += send != sends[k];
@@ -207,8 +207,8 @@ static void division_refused(struct kunit *test)
 /* @bits from bit @from of the inputs of a slave to bit @to of another's outputs. */
 static int copy(struct kcyc *a, u32 from_slave, u32 from, u32 to_slave, u32 to, u32 bits)
 {
-	const struct ec_config *f = a->c->b->m->sessions.session->wanted.configs[from_slave];
-	const struct ec_config *t = a->c->b->m->sessions.session->wanted.configs[to_slave];
+	const struct ec_config *f = bus_config(a->c->b, from_slave);
+	const struct ec_config *t = bus_config(a->c->b, to_slave);
 	struct ec_ioc_copy c = {
 		.from_domain = f->fmmus[1].domain->index, .from_bit = 8 * f->fmmus[1].offset + from,
 		.to_domain = t->fmmus[0].domain->index, .to_bit = 8 * t->fmmus[0].offset + to,
@@ -296,7 +296,7 @@ static void copies_detached(struct kunit *test)
 	kcyc_give(a);
 	kcyc_wait_cycles(a, 5);
 	KUNIT_EXPECT_EQ(test, (u32)plant_out(a, "s4"), 5u);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	msleep(10);
 	KUNIT_EXPECT_EQ(test, (u32)plant_out(a, "s2"), 6u);
 	msleep(300);

@@ -96,7 +96,7 @@ static u32 events(struct kcyc *a, u32 kind, u32 first, u32 second)
 	u64 at = 0;
 	u32 n = 0;
 
-	while (ec_event_ring_get(&a->c->b->m->base->events.ring, &at, &e))
+	while (ec_event_ring_get(bus_events(a->c->b), &at, &e))
 		n += e.kind == kind && e.arg[0] == first && e.arg[1] == second;
 	return n;
 }
@@ -161,7 +161,7 @@ static void kcyc_stall_again_and_again(struct kunit *test)
 	}
 	/* the last one stands, and has its record when a second is over */
 	kcyc_wait_cycles(a, 1000);
-	while (ec_event_ring_get(&a->c->b->m->base->events.ring, &at, &e)) {
+	while (ec_event_ring_get(bus_events(a->c->b), &at, &e)) {
 		n += e.kind == EC_EVENT_STALL || e.kind == EC_EVENT_OUTPUTS;
 		stalls += e.kind == EC_EVENT_STALL ? 1 + e.arg[2] : 0;
 	}
@@ -183,12 +183,12 @@ static void kcyc_stall_stop(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_STOPPED);
 	KUNIT_EXPECT_EQ(test, events(a, EC_EVENT_STALL, EC_STALL_STOP, 5), 1u);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 5ull);
-	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(&a->c->b->m->cycles, &a->c->b->app) &
+	KUNIT_EXPECT_TRUE(test, ec_cycle_thread_poll(bus_cycles(a->c->b), &a->c->b->app) &
 			  EPOLLHUP);
 	cycle = kcyc_status(a)->cycle;
 	msleep(200);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->cycle, cycle);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(a->c->b->m->links.access.mode), (int)EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(a->c->b), (int)EC_ACCESS_DIRECT);
 }
 
 /* Nobody gets the processor for 3.5 ms: three cycles are left out. */
@@ -238,7 +238,7 @@ static void kcyc_clocks(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
 	cyc_activate(c);
 	msleep(2000);
-	st = b->m->sessions.session->cycle.shared->status;
+	st = bus_status(b);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	KUNIT_EXPECT_EQ(test, st->dc_ref, 1u);
 	KUNIT_EXPECT_EQ(test, st->dc_time_valid, 1u);
@@ -329,7 +329,7 @@ static void kcyc_end_while_running(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 0), -ECANCELED);
 	flush_delayed_work(&e.work);
 	destroy_delayed_work_on_stack(&e.work);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
+	KUNIT_EXPECT_NULL(test, bus_session(b));
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 	/* and again, as often as one likes */
 	for (round = 0; round < 20; round++) {

@@ -17,18 +17,18 @@ static void life_waits_for_outputs(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	kcyc_wait_cycles(a, 500);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
-	sends = b->m->sessions.session->cycle.sends;
+	sends = bus_sends(b);
 	KUNIT_EXPECT_EQ(test, sends, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
-	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&b->m->links.access.timeouts), 0u);
+	KUNIT_EXPECT_EQ(test, bus_timeouts(b), 0u);
 	/* meanwhile everybody may use the bus */
-	KUNIT_EXPECT_EQ(test, READ_ONCE(b->m->links.access.mode), (int)EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(b), (int)EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_FALSE(test, cyc_all_op(a->c));
 	kcyc_write(a, 42);
 	kcyc_give(a);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
-	KUNIT_EXPECT_GE(test, b->m->sessions.session->cycle.sends, 1ull);
+	KUNIT_EXPECT_GE(test, bus_sends(b), 1ull);
 	kcyc_until_op(a);
 	kcyc_wait_cycles(a, 5);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
@@ -43,12 +43,12 @@ static void kcyc_detach_without_outputs(struct kunit *test)
 
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	kcyc_wait_cycles(a, 20);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	a = kcyc_configure(b, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_ALL });
 	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_WAITING);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 }
@@ -183,10 +183,10 @@ static void life_poll_without_lock(struct kunit *test)
 
 	KUNIT_ASSERT_FALSE(test, IS_ERR(task));
 	asked = a->c->b;
-	mutex_lock(&asked->m->cycles.lock);
+	mutex_lock(&bus_cycles(asked)->lock);
 	wake_up_process(task);
 	ended = wait_for_completion_timeout(&over, msecs_to_jiffies(1000));
-	mutex_unlock(&asked->m->cycles.lock);
+	mutex_unlock(&bus_cycles(asked)->lock);
 	KUNIT_EXPECT_TRUE(test, ended);
 	if (!ended)
 		wait_for_completion(&over);
@@ -205,7 +205,7 @@ static void life_without_device(struct kunit *test)
 
 	kcyc_wait_cycles(a, 10);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 0u);
-	ec_device_release(&b->m->links, "none", NULL);
+	bus_no_device(b);
 	cycle = kcyc_status(a)->cycle;
 	a->seen = cycle;
 	kcyc_wait_cycles(a, 500);
@@ -215,7 +215,7 @@ static void life_without_device(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, x->domains[0].wc_state, 0u);
 	KUNIT_EXPECT_EQ(test, kcyc_status(a)->overruns, 0ull);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	msleep(100);
 	/* without a device nobody can reserve it, but end it */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), -ENODEV);
@@ -230,13 +230,11 @@ static u32 times;
 /* What a withdrawal on another CPU does first, while a frame of the cycle is sent. */
 static int gone_tx_send(void *priv, u8 *buf, size_t len)
 {
-	struct ec_master *m = victim->m;
 	int ret = real_ops->tx_send(priv, buf, len);
 
 	/* somebody's frame is to go after those of the cycle */
-	if (!times && m->links.access.mode == EC_ACCESS_CYCLIC &&
-	    ec_queue_frames(&m->links.queues)) {
-		WRITE_ONCE(m->links.link[0].dev, NULL);
+	if (!times && bus_access_mode(victim) == EC_ACCESS_CYCLIC && bus_queued(victim)) {
+		bus_set_dev(victim, NULL);
 		times++;
 	}
 	return ret;
@@ -246,7 +244,7 @@ static void life_device_gone_in_send(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
 	struct bus *b = a->c->b;
-	struct ecdev *dev = b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(b);
 	struct ecdev_ops ops = *dev->ops;
 	u32 i;
 
@@ -264,7 +262,7 @@ static void life_device_gone_in_send(struct kunit *test)
 	dev->ops = real_ops;
 	kcyc_wait_cycles(a, 10);
 	KUNIT_EXPECT_EQ(test, kcyc_shared(a)->status->no_device, 1u);
-	WRITE_ONCE(b->m->links.link[0].dev, dev);
+	bus_set_dev(b, dev);
 	kcyc_until_op(a);
 }
 
@@ -369,7 +367,7 @@ static void life_requests_taken_over(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, over(a));
 	begin(a, 0x1018, 4);
 	kcyc_wait_cycles(a, 2);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	a = with_request(b);
 	KUNIT_EXPECT_TRUE(test, a->taken_over);
 	KUNIT_EXPECT_EQ(test, record(a)->start, 2u);
@@ -378,7 +376,7 @@ static void life_requests_taken_over(struct kunit *test)
 	/* one that was put there, but not told: never happened */
 	record(a)->start = 77;
 	record(a)->done = 5;
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	a = with_request(b);
 	KUNIT_EXPECT_EQ(test, record(a)->start, record(a)->done);
 	begin(a, 0x1018, 1);

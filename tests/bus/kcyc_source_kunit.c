@@ -43,8 +43,7 @@ static struct source *begin_with(struct kunit *test, struct ec_ioc_cycle cfg, u3
 	cfg.cpu = -1;
 	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(s->a), 0, "%s", b->app.reason);
-	KUNIT_ASSERT_EQ(test, b->m->sessions.session->cycle.n_dgrams,
-			options & EC_DOMAIN_OPT_SEPARATE ? 2u : 1u);
+	KUNIT_ASSERT_EQ(test, bus_n_dgrams(b), options & EC_DOMAIN_OPT_SEPARATE ? 2u : 1u);
 	kcyc_until_op(s->a);
 	/* the buffer is sent when all have taken part for a while */
 	kcyc_wait_cycles(s->a, 1000);
@@ -59,7 +58,7 @@ static struct source *begin(struct kunit *test, struct ec_ioc_cycle cfg)
 
 static const u8 *direct(const struct source *s)
 {
-	return s->a->c->b->m->sessions.session->cycle.direct;
+	return bus_direct(s->a->c->b);
 }
 
 static void look(struct source *s, const struct ec_exchange_buffer *in)
@@ -182,9 +181,9 @@ static void source_tool_sees(struct kunit *test)
 	for (i = 0; i < SLAVES; i++) {
 		place = kcyc_place(s->a, i, 0, 1);
 		memcpy(data, cyc_data(s->a->c, 0) + place, 64);
-		mutex_lock(&b->m->sessions.lock);
-		ec_cycle_thread_outputs(&b->m->sessions.session->cycle, data, place, 64);
-		mutex_unlock(&b->m->sessions.lock);
+		mutex_lock(bus_mutex(b));
+		ec_cycle_thread_outputs(bus_cycle(b), data, place, 64);
+		mutex_unlock(bus_mutex(b));
 		/* the last one given waits for its cycle */
 		KUNIT_EXPECT_EQ(test, get_unaligned_le32(data), s->number - 1);
 	}
@@ -283,7 +282,7 @@ static void source_held(struct kunit *test)
 	struct bus *b = s->a->c->b;
 
 	steps(s, 10);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	msleep(20);
 	KUNIT_EXPECT_EQ(test, kcyc_output(s->a, "s2", 1), (s64)s->number);
 	bus_fault(b, EC_SIM_FAULT_DEAD, 0, 0, 1, 0);

@@ -32,7 +32,7 @@ static u8 *spy_tx_get(void *priv)
 static struct kcyc *watched(struct kunit *test, struct ec_ioc_cycle cfg)
 {
 	struct kcyc *a = kcyc_start(test, cfg);
-	struct ecdev *dev = a->c->b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(a->c->b);
 
 	memset(&spy, 0, sizeof(spy));
 	spy.real = dev->ops;
@@ -44,7 +44,7 @@ static struct kcyc *watched(struct kunit *test, struct ec_ioc_cycle cfg)
 
 static void unwatch(struct kcyc *a)
 {
-	a->c->b->m->links.link[0].dev->ops = spy.real;
+	bus_dev(a->c->b)->ops = spy.real;
 }
 
 static u32 place(struct kcyc *a)
@@ -97,7 +97,7 @@ static bool no_link(void *priv)
 static void timer_not_for_each_device(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
-	struct ec_link *backup = &a->c->b->m->links.link[1];
+	struct ec_link *backup = bus_link(a->c->b, 1);
 	/* the monitor asks it, too */
 	struct ecdev_ops ops = { .atomic = false, .link_up = no_link };
 	struct ecdev dev = { .ops = &ops };
@@ -216,7 +216,7 @@ static void timer_wakes_poll(struct kunit *test)
 static void timer_ends_with_panic(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
-	struct notifier_block *nb = &a->c->b->m->sessions.session->cycle.thread->panic;
+	struct notifier_block *nb = &bus_cycle(a->c->b)->thread->panic;
 	u32 hard;
 
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
@@ -232,7 +232,7 @@ static void timer_ends_with_panic(struct kunit *test)
 static void timer_not_while_printing(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
-	u32 *debug = &a->c->b->m->base->debug, before = *debug, hard;
+	u32 *debug = &bus_base(a->c->b)->debug, before = *debug, hard;
 
 	WRITE_ONCE(*debug, 2);
 	kcyc_wait_cycles(a, 2);
@@ -250,21 +250,21 @@ static void timer_not_while_printing(struct kunit *test)
 static void timer_needs_right(struct kunit *test)
 {
 	struct kcyc *a = watched(test, interrupt);
-	struct ec_sessions *ss = &a->c->b->m->sessions;
-	struct ec_cycle *c = &ss->session->cycle;
+	struct bus *b = a->c->b;
+	struct ec_cycle *c = bus_cycle(b);
 	u32 hard;
 
-	ec_sessions_lock(ss);
+	bus_lock(b);
 	ec_cycle_thread_inherit(c, c->priority, false);
-	ec_sessions_unlock(ss);
+	bus_unlock(b);
 	kcyc_wait_cycles(a, 2);
 	hard = spy.hard;
 	kcyc_wait_cycles(a, 100);
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_RIGHT);
 	KUNIT_EXPECT_EQ(test, spy.hard, hard);
-	ec_sessions_lock(ss);
+	bus_lock(b);
 	ec_cycle_thread_inherit(c, c->priority, true);
-	ec_sessions_unlock(ss);
+	bus_unlock(b);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	KUNIT_EXPECT_EQ(test, bus_lost(a->c->b), 0ull);
@@ -299,7 +299,7 @@ static void timer_without_device(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_WAIT, &w), -ETIMEDOUT);
 	KUNIT_EXPECT_GE(test, ktime_get_ns() - before, 5000000ull);
-	ec_device_release(&b->m->links, "none", NULL);
+	bus_no_device(b);
 	a->seen = kcyc_status(a)->cycle;
 	kcyc_wait_cycles(a, 500);
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_QUIET);

@@ -33,7 +33,7 @@ static struct cyc *in_op(struct kunit *test)
 	slow_plug(b, 32, 1);
 	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 10000), ~0ull);
 	c = cyc_in_op(b, 0, N);
-	KUNIT_ASSERT_GE(test, b->m->sessions.session->cycle.n_dgrams, 3u);
+	KUNIT_ASSERT_GE(test, bus_n_dgrams(b), 3u);
 	c->each = show_cycle;
 	cyc_run(c, 5);
 	c->each = count_up;
@@ -47,7 +47,7 @@ static u32 kept(const struct bus *b)
 	u32 i, n = 0;
 
 	for (i = 0; i < EC_SLOTS; i++) {
-		const struct ec_slot *s = &b->m->links.slots.slot[i];
+		const struct ec_slot *s = bus_slot(b, i);
 
 		n += s->reply && (s->reply < s->frame || s->reply >= s->frame + EC_ETH_MAX);
 	}
@@ -68,7 +68,7 @@ static void kept_in_device(struct kunit *test)
 static void kept_not_between_calls(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
-	struct ec_link *link = &c->b->m->links.link[0];
+	struct ec_link *link = bus_link(c->b, 0);
 	u64 frames, between = 0;
 	u32 i;
 

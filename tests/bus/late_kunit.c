@@ -8,7 +8,7 @@
 
 static const struct ec_status_cycle *status(const struct cyc *c)
 {
-	return &c->b->m->sessions.session->cycle.shared->status->kernel;
+	return bus_kernel_status(c->b);
 }
 
 /* As uapi/ethercat.h says. */
@@ -37,7 +37,7 @@ static struct cyc *start(struct kunit *test, bool told)
 
 	bus_idle(b);
 	c = cyc_new(b, PERIOD_US);
-	b->m->links.access.interval_set = told;
+	bus_set_interval_told(b, told);
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
@@ -100,7 +100,7 @@ static void late_measured(struct kunit *test)
 	struct ec_status_cycle *st = kunit_kzalloc(test, sizeof(*st), GFP_KERNEL);
 
 	expect_ten_late(test, c);
-	ec_late_get(&c->b->m->cycles, &info, st);
+	ec_late_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, info.interval_set, 0u);
 	KUNIT_EXPECT_GT(test, info.interval_ns, 999000u);
 	KUNIT_EXPECT_LT(test, info.interval_ns, 1001000u);
@@ -108,7 +108,7 @@ static void late_measured(struct kunit *test)
 
 static const struct ec_schedule *plan(const struct cyc *c)
 {
-	return &c->b->m->sessions.session->cycle.schedule;
+	return bus_schedule(c->b);
 }
 
 /* An interval that is known is not measured again, although sends are late; nothing is lost. */
@@ -124,7 +124,7 @@ static void late_known_interval_needs_no_measurement(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, plan(c)->n_gaps, gaps);
 	KUNIT_EXPECT_EQ(test, status(c)->late_count, 5001ull);
 	KUNIT_EXPECT_EQ(test, status(c)->overruns, 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->links.access.interval_us, 1000u);
+	KUNIT_EXPECT_EQ(test, bus_interval_us(c->b), 1000u);
 }
 
 /* How many sends of an interval are needed until it is known. */
@@ -135,7 +135,7 @@ static u32 until_known(struct cyc *c, u32 us)
 	c->period_ns = us * NSEC_PER_USEC;
 	for (n = 0; n < 1000; n++) {
 		cyc_run(c, 1);
-		if (abs((s32)(c->b->m->links.access.interval_us - us)) <= 2 &&
+		if (abs((s32)(bus_interval_us(c->b) - us)) <= 2 &&
 		    abs((s32)(plan(c)->interval_ns - c->period_ns)) <= 2000)
 			break;
 	}
@@ -172,10 +172,10 @@ static void late_changed_interval_limits_frames_soon(struct kunit *test)
 
 	c->period_ns = 4 * NSEC_PER_MSEC;
 	cyc_run(c, 12);
-	KUNIT_EXPECT_EQ(test, c->b->m->links.access.interval_us, 4000u);
+	KUNIT_EXPECT_EQ(test, bus_interval_us(c->b), 4000u);
 	c->period_ns = 500 * NSEC_PER_USEC;
 	cyc_run(c, 12);
-	KUNIT_EXPECT_EQ(test, c->b->m->links.access.interval_us, 500u);
+	KUNIT_EXPECT_EQ(test, bus_interval_us(c->b), 500u);
 }
 
 /* An interval that was rounded, or another clock: the schedule follows. */
@@ -217,21 +217,21 @@ static void late_overrun(struct kunit *test)
 static void late_buckets(struct kunit *test)
 {
 	struct cyc *c = start(test, true);
-	struct ec_session *s = c->b->m->sessions.session;
+	struct ec_cycle *cycle = bus_cycle(c->b);
 	const struct ec_status_cycle *st = status(c);
 	u32 i;
 
 	for (i = 0; i < EC_CYCLE_BUCKETS; i++) {
 		u64 was = st->late[i];
 
-		ec_late_count(&s->cycle, bucket_from(i));
-		ec_late_count(&s->cycle, bucket_from(i + 1) - 1);
+		ec_late_count(cycle, bucket_from(i));
+		ec_late_count(cycle, bucket_from(i + 1) - 1);
 		KUNIT_EXPECT_EQ(test, st->late[i], was + 2);
 	}
 	KUNIT_EXPECT_EQ(test, bucket_from(EC_CYCLE_BUCKETS), 1ull << 32);
-	ec_late_count(&s->cycle, -5);
+	ec_late_count(cycle, -5);
 	KUNIT_EXPECT_EQ(test, st->late_min, 0u);
-	ec_late_count(&s->cycle, 1ll << 40);
+	ec_late_count(cycle, 1ll << 40);
 	KUNIT_EXPECT_EQ(test, st->late_max, U32_MAX);
 }
 
@@ -239,26 +239,25 @@ static void late_buckets(struct kunit *test)
 static void late_kept(struct kunit *test)
 {
 	struct cyc *c = start(test, true);
-	struct ec_master *m = c->b->m;
 	struct ec_ioc_cycle_stats info = { 0 };
 	struct ec_status_cycle *st = kunit_kzalloc(test, sizeof(*st), GFP_KERNEL);
 
 	KUNIT_ASSERT_NOT_NULL(test, st);
 	cyc_run(c, 9);
-	ec_late_get(&m->cycles, &info, st);
+	ec_late_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, info.active, 1u);
 	KUNIT_EXPECT_EQ(test, info.kind, (u32)EC_CYCLE_BY_APP);
 	KUNIT_EXPECT_EQ(test, info.interval_set, 1u);
 	KUNIT_EXPECT_EQ(test, info.interval_ns, PERIOD_US * 1000u);
 	KUNIT_EXPECT_EQ(test, st->late_count, 10ull);
 	cyc_release(c);
-	ec_late_get(&m->cycles, &info, st);
+	ec_late_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, info.active, 0u);
 	KUNIT_EXPECT_EQ(test, info.kind, (u32)EC_CYCLE_BY_APP);
 	KUNIT_EXPECT_EQ(test, st->late_count, 10ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 10ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
-	ec_late_get(&m->cycles, &info, st);
+	ec_late_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 0ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 0ull);
 }
@@ -273,11 +272,11 @@ static void late_reset_pending(struct kunit *test)
 	KUNIT_ASSERT_NOT_NULL(test, st);
 	cyc_run(c, 9);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
-	ec_late_get(&c->b->m->cycles, &info, st);
+	ec_late_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 0ull);
 	KUNIT_EXPECT_EQ(test, st->late_max, 0u);
 	cyc_run(c, 5);
-	ec_late_get(&c->b->m->cycles, &info, st);
+	ec_late_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 5ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 5ull);
 }

@@ -33,7 +33,7 @@ static int put_value(struct bus *b, u32 value, const struct ec_mbox_limit *l)
 	u8 v[4];
 
 	put_unaligned_le32(value, v);
-	return ec_coe_download(&bus_slave(b, 0)->mbox, OBJECT, SUB, false, v, 4, &abort, l);
+	return ec_coe_download(bus_mbox(b, 0), OBJECT, SUB, false, v, 4, &abort, l);
 }
 
 static u32 get_value(struct bus *b)
@@ -42,7 +42,7 @@ static u32 get_value(struct bus *b)
 	u32 abort;
 	u8 v[4] = { 0 };
 
-	KUNIT_EXPECT_EQ(b->test, ec_coe_upload(&bus_slave(b, 0)->mbox, OBJECT, SUB, false, v, 4,
+	KUNIT_EXPECT_EQ(b->test, ec_coe_upload(bus_mbox(b, 0), OBJECT, SUB, false, v, 4,
 					       &got, &abort, NULL), 0);
 	return get_unaligned_le32(v);
 }
@@ -90,7 +90,7 @@ static void late_reply_blocks_no_other_protocol(struct kunit *test)
 {
 	const struct ec_mbox_limit l = { .timeout_ms = 300 };
 	struct bus *b = late_up(test);
-	struct ec_mbox *mb = &bus_slave(b, 0)->mbox;
+	struct ec_mbox *mb = bus_mbox(b, 0);
 	struct ec_mbox_limit begin = { .timeout_ms = 300 };
 	struct ec_voe_hdr h = { .vendor = 0x4711, .type = 1 };
 	u64 t0;
@@ -153,7 +153,7 @@ static void late_reply_to_startup_sdo_is_taken(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_TIMEOUT, &t), -EINVAL);
 	t.timeout_ms = 500;
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_TIMEOUT, &t), 0);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->mbox.reply_ms, 500u);
+	KUNIT_EXPECT_EQ(test, bus_mbox(b, 0)->reply_ms, 500u);
 	reply_after(b, 2000);
 	cyc_activate(c);
 	us = cyc_wait_op(c, 60000);
@@ -164,7 +164,7 @@ static void late_reply_to_startup_sdo_is_taken(struct kunit *test)
 	reply_after(b, 0);
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->mbox.reply_ms, 0u);
+	KUNIT_EXPECT_EQ(test, bus_mbox(b, 0)->reply_ms, 0u);
 	KUNIT_EXPECT_EQ(test, get_value(b), 0x04030201u);
 }
 

@@ -177,12 +177,12 @@ static void check_inputs(struct cyc *c, u32 round)
 	KUNIT_EXPECT_EQ_MSG(c->b->test, wrong, 0u, "round %u", round);
 }
 
-static u32 data_bytes(const struct ec_cycle *c)
+static u32 data_bytes(const struct bus *b)
 {
 	u32 i, n = 0;
 
-	for (i = 0; i < c->n_dgrams; i++)
-		n += c->dgrams[i].len;
+	for (i = 0; i < bus_n_dgrams(b); i++)
+		n += bus_dgrams(b)[i].len;
 	return n;
 }
 
@@ -191,13 +191,12 @@ static void layout_echo(struct kunit *test)
 {
 	const struct layout *l = test->param_value;
 	struct cyc *c = in_op(test, l);
-	struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	u32 i, round, offset = 0;
 
-	KUNIT_EXPECT_EQ(test, cycle->n_dgrams, l->dgrams);
-	KUNIT_EXPECT_EQ(test, data_bytes(cycle), l->bytes);
+	KUNIT_EXPECT_EQ(test, bus_n_dgrams(c->b), l->dgrams);
+	KUNIT_EXPECT_EQ(test, data_bytes(c->b), l->bytes);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->expected, l->expected);
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->wanted.domains[0]->size, 896u);
+	KUNIT_EXPECT_EQ(test, bus_domain(c->b, 0)->size, 896u);
 	for (i = 0; i < N; i++) {
 		if (slaves[i].out)
 			KUNIT_EXPECT_PTR_EQ(test, output(c, i, 1), cyc_data(c, 0) + offset);
@@ -214,8 +213,8 @@ static void layout_echo(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->working_counter, l->expected);
-	KUNIT_EXPECT_EQ(test, cycle->last.frames, cycle->plain.frames);
-	KUNIT_EXPECT_EQ(test, cycle->last.ns, cycle->plain.ns);
+	KUNIT_EXPECT_EQ(test, bus_last_wire(c->b)->frames, bus_plain_wire(c->b)->frames);
+	KUNIT_EXPECT_EQ(test, bus_last_wire(c->b)->ns, bus_plain_wire(c->b)->ns);
 }
 
 /*
@@ -285,7 +284,6 @@ static void layout_not_running(struct kunit *test)
 static void layout_inputs_first(struct kunit *test)
 {
 	struct cyc *c = cyc_new(segment(test, 0), 1000);
-	struct ec_session *s = c->b->m->sessions.session;
 	u32 i, j, k, config[N];
 
 	cyc_domain(c);
@@ -299,11 +297,11 @@ static void layout_inputs_first(struct kunit *test)
 		if (slaves[i].out)
 			cyc_map(c, config[i], 0, 0);
 	cyc_activate(c);
-	for (i = 0; i < s->wanted.n_configs; i++)
-		for (j = 0; j < s->wanted.n_configs; j++)
+	for (i = 0; i < bus_wanted(c->b)->n_configs; i++)
+		for (j = 0; j < bus_wanted(c->b)->n_configs; j++)
 			for (k = 0; k < 4; k++) {
-				const struct ec_config *a = s->wanted.configs[i];
-				const struct ec_config *b = s->wanted.configs[j];
+				const struct ec_config *a = bus_config(c->b, i);
+				const struct ec_config *b = bus_config(c->b, j);
 				const struct ec_config_fmmu *in = &a->fmmus[k & 1];
 				const struct ec_config_fmmu *out = &b->fmmus[k >> 1];
 
@@ -319,7 +317,7 @@ static void layout_inputs_first(struct kunit *test)
 	cyc_run(c, 5);
 	check_outputs(c, 3, 0);
 	check_inputs(c, 3);
-	KUNIT_EXPECT_EQ(test, data_bytes(&s->cycle), 512u);
+	KUNIT_EXPECT_EQ(test, data_bytes(c->b), 512u);
 }
 
 static struct kunit_case cases[] = {

@@ -45,17 +45,17 @@ static void link_full_transmit_ring_delays_only(struct kunit *test)
 	all_are_well(b, MANY);
 	/* nor was anyone meanwhile: a slave that fails is tried again, and well then */
 	KUNIT_EXPECT_EQ(test, bus_log_lines("EtherCAT 0-"), lines);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, 1u);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), 1u);
 	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
 	/* not everybody who waits tries for himself */
 	KUNIT_EXPECT_LT(test, slow_full(s), 20000u);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
-	KUNIT_EXPECT_EQ(test, (u64)atomic64_read(&b->m->links.link[0].stats.tx_errors), 0ull);
-	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, bus_tx_errors(b), 0ull);
+	KUNIT_EXPECT_EQ(test, bus_acyclic(b), 0u);
 	/* a frame of the monitor may be on its way at this moment, not all the time */
-	for (i = 0; i < 100 && atomic_read(&b->m->links.link[0].acyclic_ns); i++)
+	for (i = 0; i < 100 && bus_acyclic_ns(b); i++)
 		usleep_range(100, 110);
-	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->links.link[0].acyclic_ns), 0);
+	KUNIT_EXPECT_EQ(test, bus_acyclic_ns(b), 0);
 }
 
 /* A device that hangs ends the wait of everybody, and goes on when it does. */
@@ -75,12 +75,12 @@ static void link_hanging_device_ends_in_error(struct kunit *test)
 	msleep(3000);
 	KUNIT_EXPECT_GT(test, slow_full(s), 0u);
 	t0 = ktime_get_ns();
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, station, 0, v, 4), -EBUSY);
+	KUNIT_EXPECT_EQ(test, bus_fprd(b, station, 0, v, 4), -EBUSY);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 2 * NSEC_PER_SEC);
-	KUNIT_EXPECT_GT(test, (u64)atomic64_read(&b->m->links.link[0].stats.tx_errors), 0ull);
+	KUNIT_EXPECT_GT(test, bus_tx_errors(b), 0ull);
 	slow_stop(s, false);
 	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 0)->station, 0, v, 4), 0);
+	KUNIT_EXPECT_EQ(test, bus_fprd(b, bus_slave(b, 0)->station, 0, v, 4), 0);
 }
 
 /* Slaves whose frames found no room in the ring of a device that hung are tried again. */
@@ -114,7 +114,7 @@ static u64 until_link_is(struct bus *b, struct cyc *c, bool up)
 {
 	u64 t0 = ktime_get_ns();
 
-	while (READ_ONCE(b->m->links.link[0].up) != up) {
+	while (bus_link_up(b) != up) {
 		if (ktime_get_ns() - t0 > NSEC_PER_SEC)
 			return ~0ull;
 		if (c)
@@ -129,8 +129,8 @@ static u32 failed(struct bus *b)
 {
 	u32 i, n = 0;
 
-	for (i = 0; i < b->m->bus.n_slaves; i++)
-		n += b->m->bus.slaves[i]->error != EC_SLAVE_OK;
+	for (i = 0; i < bus_n_slaves(b); i++)
+		n += bus_slave_at(b, i)->error != EC_SLAVE_OK;
 	return n;
 }
 
@@ -140,19 +140,19 @@ static void scan_begins(struct bus *b, struct cyc *c)
 	u32 i;
 
 	for (i = 0; i < 10000; i++) {
-		if (READ_ONCE(b->m->bus.scan_busy))
+		if (bus_scan_busy(b))
 			break;
 		if (c)
 			cyc_run(c, 1);
 		else
 			usleep_range(100, 101);
 	}
-	KUNIT_ASSERT_TRUE(b->test, b->m->bus.scan_busy);
+	KUNIT_ASSERT_TRUE(b->test, bus_scan_busy(b));
 	if (c)
 		cyc_run(c, 10);
 	else
 		usleep_range(5000, 5001);
-	KUNIT_ASSERT_TRUE(b->test, b->m->bus.scan_busy);
+	KUNIT_ASSERT_TRUE(b->test, bus_scan_busy(b));
 }
 
 /* The link goes while slaves are scanned: none is blamed, all are found later. */
@@ -162,14 +162,14 @@ static void link_loss_ends_scan(struct kunit *test)
 	u64 us;
 
 	bus_idle(b);
-	ec_bus_rescan(&b->m->bus);
+	bus_rescan(b);
 	scan_begins(b, NULL);
 	bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
 	us = until_link_is(b, NULL, false);
 	bus_figure("link lost while %u slaves are scanned: known after %llu us", MANY, us);
 	KUNIT_EXPECT_LT(test, us, 100000ull);
 	msleep(100);
-	KUNIT_EXPECT_FALSE(test, b->m->bus.scan_busy);
+	KUNIT_EXPECT_FALSE(test, bus_scan_busy(b));
 	KUNIT_EXPECT_EQ(test, failed(b), 0u);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
@@ -203,7 +203,7 @@ static void link_loss_beside_cycle(struct kunit *test)
 	KUNIT_EXPECT_LT(test, us, 100000ull);
 	/* nobody waits for a frame that cannot leave */
 	cyc_run(c, 3);
-	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, bus_acyclic(b), 0u);
 }
 
 /* a caller whose frame is on its way, and is sent again if @repeat */
@@ -223,7 +223,7 @@ static int wait_for_frame(void *arg)
 	struct ec_dg dg = EC_DG(EC_CMD_FPRD, w->station, 0, 4, v);
 
 	dg.repeat = w->repeat;
-	w->ret = ec_xfer(&w->b->m->links, &dg, 1);
+	w->ret = bus_xfer(w->b, &dg, 1);
 	w->end_ns = ktime_get_ns();
 	complete(&w->done);
 	return 0;
@@ -274,7 +274,7 @@ static void link_loss_ends_waiting(struct kunit *test)
 	bus_figure("link lost while frames are on their way, no cycle: callers know after %llu us",
 		   div_u64(most, NSEC_PER_USEC));
 	KUNIT_EXPECT_LT(test, most, 2 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, bus_acyclic(b), 0u);
 }
 
 /* Beside a cycle: frames that were sent are waited for as long as those in the queue. */
@@ -302,7 +302,7 @@ static void loss_ends_waiting_beside(struct kunit *test, u32 period_us)
 	bus_figure("link lost while frames are on their way, cycle of %u us: callers know after %llu us",
 		   period_us, div_u64(most, NSEC_PER_USEC));
 	KUNIT_EXPECT_LT(test, most, 2 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, bus_acyclic(b), 0u);
 }
 
 static void link_loss_ends_waiting_beside_cycle(struct kunit *test)
@@ -332,8 +332,8 @@ static void link_claims_beyond_memory_refused(struct kunit *test)
 	msleep(1000);
 	/* the monitor's looks only, and the claim is no number of slaves */
 	KUNIT_EXPECT_LT(test, bus_frames(b) - frames, 300ull);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 0u);
-	KUNIT_EXPECT_EQ(test, b->m->bus.responding, 0u);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 0u);
+	KUNIT_EXPECT_EQ(test, bus_responding(b), 0u);
 	slow_claim(s, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, MANY, EC_AL_PREOP, 10000), ~0ull);
 	bus_idle(b);
@@ -383,8 +383,8 @@ static void link_device_beside_cycle_waits_for_its_call(struct kunit *test)
 {
 	static const char one[] = "slave a EK1100\n";
 	struct bus *b = bus_up(test, one, 1);
-	struct ec_links *l = &b->m->links;
-	struct ec_link *link = &l->link[1];
+	struct ec_links *l = bus_links(b);
+	struct ec_link *link = bus_link(b, 1);
 	struct ec_sim_error err = { 0 };
 	struct offer o = {};
 
@@ -409,7 +409,7 @@ static void link_device_beside_cycle_waits_for_its_call(struct kunit *test)
 	/* the cycle goes on */
 	KUNIT_EXPECT_EQ(test, ec_access_try_enter(l), 0);
 	ec_access_leave(&l->access);
-	KUNIT_EXPECT_EQ(test, atomic_read(&l->access.timeouts), 0);
+	KUNIT_EXPECT_EQ(test, bus_timeouts(b), 0u);
 	ec_access_change(l, EC_ACCESS_DIRECT);
 	ec_sim_link_destroy(o.link);
 	l->backup = NULL;

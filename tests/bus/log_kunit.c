@@ -28,7 +28,7 @@ static struct bus *ready(struct kunit *test)
 
 static u64 lines(const struct bus *b)
 {
-	return READ_ONCE(b->m->base->log.lines);
+	return READ_ONCE(bus_base(b)->log.lines);
 }
 
 /* Equal texts: one line, and one more at the end of each window. */
@@ -86,7 +86,7 @@ static void log_many(struct kunit *test)
 
 	for (i = 0; i < 1000; i++)
 		for (k = 0; k < 3; k++)
-			ec_log_event(b->m->base, i, 0, KERN_WARNING, "many\n");
+			ec_log_event(bus_base(b), i, 0, KERN_WARNING, "many\n");
 	KUNIT_EXPECT_EQ(test, lines(b) - l0, (u64)EC_LOG_OF_SLAVES);
 	/* the master itself is still heard */
 	ec_warn(b->m, "heard\n");
@@ -96,7 +96,7 @@ static void log_many(struct kunit *test)
 	/* when it is over there is room again */
 	msleep(10500);
 	l0 = lines(b);
-	ec_log_event(b->m->base, 999, 0, KERN_WARNING, "many\n");
+	ec_log_event(bus_base(b), 999, 0, KERN_WARNING, "many\n");
 	KUNIT_EXPECT_EQ(test, lines(b) - l0, 1ull);
 }
 
@@ -150,7 +150,7 @@ static bool flapping(void *priv)
 static void log_link_flaps(struct kunit *test)
 {
 	struct bus *b = ready(test);
-	struct ecdev *dev = b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(b);
 	const struct ecdev_ops *ops = dev->ops;
 	struct ecdev_ops bad = *ops;
 	u64 l0 = lines(b), n;

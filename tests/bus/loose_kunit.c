@@ -192,13 +192,13 @@ static void loose_addresses_overwritten(struct kunit *test)
 	for (end = 0; end < 2; end++) {
 		bus_fault(b, EC_SIM_FAULT_CUT, 0, 1, 0, 0);
 		cyc_run(c, 100);
-		KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 1u + N_SAFE);
+		KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 1u + N_SAFE);
 		for (i = 0; i < N_SAFE; i++)
-			set_station(b, 1 + N_LOOSE + i, ++b->m->bus.next_station);
+			set_station(b, 1 + N_LOOSE + i, ++bus_table(b)->next_station);
 		if (end)
 			bus_fault(b, EC_SIM_FAULT_HEAL, 0, 1, 0, 0);
 		else
-			ec_bus_rescan(&b->m->bus);
+			bus_rescan(b);
 		cyc_run(c, 100);
 		for (i = 0; i < N_SAFE; i++)
 			KUNIT_EXPECT_EQ(test, w.slave[i]->station,
@@ -229,7 +229,7 @@ static void loose_bus_empty_during_scan(struct kunit *test)
 		at(b, EC_SIM_FAULT_HEAL, -1, 0, t + 300 * NSEC_PER_MSEC);
 		cyc_run(c, 700);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
-		KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, (u32)N);
+		KUNIT_EXPECT_EQ(test, bus_n_slaves(b), (u32)N);
 	}
 	for (i = 0; i < N_SAFE; i++)
 		ec_slave_unref(w.slave[i]);

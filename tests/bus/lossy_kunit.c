@@ -65,7 +65,7 @@ static void write(struct bus *b, u32 slave, struct sum *sum, u16 index, u8 sub, 
 	struct ec_app *app = bus_app(b, slave == SURE ? "sure" : "unsure");
 	const struct ec_app_entry *e = ec_app_od_entry(app->model, index, sub);
 	u32 abort, writes = sum->writes ?: app->mbox.writes;
-	int ret = ec_coe_download(&bus_slave(b, slave)->mbox, index, sub, false, data, n, &abort,
+	int ret = ec_coe_download(bus_mbox(b, slave), index, sub, false, data, n, &abort,
 				  &limit);
 
 	/* a late one may still come */
@@ -92,7 +92,7 @@ static void read(struct bus *b, u32 slave, struct sum *sum, u16 index, u8 sub, s
 	static u8 in[LONG];
 	size_t got;
 	u32 abort;
-	int ret = ec_coe_upload(&bus_slave(b, slave)->mbox, index, sub, false, in, sizeof(in),
+	int ret = ec_coe_upload(bus_mbox(b, slave), index, sub, false, in, sizeof(in),
 				&got, &abort, &limit);
 
 	if (!ret && (got != n || memcmp(app->data + e->off, in, n)))
@@ -207,7 +207,7 @@ static void lossy_after_init(struct kunit *test)
 		KUNIT_ASSERT_NE(test, bus_wait_al(b, SURE, EC_AL_PREOP, 500), ~0ull);
 		bus_idle(b);
 	}
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, SURE)->mbox.can_repeat);
+	KUNIT_EXPECT_TRUE(test, bus_mbox(b, SURE)->can_repeat);
 	KUNIT_EXPECT_EQ(test, down.done, 12u * 5);
 	KUNIT_EXPECT_EQ(test, up.done, 12u * 5);
 	KUNIT_EXPECT_EQ(test, down.twice, 0u);
@@ -223,7 +223,7 @@ static void lossy_false_promise(struct kunit *test)
 	lossy(b, true);
 	transfers(b, SURE, 2000, &down, &up);
 	lossy(b, false);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, SURE)->mbox.can_repeat);
+	KUNIT_EXPECT_FALSE(test, bus_mbox(b, SURE)->can_repeat);
 	KUNIT_EXPECT_EQ(test, up.wrong + down.wrong + down.twice + down.late, 0u);
 	KUNIT_EXPECT_GT(test, down.unknown, 0u);
 	KUNIT_EXPECT_GT(test, down.done, 900u);
@@ -243,12 +243,12 @@ static void lossy_soe(struct kunit *test)
 	for (slave = SURE; slave <= UNSURE; slave++) {
 		for (i = 0; i < 2000; i++) {
 			put_unaligned_le16(i, v);
-			ret = ec_soe_write(&bus_slave(b, slave)->mbox, 0, 0x8096, v, 2, &error,
+			ret = ec_soe_write(bus_mbox(b, slave), 0, 0x8096, v, 2, &error,
 					   &limit);
 			unknown[slave] += ret == -ENOTRECOVERABLE;
 			KUNIT_ASSERT_TRUE(test, !ret || ret == -ENOTRECOVERABLE);
 			KUNIT_ASSERT_EQ(test,
-					ec_soe_read(&bus_slave(b, slave)->mbox, 0, 0x8096, in, 2,
+					ec_soe_read(bus_mbox(b, slave), 0, 0x8096, in, 2,
 						    &got, &error, &limit), 0);
 			KUNIT_EXPECT_TRUE(test, ret || !memcmp(v, in, 2));
 		}

@@ -31,7 +31,7 @@ static const struct sdo assign[] = {
 static void startup(struct cyc *c, u32 config, u16 index, u8 sub, bool complete, const void *data,
 		    u32 size)
 {
-	struct ec_config *sc = c->b->m->sessions.session->wanted.configs[config];
+	struct ec_config *sc = bus_config(c->b, config);
 
 	mutex_lock(sc->wanted->lock);
 	KUNIT_EXPECT_EQ(c->b->test, ec_config_sdo_add(sc, index, sub, complete, data, size), 0);
@@ -295,7 +295,7 @@ static void made_by_which_objects(struct kunit *test)
 	u32 config, i, sm;
 	struct cyc *c = reserve(b, &config);
 
-	sc = b->m->sessions.session->wanted.configs[config];
+	sc = bus_config(b, config);
 	for (i = 0; i < ARRAY_SIZE(v); i++) {
 		startup(c, config, v[i].index, 1, false, "\0\0\0", 4);
 		mutex_lock(&s->lock);

@@ -228,7 +228,7 @@ static void mailbox_uploads_cycle(struct kunit *test)
 	struct bus *b = drives(test, 100, 128);
 	struct cyc *c = cyc_in_op(b, 0, 100);
 	u64 ns = together(b, c, ask_often, 100, 0, NULL), wire = mailboxes_ns(b, 100 * UPLOADS);
-	u64 allowed = div64_u64(wire * PERIOD_US * 1000, ec_access_slack_ns(&b->m->links) / 2);
+	u64 allowed = div64_u64(wire * PERIOD_US * 1000, bus_slack_ns(b) / 2);
 
 	bus_figure("100 slaves with %u uploads each, cycle of 1 ms: %llu us, wire time of the mailboxes %llu us, in their share %llu us",
 		   UPLOADS, div_u64(ns, 1000), div_u64(wire, 1000), div_u64(allowed, 1000));

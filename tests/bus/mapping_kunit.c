@@ -214,8 +214,8 @@ static void mapping_without_mailbox_names_are_labels(struct kunit *test)
 	/* a direction is no name */
 	cyc_release(c);
 	c = terminal(test, b, 0, 0x30010101);
-	b->m->sessions.session->wanted.configs[0]->sm[0].dir = EC_CFG_DIR_INPUT;
-	b->m->sessions.session->wanted.configs[0]->fmmus[0].dir = EC_CFG_DIR_INPUT;
+	bus_config(b, 0)->sm[0].dir = EC_CFG_DIR_INPUT;
+	bus_config(b, 0)->fmmus[0].dir = EC_CFG_DIR_INPUT;
 	cyc_activate(c);
 	cyc_run(c, 1000);
 	expect_why(b, 0, "registered 0x3001:01, 1 bit; slave has 0x7000:01, 1 bit");

@@ -30,7 +30,7 @@ static int upload(struct bus *b)
 	u32 abort;
 	u8 v[4];
 
-	return ec_coe_upload(&bus_slave(b, 0)->mbox, 0x1018, 1, false, v, sizeof(v), &size, &abort,
+	return ec_coe_upload(bus_mbox(b, 0), 0x1018, 1, false, v, sizeof(v), &size, &abort,
 			     NULL);
 }
 

@@ -73,10 +73,10 @@ static bool is_whole(struct bus *b)
 {
 	u32 i;
 
-	if (b->m->bus.n_slaves != OOM_SLAVES || !bus_settled(b))
+	if (bus_n_slaves(b) != OOM_SLAVES || !bus_settled(b))
 		return false;
 	for (i = 0; i < OOM_SLAVES; i++) {
-		const struct ec_slave *s = b->m->bus.slaves[i];
+		const struct ec_slave *s = bus_slave_at(b, i);
 
 		if (s->al_status != EC_AL_PREOP || s->error || s->pdos_unread ||
 		    ec_slave_pdos_pending(s) || s->warning[0])

@@ -29,10 +29,10 @@ static void oom_scan(struct kunit *test)
 
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
 	for (n = 1; failed && n < MOST; n++) {
-		scans = b->m->bus.scan_count;
+		scans = bus_scans(b);
 		oom_fail(n);
-		ec_bus_rescan(&b->m->bus);
-		while (b->m->bus.scan_count == scans)
+		bus_rescan(b);
+		while (bus_scans(b) == scans)
 			usleep_range(1000, 1001);
 		KUNIT_ASSERT_TRUE_MSG(test, oom_becomes_whole(b), "%u: %pS", n, (void *)oom_place);
 		failed = oom_has_failed();
@@ -75,7 +75,7 @@ static void oom_cycle(struct kunit *test)
 	int ret;
 
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
-	memory = atomic_long_read(&b->m->sessions.memory);
+	memory = bus_memory(b);
 	for (n = 1; failed && n < MOST; n++) {
 		oom_fail(n);
 		ret = oom_configure(b, &c, kernel);
@@ -86,10 +86,9 @@ static void oom_cycle(struct kunit *test)
 			KUNIT_ASSERT_EQ_MSG(test, ret, -ENOMEM, "%u: %pS: %s", n, (void *)oom_place,
 					    b->app.reason);
 		KUNIT_ASSERT_TRUE(test, !ret || failed);
-		ec_session_end(&b->m->sessions, &b->app);
+		bus_end(b);
 		KUNIT_ASSERT_TRUE_MSG(test, oom_becomes_whole(b), "%u: %pS", n, (void *)oom_place);
-		KUNIT_ASSERT_EQ_MSG(test, atomic_long_read(&b->m->sessions.memory), memory,
-				    "%u: %pS", n, (void *)oom_place);
+		KUNIT_ASSERT_EQ_MSG(test, bus_memory(b), memory, "%u: %pS", n, (void *)oom_place);
 	}
 	say(test, kernel ? "a cycle of the kernel" : "a cycle", n);
 }

@@ -33,11 +33,10 @@ static bool runs(struct cyc *c, bool kernel, u32 ms)
 /* The session ends; the bus, and what is counted, is as before. */
 static void ends(struct bus *b, long memory, u32 n, u32 m)
 {
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_ASSERT_TRUE_MSG(b->test, oom_becomes_whole(b), "%u, %u: %pS", n, m,
 			      (void *)oom_place);
-	KUNIT_ASSERT_EQ_MSG(b->test, atomic_long_read(&b->m->sessions.memory), memory,
-			    "%u, %u: %pS", n, m, (void *)oom_place);
+	KUNIT_ASSERT_EQ_MSG(b->test, bus_memory(b), memory, "%u, %u: %pS", n, m, (void *)oom_place);
 }
 
 static void oom_two_allocations_fail(struct kunit *test)
@@ -49,7 +48,7 @@ static void oom_two_allocations_fail(struct kunit *test)
 	long memory;
 
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
-	memory = atomic_long_read(&b->m->sessions.memory);
+	memory = bus_memory(b);
 	prandom_seed_state(&random, seed);
 	for (i = 0; i < pairs; i++) {
 		u32 n = 1 + prandom_u32_state(&random) % SPAN;
@@ -98,7 +97,7 @@ static void oom_shortage_ends(struct kunit *test)
 	int ret;
 
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
-	memory = atomic_long_read(&b->m->sessions.memory);
+	memory = bus_memory(b);
 	for (n = 1; failed && n < MOST; n++) {
 		oom_fail_from(n);
 		ret = oom_configure(b, &c, kernel);
@@ -127,7 +126,7 @@ static void oom_shortage_during_scan_ends(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
 	for (n = 1; failed && n < MOST; n++) {
 		oom_fail_from(n);
-		ec_bus_rescan(&b->m->bus);
+		bus_rescan(b);
 		msleep(200);
 		failed = oom_has_failed();
 		KUNIT_ASSERT_TRUE_MSG(test, oom_becomes_whole(b), "%u: %pS", n, (void *)oom_place);
@@ -199,14 +198,14 @@ static void oom_application_in_kernel_is_refused_or_runs(struct kunit *test)
 	u32 n;
 
 	KUNIT_ASSERT_TRUE(test, oom_becomes_whole(b));
-	memory = atomic_long_read(&b->m->sessions.memory);
+	memory = bus_memory(b);
 	for (n = 1; failed && n < MOST; n++) {
 		oom_fail(n);
 		ok = lives(b);
 		failed = oom_has_failed();
 		KUNIT_ASSERT_TRUE_MSG(test, ok || failed, "%u", n);
 		KUNIT_ASSERT_TRUE_MSG(test, oom_becomes_whole(b), "%u: %pS", n, (void *)oom_place);
-		KUNIT_ASSERT_EQ(test, atomic_long_read(&b->m->sessions.memory), memory);
+		KUNIT_ASSERT_EQ(test, bus_memory(b), memory);
 	}
 	bus_figure("an application in the kernel with each of %u allocations failing", n - 1);
 	KUNIT_EXPECT_GT(test, n, 10u);
@@ -238,7 +237,7 @@ static void oom_takeover_is_refused_or_done(struct kunit *test)
 	int ret;
 
 	for (n = 1; failed && n < MOST; n++) {
-		ec_session_end(&b->m->sessions, &b->app);
+		bus_end(b);
 		cycle = kcyc_status(a)->cycle;
 		a = kcyc_configure(b, hold);
 		oom_fail(n);
@@ -247,7 +246,7 @@ static void oom_takeover_is_refused_or_done(struct kunit *test)
 		KUNIT_ASSERT_TRUE_MSG(test, !ret || (ret == -ENOMEM && failed), "%u: %d: %s", n,
 				      ret, b->app.reason);
 		if (ret) {
-			ec_session_end(&b->m->sessions, &b->app);
+			bus_end(b);
 			a = kcyc_configure(b, hold);
 			KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
 		}

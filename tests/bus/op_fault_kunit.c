@@ -60,7 +60,7 @@ static void op_power_loss(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LAST, 0, 0, 0);
 	cyc_run(c, 300);
 	/* noticed, its inputs hold, the other domain is complete */
-	KUNIT_EXPECT_EQ(test, b->m->bus.responding, N - 1);
+	KUNIT_EXPECT_EQ(test, bus_responding(b), N - 1);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 1)->working_counter, 0);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 1)->wc_state, 0);
 	KUNIT_EXPECT_EQ(test, *cyc_pd(c, LAST, 1), before);
@@ -104,11 +104,11 @@ static void op_cable_pulled(struct kunit *test)
 	u32 i;
 
 	bus_fault(c->b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
-	for (i = 0; i < 100 && c->b->m->bus.responding; i++)
+	for (i = 0; i < 100 && bus_responding(c->b); i++)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 100);
 	cyc_run(c, 400);
-	KUNIT_EXPECT_FALSE(test, c->b->m->links.link[0].up);
+	KUNIT_EXPECT_FALSE(test, bus_link_up(c->b));
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
 	KUNIT_EXPECT_EQ(test, *cyc_pd(c, LAST, 1), before);
 	bus_fault(c->b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
@@ -159,14 +159,14 @@ static void op_event_that_stays_costs_nothing(struct kunit *test)
 	unsigned long before, quiet;
 
 	cyc_run(c, 100);
-	before = c->b->m->monitor->nvcsw;
+	before = bus_monitor_slept(c->b);
 	cyc_run(c, 1000);
-	quiet = c->b->m->monitor->nvcsw - before;
+	quiet = bus_monitor_slept(c->b) - before;
 	c->ctx = bus_esc(c->b, AI);
 	c->each = event_stays;
-	before = c->b->m->monitor->nvcsw;
+	before = bus_monitor_slept(c->b);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_LE(test, c->b->m->monitor->nvcsw - before, quiet + 30);
+	KUNIT_EXPECT_LE(test, bus_monitor_slept(c->b) - before, quiet + 30);
 	works(c);
 }
 
@@ -208,12 +208,12 @@ static void op_session_ends(struct kunit *test)
 	cyc_run(c, 10);
 	KUNIT_ASSERT_FALSE(test, outputs_off(b));
 	/* what closing the file does */
-	ec_session_end(&b->m->sessions, &b->app);
-	KUNIT_EXPECT_PTR_EQ(test, b->m->sessions.session, NULL);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
+	bus_end(b);
+	KUNIT_EXPECT_PTR_EQ(test, bus_session(b), NULL);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(b), EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
 	KUNIT_EXPECT_TRUE(test, outputs_off(b));
-	KUNIT_EXPECT_FALSE(test, b->m->bus.held);
+	KUNIT_EXPECT_FALSE(test, bus_table(b)->held);
 	/* and the next one may begin */
 	bus_idle(b);
 	c = cyc_new(b, 1000);
@@ -232,15 +232,15 @@ static void op_application_stalls(struct kunit *test)
 	struct ec_ioc_slave s = { .position = X };
 
 	msleep(300);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(b), EC_ACCESS_DIRECT);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
-	KUNIT_EXPECT_EQ(test, b->m->bus.responding, N);
+	KUNIT_EXPECT_EQ(test, bus_responding(b), N);
 	/* the watchdog of the slave has switched its outputs off */
 	KUNIT_EXPECT_EQ(test, ec_app_channel(bus_app(b, "ao"), EC_APP_OUT, 0), 0ll);
 	c->next = ktime_get();
 	cyc_run(c, 20);
 	KUNIT_EXPECT_NE(test, recover(c, 5000), ~0ull);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_CYCLIC);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(b), EC_ACCESS_CYCLIC);
 	works(c);
 }
 
@@ -263,7 +263,7 @@ static void stall_once(struct cyc *c)
 {
 	msleep(250);
 	/* which says nothing about the slaves */
-	KUNIT_EXPECT_EQ(c->b->test, c->b->m->bus.responding, N);
+	KUNIT_EXPECT_EQ(c->b->test, bus_responding(c->b), N);
 	c->next = ktime_get();
 	cyc_run(c, 60);
 }
@@ -273,15 +273,15 @@ static void op_stalls_logged(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct kmsg_dump_iter first, it;
-	u32 i, before = atomic_read(&c->b->m->links.access.timeouts);
-	u32 scans = c->b->m->bus.scan_count;
+	u32 i, before = bus_timeouts(c->b);
+	u32 scans = bus_scans(c->b);
 
 	kmsg_dump_rewind(&it);
 	logged(&it, "");
 	for (i = 0; i < 20; i++)
 		stall_once(c);
-	KUNIT_EXPECT_EQ(test, (u32)atomic_read(&c->b->m->links.access.timeouts), before + 20);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.scan_count, scans);
+	KUNIT_EXPECT_EQ(test, bus_timeouts(c->b), before + 20);
+	KUNIT_EXPECT_EQ(test, bus_scans(c->b), scans);
 	first = it;
 	KUNIT_EXPECT_EQ(test, logged(&first, "cycle timeout"), 1);
 	first = it;

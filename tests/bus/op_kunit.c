@@ -125,7 +125,6 @@ static void op_without_lrw(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave a EK1100\nslave x EL1859\nconnect x.1 -> x.1\n");
 	struct ec_esc *esc = bus_esc(b, 1);
-	struct ec_cycle *cycle;
 	struct cyc *c;
 	u32 i;
 
@@ -137,10 +136,9 @@ static void op_without_lrw(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 1, 1, 0);
 	cyc_activate(c);
-	cycle = &b->m->sessions.session->cycle;
-	KUNIT_EXPECT_GE(test, cycle->n_dgrams, 2u);
-	for (i = 0; i < cycle->n_dgrams; i++)
-		KUNIT_EXPECT_NE(test, cycle->dgrams[i].cmd, EC_CMD_LRW);
+	KUNIT_EXPECT_GE(test, bus_n_dgrams(b), 2u);
+	for (i = 0; i < bus_n_dgrams(b); i++)
+		KUNIT_EXPECT_NE(test, bus_dgrams(b)[i].cmd, EC_CMD_LRW);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 2000), ~0ull);
 	*cyc_pd(c, 1, 0) = 1;
 	cyc_run(c, 5);
@@ -162,7 +160,7 @@ static void op_many_frames(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 24, 0);
 	cyc_activate(c);
-	KUNIT_EXPECT_GT(test, b->m->sessions.session->cycle.n_dgrams, 6u);
+	KUNIT_EXPECT_GT(test, bus_n_dgrams(b), 6u);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	for (i = 0; i < 24; i++)
 		for (k = 0; k < 50; k++)
@@ -258,7 +256,7 @@ static u8 beside(struct kunit *test, const char *text)
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 2000), ~0ull);
 	cyc_run(c, 500);
 	state = bus_slave(b, 0)->al_status;
-	KUNIT_EXPECT_EQ(test, b->m->bus.al_states, EC_AL_OP | state);
+	KUNIT_EXPECT_EQ(test, bus_al_states(b), EC_AL_OP | state);
 	cyc_release(c);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 1000), ~0ull);
 	return state;
@@ -291,7 +289,7 @@ static void op_al_states(struct kunit *test)
 		cyc_activate(c);
 		KUNIT_EXPECT_NE(test, cyc_wait_op(c, 2000), ~0ull);
 		cyc_run(c, 300);
-		KUNIT_EXPECT_EQ_MSG(test, b->m->bus.al_states, (u32)EC_AL_OP, "attempt %u", i);
+		KUNIT_EXPECT_EQ_MSG(test, bus_al_states(b), (u32)EC_AL_OP, "attempt %u", i);
 		cyc_release(c);
 		KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 1000), ~0ull);
 		usleep_range(500 * i, 500 * i + 1);

@@ -33,7 +33,7 @@ static int call(void *arg)
 				r->v);
 
 	dg.repeat = r->repeat;
-	r->ret = ec_xfer(&r->b->m->links, &dg, 1);
+	r->ret = bus_xfer(r->b, &dg, 1);
 	if (!r->ret && dg.wkc != 1)
 		r->ret = -EIO;
 	r->ns = ktime_get_ns() - t0;
@@ -51,9 +51,9 @@ static void begin(struct cyc *c, bool repeat)
 		init_completion(&callers[i].done);
 		kthread_run(call, &callers[i], "caller%u", i);
 	}
-	for (i = 0; i < 100 && ec_queue_frames(&c->b->m->links.queues) < CALLERS; i++)
+	for (i = 0; i < 100 && bus_queued(c->b) < CALLERS; i++)
 		usleep_range(1, 2);
-	KUNIT_ASSERT_GE(c->b->test, ec_queue_frames(&c->b->m->links.queues), (unsigned int)CALLERS);
+	KUNIT_ASSERT_GE(c->b->test, bus_queued(c->b), (unsigned int)CALLERS);
 }
 
 /* cycles until all have ended */
@@ -119,10 +119,10 @@ static int swallow(void *priv, u8 *buf, size_t len)
 static u8 *refuse(void *priv)
 {
 	static u64 sent_ns;
-	bool cyclic = sent_ns != victim->m->links.access.last_send_ns;
+	bool cyclic = sent_ns != bus_last_send_ns(victim);
 
 	/* the first one of a send is for the frame of the cycle */
-	sent_ns = victim->m->links.access.last_send_ns;
+	sent_ns = bus_last_send_ns(victim);
 	if (cyclic || !no_buffer)
 		return real_ops->tx_get(priv);
 	no_buffer--;
@@ -131,7 +131,7 @@ static u8 *refuse(void *priv)
 
 static struct ecdev_ops *hook(struct bus *b, struct ecdev_ops *ops)
 {
-	struct ecdev *dev = b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(b);
 
 	victim = b;
 	real_ops = dev->ops;
@@ -142,7 +142,7 @@ static struct ecdev_ops *hook(struct bus *b, struct ecdev_ops *ops)
 
 static void unhook(struct bus *b)
 {
-	b->m->links.link[0].dev->ops = real_ops;
+	bus_dev(b)->ops = real_ops;
 }
 
 /* A lost frame ends for all as a frame of their own would, and is one frame. */

@@ -41,7 +41,7 @@ static const struct { u8 member, cmd; u16 adp, ado, len; } dgrams[] = {
 /* What ec_xfer() does with the datagrams of caller @k. */
 static void arm(struct shared *s, u32 k)
 {
-	struct ec_slots *slots = &s->b->m->links.slots;
+	struct ec_slots *slots = bus_slots(s->b);
 	struct ec_frame_buf fb;
 	u32 i;
 
@@ -69,7 +69,7 @@ static void leave(struct shared *s)
 	for (k = 0; k < MEMBERS; k++)
 		KUNIT_ASSERT_TRUE(s->b->test, ec_pack_add(&s->pack, &s->e[k], &roomy));
 	KUNIT_ASSERT_EQ(s->b->test, s->pack.n, MEMBERS);
-	ec_pack_place(&s->b->m->links.slots, &s->pack, ktime_get_ns());
+	ec_pack_place(bus_slots(s->b), &s->pack, ktime_get_ns());
 	ec_pack_write(&s->pack, s->frame);
 	ec_pack_release(&s->pack, EC_SLOT_SENT);
 	s->len = s->pack.len;
@@ -88,7 +88,7 @@ static struct shared *shared(struct kunit *test)
 	s->links = BIT(0);
 	bus_idle(s->b);
 	for (k = 0; k < MEMBERS; k++) {
-		s->slot[k] = ec_slot_get(&s->b->m->links.slots, false, ktime_get_ns());
+		s->slot[k] = ec_slot_get(bus_slots(s->b), false, ktime_get_ns());
 		KUNIT_ASSERT_NOT_NULL(test, s->slot[k]);
 		arm(s, k);
 	}
@@ -99,13 +99,13 @@ static struct shared *shared(struct kunit *test)
 static void give(struct shared *s, const u8 *data, size_t len)
 {
 	rcu_read_lock();
-	ecdev_receive(s->b->m->links.link[0].dev, s->frame + 6, data, len);
+	ecdev_receive(bus_dev(s->b), s->frame + 6, data, len);
 	rcu_read_unlock();
 }
 
 static u64 refused(const struct shared *s)
 {
-	const struct ec_link_stats *st = &s->b->m->links.link[0].stats;
+	const struct ec_link_stats *st = bus_stats(s->b);
 
 	return atomic64_read(&st->unmatched) + atomic64_read(&st->late);
 }
@@ -470,7 +470,7 @@ static void pack_reused(struct kunit *test)
 	leave(s);
 	before = refused(s);
 	rcu_read_lock();
-	ecdev_receive(s->b->m->links.link[0].dev, old + 6, old + EC_ETH_HDR, s->len);
+	ecdev_receive(bus_dev(s->b), old + 6, old + EC_ETH_HDR, s->len);
 	rcu_read_unlock();
 	expect(s, 0, 0);
 	KUNIT_EXPECT_EQ(test, refused(s), before + 1);
@@ -485,7 +485,6 @@ static void pack_reused(struct kunit *test)
 static void pack_gathered(struct kunit *test)
 {
 	struct shared *s = shared(test);
-	struct ec_master *m = s->b->m;
 	struct ec_pack_room room = roomy;
 	struct ec_pack p;
 	struct ec_queued e;
@@ -494,12 +493,12 @@ static void pack_gathered(struct kunit *test)
 	for (k = 0; k < MEMBERS; k++) {
 		KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[k], ktime_get_ns()));
 		arm(s, k);
-		KUNIT_ASSERT_EQ(test, ec_queue_push(&m->links.queues, s->slot[k], k == 3), 0);
+		KUNIT_ASSERT_EQ(test, ec_queue_push(bus_queues(s->b), s->slot[k], k == 3), 0);
 	}
 	/* the urgent one is the first */
-	KUNIT_ASSERT_TRUE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
+	KUNIT_ASSERT_TRUE(test, ec_queue_peek(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e));
 	KUNIT_EXPECT_PTR_EQ(test, e.slot, s->slot[3]);
-	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
+	ec_queue_gather(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e, &room, &p);
 	KUNIT_ASSERT_EQ(test, p.n, 4u);
 	KUNIT_EXPECT_EQ(test, p.dgrams, 5u);
 	KUNIT_EXPECT_PTR_EQ(test, p.e[1].slot, s->slot[0]);
@@ -509,23 +508,23 @@ static void pack_gathered(struct kunit *test)
 	ec_pack_release(&p, EC_SLOT_QUEUED);
 	/* the second of them does not fit, and so nor do those behind it */
 	room.len = EC_FRAME_HDR + 13 + 14 + 139;
-	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
+	ec_queue_gather(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 2u);
 	ec_pack_release(&p, EC_SLOT_QUEUED);
 	room.len++;
-	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
+	ec_queue_gather(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 3u);
 	ec_pack_release(&p, EC_SLOT_QUEUED);
 	/* datagrams are counted, too */
 	room = roomy;
 	room.dgrams = 4;
-	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
+	ec_queue_gather(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 3u);
 	ec_pack_release(&p, EC_SLOT_QUEUED);
 	/* one gives up, one that leaves, the first one that gives up */
 	room = roomy;
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[0], ktime_get_ns()));
-	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
+	ec_queue_gather(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e, &room, &p);
 	KUNIT_ASSERT_EQ(test, p.n, 3u);
 	KUNIT_EXPECT_PTR_EQ(test, p.e[1].slot, s->slot[1]);
 	ec_pack_release(&p, EC_SLOT_QUEUED);
@@ -533,13 +532,13 @@ static void pack_gathered(struct kunit *test)
 	ec_pack_move(&p, EC_SLOT_QUEUED, EC_SLOT_SENT);
 	KUNIT_EXPECT_EQ(test, atomic_read(&s->slot[3]->state), EC_SLOT_SENT);
 	KUNIT_EXPECT_EQ(test, atomic_read(&s->slot[2]->state), EC_SLOT_QUEUED);
-	KUNIT_ASSERT_TRUE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
+	KUNIT_ASSERT_TRUE(test, ec_queue_peek(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e));
 	KUNIT_EXPECT_PTR_EQ(test, e.slot, s->slot[2]);
 	KUNIT_ASSERT_TRUE(test, ec_slot_cancel(s->slot[2], ktime_get_ns()));
-	ec_queue_gather(&m->links.queues, &m->links.queues.acyclic, &e, &room, &p);
+	ec_queue_gather(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e, &room, &p);
 	KUNIT_EXPECT_EQ(test, p.n, 0u);
-	KUNIT_EXPECT_FALSE(test, ec_queue_peek(&m->links.queues, &m->links.queues.acyclic, &e));
-	KUNIT_EXPECT_EQ(test, ec_queue_frames(&m->links.queues), 0u);
+	KUNIT_EXPECT_FALSE(test, ec_queue_peek(bus_queues(s->b), &bus_queues(s->b)->acyclic, &e));
+	KUNIT_EXPECT_EQ(test, bus_queued(s->b), 0u);
 }
 
 static struct kunit_case cases[] = {

@@ -18,8 +18,8 @@ static bool known(struct bus *b)
 {
 	u32 i;
 
-	for (i = 0; i < b->m->bus.n_slaves; i++)
-		if (ec_slave_pdos_pending(b->m->bus.slaves[i]))
+	for (i = 0; i < bus_n_slaves(b); i++)
+		if (ec_slave_pdos_pending(bus_slave_at(b, i)))
 			return false;
 	return bus_settled(b);
 }
@@ -110,7 +110,7 @@ static void pdo_changed_mapping_is_seen(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, put(s, 0x1c12, 0, 1, 1), 0);
 	KUNIT_ASSERT_EQ(test, put(s, 0x1c13, 0, 0, 1), 0);
 
-	ec_bus_rescan(&b->m->bus);
+	bus_rescan(b);
 	usleep_range(50000, 50001);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
 	wait_known(b);
@@ -121,12 +121,12 @@ static void pdo_changed_mapping_is_seen(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, s->sm_pdos[2].pdos[0].entries[0].index, 0x6040);
 	KUNIT_EXPECT_EQ(test, s->sm_pdos[3].n, 0u);
 	/* it can be assigned again with the mapping of the EEPROM */
-	down_read(&b->m->bus.topo);
+	down_read(&bus_table(b)->topo);
 	p = ec_slave_find_pdo(s, unassigned);
 	KUNIT_EXPECT_NOT_NULL(test, p);
 	if (p)
 		KUNIT_EXPECT_EQ(test, ec_pdo_bits(p), 22u * 8);
-	up_read(&b->m->bus.topo);
+	up_read(&bus_table(b)->topo);
 }
 
 /* a slave that does not answer keeps the PDOs of its EEPROM, and is said to */

@@ -77,7 +77,7 @@ static void reboot_application_active_slaves_in_preop(struct kunit *test)
 		usleep_range(1000, 1001);
 		KUNIT_ASSERT_EQ(test, esc_state(b, 0) | esc_state(b, 1), EC_AL_PREOP);
 	}
-	KUNIT_EXPECT_TRUE(test, b->m->sessions.session->wanted.active);
+	KUNIT_EXPECT_TRUE(test, bus_wanted(b)->active);
 	KUNIT_EXPECT_GE(test, kcyc_status(a)->cycle, cycle + 900);
 }
 
@@ -202,7 +202,7 @@ static void reboot_scan_under_way_slaves_in_preop(struct kunit *test)
 	char *device = "bus0";
 	unsigned int i;
 
-	ec_bus_rescan(&b->m->bus);
+	bus_rescan(b);
 	usleep_range(300, 301);
 	KUNIT_EXPECT_LT(test, reboot(), 500ull * USEC_PER_MSEC);
 	expect_states(b, EC_AL_PREOP, EC_AL_PREOP);
@@ -216,11 +216,11 @@ static void reboot_scan_under_way_slaves_in_preop(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, esc_state(b, 1), EC_AL_OP);
 	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
 	b->m = ec_cdev_master(0);
-	KUNIT_ASSERT_EQ(test, ec_device_use(&b->m->links, device), 0);
-	for (i = 0; i < 100 && !READ_ONCE(b->m->bus.scan_busy); i++)
+	KUNIT_ASSERT_EQ(test, ec_device_use(bus_links(b), device), 0);
+	for (i = 0; i < 100 && !bus_scan_busy(b); i++)
 		usleep_range(500, 501);
-	KUNIT_EXPECT_TRUE(test, b->m->bus.scan_busy);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 0u);
+	KUNIT_EXPECT_TRUE(test, bus_scan_busy(b));
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 0u);
 	KUNIT_EXPECT_LT(test, reboot(), (u64)LIMIT_US);
 	KUNIT_EXPECT_FALSE(test, (esc_state(b, 0) | esc_state(b, 1)) & EC_AL_BEYOND_PREOP);
 }
@@ -251,7 +251,7 @@ static void reboot_device_vanishes_returns(struct kunit *test)
 	KUNIT_EXPECT_LT(test, reboot(), (u64)LIMIT_US);
 	kthread_stop(t);
 	put_task_struct(t);
-	KUNIT_EXPECT_FALSE(test, ec_links_attached(&b->m->links));
+	KUNIT_EXPECT_FALSE(test, ec_links_attached(bus_links(b)));
 }
 
 static int reboots(void *data)

@@ -22,7 +22,7 @@ u32 req_add(struct cyc *c, u32 config, u32 kind, u32 size)
 
 struct ec_request_area *req_area(struct cyc *c)
 {
-	return (void *)c->b->m->sessions.session->cycle.shared->requests;
+	return (void *)bus_shared(c->b)->requests;
 }
 
 struct ec_request_record *req_rec(struct cyc *c, u32 i)

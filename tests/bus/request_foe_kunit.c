@@ -97,9 +97,9 @@ static void req_foe_busy_slave(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 200);
 	strscpy(name_of(c, a), "one", EC_FOE_NAME);
-	set_bit(EC_MBOX_FILE, &bus_slave(c->b, 0)->mbox.flags);
+	set_bit(EC_MBOX_FILE, &bus_mbox(c->b, 0)->flags);
 	KUNIT_EXPECT_EQ(test, req_do(c, a, 0, 0, EC_REQUEST_OP_WRITE, 10), -EBUSY);
-	clear_bit(EC_MBOX_FILE, &bus_slave(c->b, 0)->mbox.flags);
+	clear_bit(EC_MBOX_FILE, &bus_mbox(c->b, 0)->flags);
 	KUNIT_EXPECT_EQ(test, req_do(c, a, 0, 0, EC_REQUEST_OP_WRITE, 10), 0);
 }
 

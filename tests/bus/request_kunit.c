@@ -197,9 +197,9 @@ static void req_comes_back(struct kunit *test)
 
 	go(c);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
-	for (i = 0; i < 2000 && c->b->m->sessions.session->wanted.configs[1]->slave; i++)
+	for (i = 0; i < 2000 && bus_config(c->b, 1)->slave; i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_NULL(test, c->b->m->sessions.session->wanted.configs[1]->slave);
+	KUNIT_ASSERT_NULL(test, bus_config(c->b, 1)->slave);
 	req_begin(c, b, 0x1018, 4, false, 0);
 	KUNIT_EXPECT_EQ(test, req_end(c, b, 500), 1);
 	bus_fault(c->b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
@@ -260,7 +260,7 @@ static void req_killed(struct kunit *test)
 	cyc_run(c, 10);
 	KUNIT_ASSERT_FALSE(test, req_over(c, a));
 	t0 = ktime_get_ns();
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 100 * NSEC_PER_MSEC);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
@@ -283,7 +283,7 @@ static u64 until_free(struct bus *b)
 	u64 t0 = ktime_get_ns();
 	u32 i;
 
-	for (i = 0; i < 50000 && ec_mbox_is_claimed(&bus_slave(b, 0)->mbox, EC_MBOX_ALL); i++)
+	for (i = 0; i < 50000 && ec_mbox_is_claimed(bus_mbox(b, 0), EC_MBOX_ALL); i++)
 		usleep_range(100, 101);
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 }
@@ -300,8 +300,8 @@ static void req_cancelled(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	req_begin(c, a, 0x1018, 4, false, 0);
 	cyc_run(c, 10);
-	KUNIT_ASSERT_TRUE(test, ec_mbox_in_use(&bus_slave(b, 0)->mbox));
-	ec_session_end(&b->m->sessions, &b->app);
+	KUNIT_ASSERT_TRUE(test, ec_mbox_in_use(bus_mbox(b, 0)));
+	bus_end(b);
 	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
 
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
@@ -316,8 +316,8 @@ static void req_cancelled(struct kunit *test)
 	memcpy(req_data(c, a), value, 1000);
 	req_begin(c, a, SCRATCH, 0, true, 1000);
 	cyc_run(c, 250);
-	KUNIT_ASSERT_TRUE(test, ec_mbox_is_claimed(&bus_slave(b, 0)->mbox, BIT(EC_MBOX_COE)));
-	ec_session_end(&b->m->sessions, &b->app);
+	KUNIT_ASSERT_TRUE(test, ec_mbox_is_claimed(bus_mbox(b, 0), BIT(EC_MBOX_COE)));
+	bus_end(b);
 	KUNIT_EXPECT_LE(test, until_free(b), 3ull);
 }
 

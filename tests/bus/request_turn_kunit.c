@@ -61,7 +61,7 @@ static void begin(struct cyc *c, u32 r, u32 i)
 static void turn_of_request_is_waited_for_in_time(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, 1);
-	struct ec_mbox *mb = &bus_slave(b, 0)->mbox;
+	struct ec_mbox *mb = bus_mbox(b, 0);
 	u32 r[ARRAY_SIZE(kinds)], reg, i;
 	struct cyc *c = prepare(b, r);
 	u64 t0, ms;
@@ -87,7 +87,7 @@ static void turn_of_request_is_waited_for_in_time(struct kunit *test)
 static void turn_of_request_ends_when_cancelled(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, 1);
-	struct ec_mbox *mb = &bus_slave(b, 0)->mbox;
+	struct ec_mbox *mb = bus_mbox(b, 0);
 	u32 r[ARRAY_SIZE(kinds)], i;
 	struct cyc *c = prepare(b, r);
 
@@ -109,7 +109,7 @@ static void turn_of_request_ends_when_cancelled(struct kunit *test)
 static void turn_of_request_ends_with_session(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, 1);
-	struct ec_mbox *mb = &bus_slave(b, 0)->mbox;
+	struct ec_mbox *mb = bus_mbox(b, 0);
 	u32 r[ARRAY_SIZE(kinds)], i;
 	struct cyc *c = prepare(b, r);
 
@@ -120,7 +120,7 @@ static void turn_of_request_ends_with_session(struct kunit *test)
 	begin(c, r[2], 2);
 	cyc_run(c, 10);
 	KUNIT_ASSERT_FALSE(test, list_empty(&mb->claims));
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	/* the slave's worker waits as well, until the protocols are free */
 	for (i = 0; i < 50 && mb->claims.next != mb->claims.prev; i++)
 		usleep_range(1000, 1001);

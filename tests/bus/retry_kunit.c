@@ -143,11 +143,11 @@ static void retry_silent_without_application(struct kunit *test)
 	bus_idle(b);
 	bus_fault(b, EC_SIM_FAULT_DEAD, X, 0, 1, 0);
 	msleep(20000);
-	scans = b->m->bus.scan_count;
+	scans = bus_scans(b);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->error, EC_SLAVE_SCAN_FAILED);
 	msleep(5000);
 	/* while it does not reply, nothing else is disturbed */
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans);
 	bus_fault(b, EC_SIM_FAULT_DEAD, X, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, X, EC_AL_PREOP, 2000), ~0ull);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->error, EC_SLAVE_OK);
@@ -165,10 +165,10 @@ static void unreadable(struct kunit *test, enum ec_sim_fault_type type, u32 arg)
 	bus_fault(b, type, AI, 0, arg, 0);
 	bus_plug(b);
 	msleep(1000);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_SCAN_FAILED);
 	msleep(60000);
-	scans = b->m->bus.scan_count;
+	scans = bus_scans(b);
 	KUNIT_EXPECT_LE(test, scans, 12u);
 	KUNIT_EXPECT_EQ(test, logged(&it, "EtherCAT 0-3: "), 1u);
 	bus_fault(b, type, AI, 0, 0, 0);
@@ -200,7 +200,7 @@ static void retry_mute(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 1, 0);
 	bus_plug(b);
 	msleep(20000);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_CONFIG_FAILED);
 	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
@@ -239,8 +239,8 @@ static u32 count_failed(struct bus *b)
 {
 	u32 i, n = 0;
 
-	for (i = 0; i < b->m->bus.n_slaves; i++)
-		n += b->m->bus.slaves[i]->error == EC_SLAVE_CONFIG_FAILED;
+	for (i = 0; i < bus_n_slaves(b); i++)
+		n += bus_slave_at(b, i)->error == EC_SLAVE_CONFIG_FAILED;
 	return n;
 }
 
@@ -274,7 +274,7 @@ static void retry_frames_lost_during_start(struct kunit *test)
 	for (k = 0; k < 50 && count_failed(b); k++)
 		cyc_run(c, 100);
 	cyc_run(c, 100);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	for (i = 0; i < N; i++)
 		KUNIT_EXPECT_STREQ(test, bus_slave(b, i)->why, "");
 }

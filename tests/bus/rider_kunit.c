@@ -27,7 +27,7 @@ struct ride {
 
 static struct ec_riders *riders(struct cyc *c)
 {
-	return &c->b->m->links.riders;
+	return bus_riders(c->b);
 }
 
 /* The last frame of the next send is lost: the riders are in it. */
@@ -42,12 +42,11 @@ static void lose_last(struct cyc *c)
 
 static void count(struct cyc *c)
 {
-	const struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	struct ride *r = c->ctx;
 	bool waiting = atomic_read(&riders(c)->queued);
 
 	r->waiting += waiting;
-	r->most_ns = max(r->most_ns, cycle->last.ns);
+	r->most_ns = max(r->most_ns, bus_last_wire(c->b)->ns);
 	r->wrong += cyc_state(c, 0)->working_counter > cyc_state(c, 0)->expected;
 	r->carried = riders(c)->seq;
 	if (r->lose && waiting) {
@@ -73,7 +72,7 @@ static struct cyc *start(struct kunit *test, const char *segment, u32 n)
 
 static u64 seen_us(const struct cyc *c)
 {
-	return div_u64(ktime_get_ns() - c->b->m->bus.complete_ns, NSEC_PER_USEC);
+	return div_u64(ktime_get_ns() - bus_table(c->b)->complete_ns, NSEC_PER_USEC);
 }
 
 /* The monitor needs no frame of its own, and no domain counts its datagram. */
@@ -81,7 +80,7 @@ static void rider_beside_process_data_not_counted(struct kunit *test)
 {
 	struct cyc *c = start(test, text, N);
 	struct ride *r = c->ctx;
-	u32 rides = riders(c)->seq, sent = c->b->m->sessions.session->cycle.n_dgrams;
+	u32 rides = riders(c)->seq, sent = bus_n_dgrams(c->b);
 	u64 frames = bus_frames(c->b);
 
 	cyc_run(c, CYCLES);
@@ -94,8 +93,8 @@ static void rider_beside_process_data_not_counted(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
 	KUNIT_EXPECT_LT(test, seen_us(c), 50000ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.al_states, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_responding(c->b), N);
+	KUNIT_EXPECT_EQ(test, bus_al_states(c->b), EC_AL_OP);
 	cyc_release(c);
 }
 
@@ -104,19 +103,18 @@ static void rider_in_kernel_cycle_not_counted(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	struct bus *b = a->c->b;
-	struct ec_cycle *cycle = &b->m->sessions.session->cycle;
 	u64 frames, sends;
 	u32 rides;
 
 	msleep(200);
 	kcyc_wait_cycles(a, 1);
 	frames = bus_frames(b);
-	sends = cycle->sends;
-	rides = b->m->links.riders.seq;
+	sends = bus_sends(b);
+	rides = bus_riders(b)->seq;
 	kcyc_wait_cycles(a, CYCLES);
-	sends = cycle->sends - sends;
-	KUNIT_EXPECT_EQ(test, bus_frames(b) - frames, sends * cycle->last.frames);
-	KUNIT_EXPECT_GE(test, b->m->links.riders.seq - rides, CYCLES / 25);
+	sends = bus_sends(b) - sends;
+	KUNIT_EXPECT_EQ(test, bus_frames(b) - frames, sends * bus_last_wire(b)->frames);
+	KUNIT_EXPECT_GE(test, bus_riders(b)->seq - rides, CYCLES / 25);
 	KUNIT_EXPECT_EQ(test, cyc_state(a->c, 0)->working_counter, cyc_state(a->c, 0)->expected);
 	KUNIT_EXPECT_LT(test, seen_us(a->c), 50000ull);
 }
@@ -126,7 +124,7 @@ static void rider_in_lost_frame_loses_one_round(struct kunit *test)
 {
 	struct cyc *c = start(test, text, N);
 	struct ride *r = c->ctx;
-	u32 lines = bus_log_lines("slaves responding"), scans = c->b->m->bus.scan_count, rides;
+	u32 lines = bus_log_lines("slaves responding"), scans = bus_scans(c->b), rides;
 
 	r->lose = true;
 	cyc_run(c, 100);
@@ -138,8 +136,8 @@ static void rider_in_lost_frame_loses_one_round(struct kunit *test)
 	KUNIT_EXPECT_GE(test, riders(c)->seq - rides, 8u);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 1ull);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("slaves responding"), lines);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.scan_count, scans);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
+	KUNIT_EXPECT_EQ(test, bus_scans(c->b), scans);
+	KUNIT_EXPECT_EQ(test, bus_responding(c->b), N);
 	KUNIT_EXPECT_LT(test, seen_us(c), 50000ull);
 	cyc_release(c);
 }
@@ -175,7 +173,7 @@ static void rider_without_cycle_monitor_continues(struct kunit *test)
 	rides = riders(c)->seq;
 	cyc_run(c, 100);
 	KUNIT_EXPECT_GE(test, riders(c)->seq - rides, 4u);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
+	KUNIT_EXPECT_EQ(test, bus_responding(c->b), N);
 	cyc_release(c);
 }
 
@@ -183,20 +181,19 @@ static void rider_without_cycle_monitor_continues(struct kunit *test)
 static void rider_without_wire_time_waits(struct kunit *test)
 {
 	struct cyc *c = start(test, text, N);
-	struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	struct ride *r = c->ctx;
 
 	cyc_run(c, 100);
-	KUNIT_EXPECT_GT(test, r->most_ns, cycle->plain.ns);
+	KUNIT_EXPECT_GT(test, r->most_ns, bus_plain_wire(c->b)->ns);
 	/* a rider of two bytes needs 1120 ns: less is free */
-	c->period_ns = DIV_ROUND_UP(cycle->plain.ns, 900) * NSEC_PER_USEC;
-	c->b->m->links.access.interval_us = c->period_ns / NSEC_PER_USEC;
+	c->period_ns = DIV_ROUND_UP(bus_plain_wire(c->b)->ns, 900) * NSEC_PER_USEC;
+	bus_set_interval(c->b, c->period_ns / NSEC_PER_USEC);
 	c->next = ktime_get();
 	cyc_run(c, 5);
 	memset(r, 0, sizeof(*r));
 	cyc_run(c, 3 * CYCLES);
 	KUNIT_EXPECT_GT(test, r->waiting, 0u);
-	KUNIT_EXPECT_LE(test, r->most_ns, cycle->plain.ns);
+	KUNIT_EXPECT_LE(test, r->most_ns, bus_plain_wire(c->b)->ns);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
 	KUNIT_EXPECT_LT(test, seen_us(c), 100000ull);
 	cyc_release(c);
@@ -206,12 +203,11 @@ static void rider_without_wire_time_waits(struct kunit *test)
 static void rider_full_frame_carries_none(struct kunit *test)
 {
 	struct cyc *c = start(test, full_text, 1);
-	const struct ec_link_stats *st = &c->b->m->links.link[0].stats;
-	const struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
+	const struct ec_link_stats *st = bus_stats(c->b);
 	u64 frames = bus_frames(c->b), bytes = atomic64_read(&st->tx_bytes), more;
-	u32 len = EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD + cycle->dgrams[0].len;
+	u32 len = EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD + bus_dgrams(c->b)[0].len;
 
-	KUNIT_ASSERT_EQ(test, cycle->n_dgrams, 1u);
+	KUNIT_ASSERT_EQ(test, bus_n_dgrams(c->b), 1u);
 	KUNIT_ASSERT_GT(test, len + EC_DGRAM_OVERHEAD + 2, (u32)EC_ETH_MAX);
 	cyc_run(c, CYCLES);
 	more = bus_frames(c->b) - frames - CYCLES;
@@ -231,21 +227,20 @@ static void rider_full_frame_carries_none(struct kunit *test)
 static void rider_monitor_sleeps_while_all_is_well(struct kunit *test)
 {
 	struct cyc *c = start(test, text, N);
-	struct ec_master *m = c->b->m;
 	unsigned long looks;
 	u32 rides;
 	u64 t;
 
 	/* now it is in step */
 	cyc_run(c, 200);
-	looks = READ_ONCE(m->monitor->nvcsw);
+	looks = bus_monitor_slept(c->b);
 	rides = riders(c)->seq;
 	t = ktime_get_ns();
 	while (ktime_get_ns() - t < 2 * NSEC_PER_SEC) {
 		cyc_run(c, 1);
 		KUNIT_EXPECT_LE(test, seen_us(c), 50000ull);
 	}
-	looks = READ_ONCE(m->monitor->nvcsw) - looks;
+	looks = bus_monitor_slept(c->b) - looks;
 	rides = riders(c)->seq - rides;
 	bus_figure("2 s in OP: %u riders, the monitor has slept %lu times", rides, looks);
 	KUNIT_EXPECT_GE(test, rides, 80u);
@@ -254,7 +249,7 @@ static void rider_monitor_sleeps_while_all_is_well(struct kunit *test)
 	KUNIT_EXPECT_GE(test, looks, 2ul);
 	bus_fault(c->b, EC_SIM_FAULT_CUT, N - 2, 1, 0, 0);
 	t = ktime_get_ns();
-	while (READ_ONCE(m->bus.responding) == N && ktime_get_ns() - t < NSEC_PER_SEC)
+	while (bus_responding(c->b) == N && ktime_get_ns() - t < NSEC_PER_SEC)
 		cyc_run(c, 1);
 	t = ktime_get_ns() - t;
 	bus_figure("a slave is cut off: known after %llu us", div_u64(t, NSEC_PER_USEC));

@@ -126,7 +126,7 @@ static struct cyc *start(struct kunit *test)
 static void rt_receive_send(struct kunit *test)
 {
 	struct cyc *c = start(test);
-	struct ec_session *s = c->b->m->sessions.session;
+	struct ec_cycle *cycle = bus_cycle(c->b);
 	struct ec_ioc_send send = { .queued = 3, .flags = ALL };
 	struct seen v = { 0 };
 	u32 i;
@@ -137,9 +137,9 @@ static void rt_receive_send(struct kunit *test)
 			bus_request(c->b, 1, EC_AL_SAFEOP);
 		send.sync_time = ktime_to_ns(c->next);
 		enter(&v, true);
-		KUNIT_ASSERT_EQ(test, ec_cycle_receive(&s->cycle), 0);
-		ec_dc_app_time(&c->b->m->dc, send.sync_time, send.sync_time);
-		KUNIT_ASSERT_EQ(test, ec_cycle_send(&s->cycle, &send), 0);
+		KUNIT_ASSERT_EQ(test, ec_cycle_receive(cycle), 0);
+		ec_dc_app_time(bus_dc(c->b), send.sync_time, send.sync_time);
+		KUNIT_ASSERT_EQ(test, ec_cycle_send(cycle, &send), 0);
 		leave(&v, true);
 	}
 	expect_nothing(test, &v);
@@ -193,7 +193,7 @@ static void rt_thread(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, cyc_all_op(c));
 	thread = find_thread();
 	KUNIT_ASSERT_NOT_NULL(test, thread);
-	st = &c->b->m->sessions.session->cycle.shared->status->kernel;
+	st = bus_kernel_status(c->b);
 	slept = thread->nvcsw;
 	printed = lines;
 	cycles = st->cycle;

@@ -92,7 +92,7 @@ static void jump(struct kunit *test, u64 before, u64 in_cycle, u32 pause_ms)
 	msleep(pause_ms);
 	c->next = ktime_get();
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
-	expect_grid(c, b->m->dc.phase, 0);
+	expect_grid(c, bus_dc_phase(b), 0);
 	ahead = 0;
 }
 
@@ -121,10 +121,10 @@ static void shifted(struct kunit *test, s32 shift)
 	tell(b, app_now());
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
-	expect_grid(c, b->m->dc.phase, shift);
+	expect_grid(c, bus_dc_phase(b), shift);
 	for (i = 0; i < 2; i++)		/* and in the future when it was set */
 		KUNIT_EXPECT_GT(test, get_unaligned_le64(bus_esc(b, i)->mem + EC_REG_DC_START),
-				b->m->dc.phase);
+				bus_dc_phase(b));
 	ahead = 0;
 }
 
@@ -154,14 +154,14 @@ static void rules_deactivate(struct kunit *test)
 			cyc_domain(c);
 		cyc_map_all(c, 0, 2, round == 1);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
-		KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_configs, 2u);
+		KUNIT_EXPECT_EQ(test, bus_wanted(b)->n_configs, 2u);
 		cyc_activate(c);
 		KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
-		KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_configs, 0u);
-		KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_domains, 0u);
+		KUNIT_EXPECT_EQ(test, bus_wanted(b)->n_configs, 0u);
+		KUNIT_EXPECT_EQ(test, bus_wanted(b)->n_domains, 0u);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DOMAIN_OFFSET, &at), -ENOENT);
-		KUNIT_EXPECT_FALSE(test, b->m->dc.has_phase);
+		KUNIT_EXPECT_FALSE(test, bus_dc_has_phase(b));
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
 		bus_idle(b);
 		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
@@ -178,7 +178,7 @@ static void rules_configured_twice(struct kunit *test)
 	u32 first = cyc_config(c, 0);
 
 	KUNIT_EXPECT_EQ(test, cyc_config(c, 0), first);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->wanted.n_configs, 1u);
+	KUNIT_EXPECT_EQ(test, bus_wanted(b)->n_configs, 1u);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), -ENOENT);
 	/* nobody is there: no error, the handle is good */
 	sc.position = 17;

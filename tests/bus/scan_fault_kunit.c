@@ -137,12 +137,12 @@ static void scan_not_read_not_published(struct kunit *test)
 	u32 i, unread = 0;
 
 	bus_plug(b);
-	WRITE_ONCE(b->m->base->stopping, true);
+	WRITE_ONCE(bus_base(b)->stopping, true);
 	for (i = 0; i < 100; i++) {
 		msleep(1);
-		unread += b->m->bus.n_slaves && !bus_slave(b, 0)->sii;
+		unread += bus_n_slaves(b) && !bus_slave(b, 0)->sii;
 	}
-	WRITE_ONCE(b->m->base->stopping, false);
+	WRITE_ONCE(bus_base(b)->stopping, false);
 	KUNIT_EXPECT_EQ(test, unread, 0u);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
 }
@@ -195,9 +195,9 @@ static void bounce_at(struct bus *b, int position)
 {
 	static struct ec_bus_ops ops;
 
-	ops = *b->m->bus.ops;
+	ops = *bus_table(b)->ops;
 	ops.attached = bounce;
-	b->m->bus.ops = &ops;
+	bus_table(b)->ops = &ops;
 	bounces.b = b;
 	bounces.position = position;
 	bounces.times = 0;
@@ -219,7 +219,7 @@ static void scan_bounce_known(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
 	msleep(500);
 	KUNIT_EXPECT_EQ(test, bounces.times, 1u);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 5u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 5u);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 2), s);
 	KUNIT_EXPECT_MEMEQ(test, s->regs, regs, sizeof(regs));
 	KUNIT_EXPECT_EQ(test, s->dl_status, dl);
@@ -240,7 +240,7 @@ static void scan_bounce_new(struct kunit *test)
 	KUNIT_ASSERT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
 	bus_idle(b);
 	t0 = ktime_get_ns();
-	ec_xfer_fprd(&b->m->links, bus_slave(b, 0)->station, 0, v, 4);
+	bus_fprd(b, bus_slave(b, 0)->station, 0, v, 4);
 	t0 = ktime_get_ns() - t0;
 	bounces = (struct bounce){ .after_ns = t0 * 3 / 2, .ns = 3 * t0 };
 	bounce_at(b, 5);
@@ -377,11 +377,11 @@ static void scan_too_much(struct kunit *test)
 	put_unaligned_le16(0x001f, e->data + 2 * EC_SII_W_SIZE);
 	put_unaligned_le16(0x0900, e->data + EC_SII_FIXED_SIZE);
 	put_unaligned_le16(3000 / 2, e->data + EC_SII_FIXED_SIZE + 2);
-	atomic_long_add(most, &b->m->bus.sii_bytes);
+	atomic_long_add(most, &bus_table(b)->sii_bytes);
 	others_fine(b, 5, 1000);
 	failed_with(b, 5,
 		    "the EEPROMs of all slaves exceed 64 MiB; disconnect slaves with large EEPROMs");
-	atomic_long_sub(most, &b->m->bus.sii_bytes);
+	atomic_long_sub(most, &bus_table(b)->sii_bytes);
 }
 
 static void scan_blank_zeros(struct kunit *test)
@@ -460,7 +460,7 @@ static void scan_reads_new_slaves_only(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_CUT, 3, 1, 0, 0);
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 1000), ~0ull);
-	all = b->m->bus.scan_frames;
+	all = bus_scan_frames(b);
 	for (i = 0; i < 4; i++)
 		old[i] = bus_slave(b, i);
 
@@ -474,8 +474,8 @@ static void scan_reads_new_slaves_only(struct kunit *test)
 	/* nobody is new now: no EEPROM is read */
 	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
-	KUNIT_EXPECT_LT(test, b->m->bus.scan_frames, 12ull);
-	KUNIT_EXPECT_LT(test, 8 * b->m->bus.scan_frames, all);
+	KUNIT_EXPECT_LT(test, bus_scan_frames(b), 12ull);
+	KUNIT_EXPECT_LT(test, 8 * bus_scan_frames(b), all);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 4)->next[1], EC_UAPI_NONE16);
 }
 
@@ -488,8 +488,8 @@ static void scan_on_request(struct kunit *test)
 
 	/* the serial number changes */
 	put_unaligned_le32(4711, e->data + 2 * EC_SII_W_SERIAL);
-	ec_bus_rescan(&b->m->bus);
-	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
+	bus_rescan(b);
+	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(bus_table(b)), 0);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->info.serial, 4711);
 	KUNIT_EXPECT_GT(test, bus_frames(b) - frames, 50ull);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 1000), ~0ull);
@@ -544,8 +544,8 @@ static void scan_comes_before_reserve(struct kunit *test)
 	struct bus *b = bus_new(test, line);
 
 	bus_plug(b);
-	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(bus_table(b)), 0);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), (u32)N);
 }
 
 static struct kunit_case scan_fault_cases[] = {

@@ -128,7 +128,7 @@ static void scan_bench_topology(struct kunit *test)
  */
 static void scan_parts_of_layers(struct kunit *test)
 {
-	struct ec_slave *s = ec_slave_alloc(&bus_new(test, "bench")->m->bus, 1001);
+	struct ec_slave *s = ec_slave_alloc(bus_table(bus_new(test, "bench")), 1001);
 	struct ec_setup *setup;
 	struct ec_clock *c;
 
@@ -168,16 +168,16 @@ static void scan_stations(struct kunit *test)
 static void scan_nothing(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "bench");
-	u32 scans = b->m->bus.scan_count;
+	u32 scans = bus_scans(b);
 	u64 t0;
 
 	msleep(100);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), 0);
 	msleep(100);
-	KUNIT_EXPECT_FALSE(test, b->m->bus.rescan);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
+	KUNIT_EXPECT_FALSE(test, bus_rescan_due(b));
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans + 1);
 	t0 = ktime_get_ns();
-	KUNIT_EXPECT_EQ(test, ec_bus_wait_scan(&b->m->bus), 0);
+	KUNIT_EXPECT_EQ(test, ec_bus_wait_scan(bus_table(b)), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 1000000ull);
 	bus_plug(b);
 	KUNIT_EXPECT_NE(test, bus_wait(b, ARRAY_SIZE(bench), EC_AL_PREOP, 10000), ~0ull);
@@ -220,20 +220,20 @@ static void scan_while_reserved(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
 	const u8 *al = bus_esc(b, 2)->mem + EC_REG_AL_STATUS;
-	u32 scans = b->m->bus.scan_count, i;
+	u32 scans = bus_scans(b), i;
 	u64 frames;
 
 	bus_idle(b);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), -EBUSY);
-	ec_bus_rescan(&b->m->bus);
+	bus_rescan(b);
 	msleep(100);
 	frames = bus_frames(b);
 	msleep(1000);
 	/* looks every 20 ms, some of them in two frames */
 	KUNIT_EXPECT_GE(test, bus_frames(b) - frames, 40ull);
 	KUNIT_EXPECT_LE(test, bus_frames(b) - frames, 100ull);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans);
 	ec_app_al_fail(bus_app(b, "ai"), EC_AL_INIT, 0x001b, ktime_get_ns());
 	/* the master's copy may have that value for less than 100 us: look at the slave's */
 	KUNIT_EXPECT_EQ(test, al[0], EC_AL_INIT | EC_AL_ERROR);
@@ -241,9 +241,9 @@ static void scan_while_reserved(struct kunit *test)
 		msleep(1);
 	KUNIT_EXPECT_EQ(test, al[0], EC_AL_PREOP);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, 2, EC_AL_PREOP, 100), ~0ull);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans + 1);
 }
 
 /* an application that reserves the master, and what it finds then */
@@ -260,8 +260,8 @@ static int reserve(void *arg)
 	struct reservation *r = arg;
 
 	r->ret = ec_ioc(&r->b->app, EC_IOC_RESERVE, NULL);
-	r->busy = READ_ONCE(r->b->m->bus.scan_busy);
-	r->slaves = READ_ONCE(r->b->m->bus.n_slaves);
+	r->busy = bus_scan_busy(r->b);
+	r->slaves = bus_n_slaves(r->b);
 	complete(&r->done);
 	return 0;
 }
@@ -275,24 +275,24 @@ static void scan_before_reservation_is_waited_for(struct kunit *test)
 
 	bus_idle(b);
 	init_completion(&r.done);
-	down_write(&b->m->bus.topo);
+	down_write(&bus_table(b)->topo);
 	KUNIT_EXPECT_FALSE(test, IS_ERR(kthread_run(reserve, &r, "reserve")));
 	/* it is in its wait, whose result it gets without the session lock */
 	msleep(5);
-	KUNIT_EXPECT_TRUE(test, mutex_trylock(&b->m->sessions.lock));
-	up_write(&b->m->bus.topo);
+	KUNIT_EXPECT_TRUE(test, mutex_trylock(bus_mutex(b)));
+	up_write(&bus_table(b)->topo);
 	msleep(5);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
-	ec_bus_rescan(&b->m->bus);
-	for (i = 0; i < 1000 && !READ_ONCE(b->m->bus.scan_busy); i++)
+	KUNIT_EXPECT_NULL(test, bus_session(b));
+	bus_rescan(b);
+	for (i = 0; i < 1000 && !bus_scan_busy(b); i++)
 		usleep_range(100, 101);
-	KUNIT_EXPECT_TRUE(test, READ_ONCE(b->m->bus.scan_busy));
-	mutex_unlock(&b->m->sessions.lock);
+	KUNIT_EXPECT_TRUE(test, bus_scan_busy(b));
+	mutex_unlock(bus_mutex(b));
 	wait_for_completion(&r.done);
 	KUNIT_EXPECT_EQ(test, r.ret, 0);
 	KUNIT_EXPECT_FALSE(test, r.busy);
 	KUNIT_EXPECT_EQ(test, r.slaves, (u32)ARRAY_SIZE(bench));
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 }
 
 /* Module parameters that cannot be meant: no master at all, and no leak. */

@@ -57,8 +57,8 @@ static u64 until_read(struct bus *b, u32 limit_ms)
 
 	while (ktime_get_ns() < end && bus_slave(b, 5)->al_status != EC_AL_PREOP) {
 		usleep_range(1000, 1001);
-		if (b->m->bus.complete_ns)
-			gap = max(gap, ktime_get_ns() - b->m->bus.complete_ns);
+		if (bus_table(b)->complete_ns)
+			gap = max(gap, ktime_get_ns() - bus_table(b)->complete_ns);
 	}
 	return gap;
 }
@@ -72,8 +72,8 @@ static void is_read(struct bus *b, size_t len)
 	KUNIT_EXPECT_STREQ(b->test, s->sii_flaw, "");
 	KUNIT_ASSERT_EQ(b->test, s->sii_bytes, len);
 	KUNIT_EXPECT_MEMEQ(b->test, s->sii, bus_esc(b, 5)->eep.data, len);
-	KUNIT_EXPECT_GE(b->test, atomic_long_read(&b->m->bus.sii_bytes), (long)len);
-	KUNIT_EXPECT_LE(b->test, atomic_long_read(&b->m->bus.sii_bytes), 4 * (long)len);
+	KUNIT_EXPECT_GE(b->test, atomic_long_read(&bus_table(b)->sii_bytes), (long)len);
+	KUNIT_EXPECT_LE(b->test, atomic_long_read(&bus_table(b)->sii_bytes), 4 * (long)len);
 }
 
 static void large(struct kunit *test, size_t len)

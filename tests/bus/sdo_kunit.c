@@ -120,7 +120,7 @@ static void sdo_errors(struct kunit *test)
 	KUNIT_EXPECT_EQ(test,
 			ec_coe_upload(&s->mbox, SCRATCH, 0, false, buf, 8, &got, &abort, NULL),
 			-ENOBUFS);
-	KUNIT_EXPECT_EQ(test, ec_coe_upload(&bus_slave(b, 2)->mbox, 0x1000, 0, false, buf, 8, &got,
+	KUNIT_EXPECT_EQ(test, ec_coe_upload(bus_mbox(b, 2), 0x1000, 0, false, buf, 8, &got,
 					    &abort, NULL), -EPROTONOSUPPORT);
 	/* and the mailbox works on */
 	there_and_back(b, 0, "small", TYPES, 8, 4);
@@ -135,7 +135,7 @@ static void sdo_errors(struct kunit *test)
 static void sdo_information(struct kunit *test)
 {
 	struct bus *b = ready(test);
-	struct ec_mbox *small = &bus_slave(b, 0)->mbox;
+	struct ec_mbox *small = bus_mbox(b, 0);
 	const struct ec_app *app = bus_app(b, "small");
 	struct ec_sdoinfo i;
 	struct ec_od_entry e;
@@ -159,7 +159,7 @@ static void sdo_information(struct kunit *test)
 	ec_sdoinfo_init(&i, EC_SDOINFO_LIST_REQ, 1, 0, buf, 7);
 	KUNIT_EXPECT_EQ(test, ec_coe_info(small, &i, NULL), -ENOBUFS);
 	ec_sdoinfo_init(&i, EC_SDOINFO_LIST_REQ, 1, 0, buf, sizeof(buf));
-	KUNIT_EXPECT_EQ(test, ec_coe_info(&bus_slave(b, 2)->mbox, &i, NULL), -EPROTONOSUPPORT);
+	KUNIT_EXPECT_EQ(test, ec_coe_info(bus_mbox(b, 2), &i, NULL), -EPROTONOSUPPORT);
 	/* and the mailbox works on */
 	there_and_back(b, 0, "small", TYPES, 8, 4);
 }
@@ -200,7 +200,7 @@ static void sdo_mute(struct kunit *test)
 
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	KUNIT_EXPECT_EQ(test,
-			ec_coe_upload(&bus_slave(b, 0)->mbox, 0x1000, 0, false, buf, 8, &got,
+			ec_coe_upload(bus_mbox(b, 0), 0x1000, 0, false, buf, 8, &got,
 				      &abort,
 					    &(struct ec_mbox_limit){ .timeout_ms = 200 }), -ETIMEDOUT);
 	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
@@ -247,7 +247,7 @@ static void sdo_slow_segments_end_transfer(struct kunit *test)
 {
 	const struct ec_mbox_limit limit = { .timeout_ms = 5000 };
 	struct bus *b = ready(test);
-	struct ec_mbox *small = &bus_slave(b, 0)->mbox;
+	struct ec_mbox *small = bus_mbox(b, 0);
 	u8 *v = kunit_kzalloc(test, 1000, GFP_KERNEL);
 	u64 t0 = ktime_get_ns(), up, down;
 	size_t got;
@@ -357,7 +357,7 @@ static void sdo_slow_reply(struct kunit *test)
 
 		bus_app(b, "large")->response_ns = t[i].ms * NSEC_PER_MSEC;
 		KUNIT_EXPECT_EQ(test,
-				ec_coe_upload(&bus_slave(b, 1)->mbox, TYPES, 8, false, v, 4, &got,
+				ec_coe_upload(bus_mbox(b, 1), TYPES, 8, false, v, 4, &got,
 						    &abort, NULL), 0);
 		us = div_u64(ktime_get_ns() - t0, NSEC_PER_USEC);
 		/* those of the monitor are among them */

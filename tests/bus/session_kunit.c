@@ -19,10 +19,10 @@ static struct bus *one_up(struct kunit *test)
 
 static void expect_nothing_told(struct bus *b)
 {
-	KUNIT_EXPECT_FALSE(b->test, b->m->dc.has_phase);
-	KUNIT_EXPECT_EQ(b->test, b->m->dc.app_time, 0ull);
-	KUNIT_EXPECT_EQ(b->test, b->m->links.access.interval_us, (u32)EC_INTERVAL_US);
-	KUNIT_EXPECT_FALSE(b->test, b->m->links.access.interval_set);
+	KUNIT_EXPECT_FALSE(b->test, bus_dc_has_phase(b));
+	KUNIT_EXPECT_EQ(b->test, bus_app_time(b), 0ull);
+	KUNIT_EXPECT_EQ(b->test, bus_interval_us(b), (u32)EC_INTERVAL_US);
+	KUNIT_EXPECT_FALSE(b->test, bus_interval_told(b));
 }
 
 /* Time and interval of an application that was never active are its own. */
@@ -36,15 +36,15 @@ static void session_forgets(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &t), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &i), 0);
-	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase);
-	ec_session_end(&b->m->sessions, &b->app);
+	KUNIT_EXPECT_TRUE(test, bus_dc_has_phase(b));
+	bus_end(b);
 	expect_nothing_told(b);
 
 	m = ecrt_request_master(0);
 	KUNIT_ASSERT_NOT_NULL(test, m);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(m, 777), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_set_send_interval(m, 70), 0);
-	KUNIT_EXPECT_EQ(test, b->m->dc.phase, 777ull);
+	KUNIT_EXPECT_EQ(test, bus_dc_phase(b), 777ull);
 	ecrt_release_master(m);
 	expect_nothing_told(b);
 }
@@ -57,23 +57,23 @@ static void session_candidate_is_freed(struct kunit *test)
 	struct bus *b = a->c->b;
 	struct ec_ioc_app_time t = { .app_time = 12345 };
 	struct ec_ioc_interval i = { .interval_us = 50 };
-	u64 phase = b->m->dc.phase;
+	u64 phase = bus_dc_phase(b);
 
-	KUNIT_ASSERT_TRUE(test, b->m->dc.has_phase);
-	ec_session_end(&b->m->sessions, &b->app);
+	KUNIT_ASSERT_TRUE(test, bus_dc_has_phase(b));
+	bus_end(b);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_APP_TIME, &t), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &i), 0);
-	ec_session_end(&b->m->sessions, &b->app);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
-	KUNIT_EXPECT_TRUE(test, b->m->dc.has_phase && ec_dc_begun(&b->m->dc));
-	KUNIT_EXPECT_EQ(test, b->m->dc.phase, phase);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
+	bus_end(b);
+	KUNIT_EXPECT_NULL(test, bus_candidate(b));
+	KUNIT_EXPECT_TRUE(test, bus_dc_has_phase(b) && ec_dc_begun(bus_dc(b)));
+	KUNIT_EXPECT_EQ(test, bus_dc_phase(b), phase);
+	KUNIT_EXPECT_EQ(test, bus_interval_us(b), 1000u);
 	/* nor does the next one get what it has set */
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
-	KUNIT_EXPECT_EQ(test, ec_session_end_detached(&b->m->sessions), 0);
+	KUNIT_EXPECT_EQ(test, ec_session_end_detached(bus_sessions(b)), 0);
 	expect_nothing_told(b);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 }
 
 static void uploads(struct bus *b)
@@ -87,7 +87,7 @@ static void uploads(struct bus *b)
 	KUNIT_EXPECT_EQ(b->test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_PREOP);
 	KUNIT_EXPECT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &sdo), 0, "%s",
 			    b->app.reason);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 }
 
 static void kernel_uploads(struct bus *b)
@@ -143,7 +143,7 @@ static void session_reserve_refused(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 10 * NSEC_PER_SEC);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	bus_idle(b);
 	t0 = ktime_get_ns();
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
@@ -158,7 +158,7 @@ static u32 given_up_after(struct cyc *c)
 	u32 i;
 
 	for (i = 0; i < 20000 && s->error == EC_SLAVE_OK; i++) {
-		if (c->b->m->sessions.session->wanted.active)
+		if (bus_wanted(c->b)->active)
 			cyc_run(c, 1);
 		else
 			usleep_range(1000, 1001);
@@ -248,7 +248,7 @@ static void session_scan_progress(struct kunit *test)
 	bus_plug(b);
 	watch_scan(b, 50);
 	bus_idle(b);
-	ec_bus_rescan(&b->m->bus);
+	bus_rescan(b);
 	watch_scan(b, 50);
 }
 
@@ -256,7 +256,7 @@ static struct bus *detached(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, hold);
 
-	ec_session_end(&a->c->b->m->sessions, &a->c->b->app);
+	bus_end(a->c->b);
 	return a->c->b;
 }
 
@@ -294,22 +294,22 @@ static void session_candidate_makes_other_calls(struct kunit *test)
 static void session_candidate_in_kernel(struct kunit *test)
 {
 	struct bus *b = detached(test);
-	struct ec_session *runs = b->m->sessions.session;
+	struct ec_session *runs = bus_session(b);
 	struct kapp *k = kapp_new(b, 500);
-	u64 app_time = b->m->dc.app_time, cycle;
-	bool phase = b->m->dc.has_phase;
+	u64 app_time = bus_app_time(b), cycle;
+	bool phase = bus_dc_has_phase(b);
 
-	KUNIT_ASSERT_PTR_EQ(test, b->m->sessions.session, runs);
-	KUNIT_ASSERT_NOT_NULL(test, b->m->sessions.candidate);
+	KUNIT_ASSERT_PTR_EQ(test, bus_session(b), runs);
+	KUNIT_ASSERT_NOT_NULL(test, bus_candidate(b));
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 76), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 77), 0);
-	KUNIT_EXPECT_GE(test, b->m->dc.app_time, app_time);
-	KUNIT_EXPECT_NE(test, b->m->dc.app_time, 77ull);
-	KUNIT_EXPECT_EQ(test, b->m->dc.has_phase, phase);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 1000u);
+	KUNIT_EXPECT_GE(test, bus_app_time(b), app_time);
+	KUNIT_EXPECT_NE(test, bus_app_time(b), 77ull);
+	KUNIT_EXPECT_EQ(test, bus_dc_has_phase(b), phase);
+	KUNIT_EXPECT_EQ(test, bus_interval_us(b), 1000u);
 	kapp_map(k, 0);
 	kapp_map(k, 1);
-	cycle = runs->cycle.shared->status->kernel.cycle;
+	cycle = bus_kernel_status(b)->cycle;
 	KUNIT_EXPECT_EQ(test, ecrt_master_activate(k->m), -EEXIST);
 	KUNIT_EXPECT_EQ(test, kapp_exchange(k), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_domain_queue(k->d), -EINVAL);
@@ -317,24 +317,24 @@ static void session_candidate_in_kernel(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ecrt_master_sync_slave_clocks(k->m), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_master_deactivate(k->m), -EINVAL);
 	msleep(500);
-	KUNIT_EXPECT_GE(test, runs->cycle.shared->status->kernel.cycle - cycle, 499ull);
+	KUNIT_EXPECT_GE(test, bus_kernel_status(b)->cycle - cycle, 499ull);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	/* the way the refusal names; then the bus is its own */
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.candidate);
+	KUNIT_EXPECT_NULL(test, bus_candidate(b));
 	/* what it has set meanwhile; its first time is the phase */
-	KUNIT_EXPECT_TRUE(test, b->m->links.access.interval_set);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, 500u);
-	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 77ull);
+	KUNIT_EXPECT_TRUE(test, bus_interval_told(b));
+	KUNIT_EXPECT_EQ(test, bus_interval_us(b), 500u);
+	KUNIT_EXPECT_EQ(test, bus_app_time(b), 77ull);
 	KUNIT_EXPECT_EQ(test, ecrt_master_application_time(k->m, 78), 0);
-	KUNIT_EXPECT_EQ(test, b->m->dc.app_time, 78ull);
-	KUNIT_EXPECT_EQ(test, b->m->dc.phase, 76ull);
+	KUNIT_EXPECT_EQ(test, bus_app_time(b), 78ull);
+	KUNIT_EXPECT_EQ(test, bus_dc_phase(b), 76ull);
 	kapp_op(k);
 	kapp_run(k, 10);
 	ecrt_release_master(k->m);
-	KUNIT_EXPECT_NULL(test, b->m->sessions.session);
+	KUNIT_EXPECT_NULL(test, bus_session(b));
 }
 
 /* A configuration is of one master. */
@@ -353,9 +353,9 @@ static void session_foreign_config(struct kunit *test)
 	kapp_config(&k, 0);
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, (ec_slave_config_t *)sc),
 			-EINVAL);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->ref_config, EC_UAPI_NONE32);
+	KUNIT_EXPECT_EQ(test, bus_session(b)->ref_config, EC_UAPI_NONE32);
 	KUNIT_EXPECT_EQ(test, ecrt_master_select_reference_clock(m, k.sc[0]), 0);
-	KUNIT_EXPECT_EQ(test, b->m->sessions.session->ref_config, 0u);
+	KUNIT_EXPECT_EQ(test, bus_session(b)->ref_config, 0u);
 	ecrt_release_master(m);
 }
 
@@ -378,8 +378,8 @@ static void session_interval(struct kunit *test)
 		struct ec_ioc_interval t = { .interval_us = told[i].us };
 
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &t), 0);
-		KUNIT_EXPECT_EQ(test, b->m->links.access.interval_us, told[i].is);
-		KUNIT_EXPECT_EQ(test, b->m->links.access.interval_set, told[i].told);
+		KUNIT_EXPECT_EQ(test, bus_interval_us(b), told[i].is);
+		KUNIT_EXPECT_EQ(test, bus_interval_told(b), told[i].told);
 	}
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_INTERVAL, &none), -EINVAL);
 	cyc_release(c);
@@ -403,16 +403,16 @@ static void clear_pdos(struct bus *b)
 {
 	static const u8 ops[] = { EC_SC_PDO_ASSIGN_ADD, EC_SC_PDO_MAP_ADD, EC_SC_PDO_ASSIGN_CLEAR };
 	struct ec_ioc_sc_pdo pdo = { .sm = 2, .pdo = 0x1600, .bits = 8 };
-	size_t bytes = b->m->sessions.session->wanted.budget.bytes;
+	size_t bytes = bus_wanted(b)->budget.bytes;
 	u32 i;
 
 	for (i = 0; i < ARRAY_SIZE(ops); i++) {
 		pdo.op = ops[i];
 		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SC_PDO, &pdo), 0);
-		KUNIT_EXPECT_EQ(b->test, b->m->sessions.session->wanted.budget.bytes > bytes,
+		KUNIT_EXPECT_EQ(b->test, bus_wanted(b)->budget.bytes > bytes,
 				ops[i] != EC_SC_PDO_ASSIGN_CLEAR);
 	}
-	KUNIT_EXPECT_EQ(b->test, b->m->sessions.session->wanted.budget.bytes, bytes);
+	KUNIT_EXPECT_EQ(b->test, bus_wanted(b)->budget.bytes, bytes);
 }
 
 /* All sessions and what is mapped have a limit together. */
@@ -422,46 +422,44 @@ static void session_memory(struct kunit *test)
 	struct ec_ioc_slave_config sc = { .position = 40, .vendor_id = 1, .product_code = 2 };
 	struct ec_ioc_sc_sdo sdo = { .index = 0x2000, .size = 4096 };
 	u8 *value = kunit_kzalloc(test, sdo.size, GFP_KERNEL);
-	struct ec_master *m = b->m;
 	long mapped;
 	u32 i;
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
-	KUNIT_EXPECT_GE(test, m->sessions.session->wanted.budget.bytes, sizeof(struct ec_config));
+	KUNIT_EXPECT_GE(test, bus_wanted(b)->budget.bytes, sizeof(struct ec_config));
 	sdo.data = (uintptr_t)value;
 	clear_pdos(b);
 	/* as if something else was mapped: there is room for three values */
-	mapped = EC_MAX_SESSION_BYTES - atomic_long_read(&m->sessions.memory) - 4 * sdo.size;
-	atomic_long_add(mapped, &m->sessions.memory);
+	mapped = EC_MAX_SESSION_BYTES - bus_memory(b) - 4 * sdo.size;
+	bus_add_memory(b, mapped);
 	for (i = 0; i < 3; i++)
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), -ENOMEM);
 	expect_limit(b);
 	KUNIT_EXPECT_EQ(test, activate(b), -ENOMEM);
 	expect_limit(b);
-	atomic_long_sub(mapped, &m->sessions.memory);
+	bus_add_memory(b, -mapped);
 	KUNIT_EXPECT_EQ(test, activate(b), 0);
-	ec_session_end(&m->sessions, &b->app);
+	bus_end(b);
 }
 
 /* A mapping that outlives its session counts until it goes. */
 static void session_mapping_outlives(struct kunit *test)
 {
 	struct bus *b = kcyc_start(test, (struct ec_ioc_cycle){ 0 })->c->b;
-	struct ec_shared *sh = b->m->sessions.session->cycle.shared;
+	struct ec_shared *sh = bus_shared(b);
 	size_t bytes = sh->bytes;
 
 	KUNIT_EXPECT_GE(test, bytes, sh->image_size + sh->exchange_size + EC_STATUS_BYTES);
-	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->sessions.memory),
-			bytes + b->m->sessions.session->wanted.budget.bytes);
+	KUNIT_EXPECT_EQ(test, (size_t)bus_memory(b), bytes + bus_wanted(b)->budget.bytes);
 	ec_shared_get(sh);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	/* work on requests may end a moment later */
 	msleep(50);
-	KUNIT_EXPECT_EQ(test, (size_t)atomic_long_read(&b->m->sessions.memory), bytes);
+	KUNIT_EXPECT_EQ(test, (size_t)bus_memory(b), bytes);
 	ec_shared_put(sh);
-	KUNIT_EXPECT_EQ(test, atomic_long_read(&b->m->sessions.memory), 0L);
+	KUNIT_EXPECT_EQ(test, bus_memory(b), 0L);
 }
 
 /* A session without a cycle thread has none whose priority could change. */
@@ -473,9 +471,9 @@ static void session_without_thread_inherits(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	ec_sessions_lock(&b->m->sessions);
-	ec_cycle_thread_inherit(&b->m->sessions.session->cycle, 7, true);
-	ec_sessions_unlock(&b->m->sessions);
+	bus_lock(b);
+	ec_cycle_thread_inherit(bus_cycle(b), 7, true);
+	bus_unlock(b);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 }
 

@@ -34,8 +34,7 @@ static int ask(void *arg)
 		a->dg[i] = EC_FPRD(bus_slave(a->b, 1)->station, 0, a->len, a->data + i * a->len);
 		a->dg[i].repeat = false;
 	}
-	a->ret = a->clock ? ec_xfer_clock(&a->b->m->links, a->dg, a->n) : ec_xfer(&a->b->m->links,
-										  a->dg, a->n);
+	a->ret = a->clock ? bus_xfer_clock(a->b, a->dg, a->n) : bus_xfer(a->b, a->dg, a->n);
 	a->end_ns = ktime_get_ns();
 	complete(&a->done);
 	return 0;
@@ -71,9 +70,9 @@ struct share {
 
 static void count(struct cyc *c)
 {
-	u64 bytes = atomic64_read(&c->b->m->links.link[0].stats.tx_bytes);
+	u64 bytes = bus_tx_bytes(c->b);
 	u64 frames = bus_frames(c->b);
-	const struct ec_cyc_wire *last = &c->b->m->sessions.session->cycle.last;
+	const struct ec_cyc_wire *last = bus_last_wire(c->b);
 	struct share *s = c->ctx;
 
 	/* everything since the send before was sent by it */
@@ -101,7 +100,7 @@ static struct share run(struct cyc *c, struct asker *a, u32 n, u32 us)
 	u32 i, left = n;
 
 	c->period_ns = us * NSEC_PER_USEC;
-	c->b->m->links.access.interval_us = us;
+	bus_set_interval(c->b, us);
 	cyc_run(c, 5);
 	c->each = count;
 	c->ctx = &s;
@@ -153,7 +152,7 @@ static void share_limit_of_module(struct kunit *test)
 
 	KUNIT_EXPECT_EQ(test, before, 64u);
 	/* the last one has its turn when 191 have left, however long that takes */
-	c->b->m->links.share.late_per_s = 0;
+	bus_set_late_per_s(c->b, 0);
 	for (k = 0; k < ARRAY_SIZE(t); k++) {
 		struct share s;
 
@@ -177,7 +176,7 @@ static void share_of_wire(struct kunit *test)
 
 	for (k = 0; k < ARRAY_SIZE(t); k++) {
 		struct share s = run(c, a, 1, t[k].us);
-		u32 slack_ns = ec_access_slack_ns(&c->b->m->links);
+		u32 slack_ns = bus_slack_ns(c->b);
 
 		KUNIT_EXPECT_EQ_MSG(test, s.most, (u64)t[k].most, "cycle of %u us", t[k].us);
 		if (s.most > 1)
@@ -193,7 +192,7 @@ static void share_of_wire_packed(struct kunit *test)
 	struct cyc *c = in_op(test);
 	struct asker *a = askers(c->b, 40, 20, 1, 300);
 	struct share s = run(c, a, 40, 1000);
-	u32 slack_ns = ec_access_slack_ns(&c->b->m->links);
+	u32 slack_ns = bus_slack_ns(c->b);
 
 	KUNIT_EXPECT_GE(test, s.most, 3ull);
 	KUNIT_EXPECT_LE(test, s.most, 4ull);
@@ -253,7 +252,7 @@ static void share_limited_during_start(struct kunit *test)
 	bus_figure("100 drives to OP beside a cycle of 1 ms: at most %llu acyclic frames and %llu us of wire time a send, %llu frames in all",
 		   s.most, div_u64(s.most_ns, 1000), s.sum);
 	KUNIT_EXPECT_LE(test, s.most, 8ull);
-	KUNIT_EXPECT_LE(test, s.most_ns, (u64)ec_access_slack_ns(&b->m->links) / 2);
+	KUNIT_EXPECT_LE(test, s.most_ns, (u64)bus_slack_ns(b) / 2);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 }
 

@@ -14,7 +14,7 @@
 
 struct change {
 	struct delayed_work work;
-	struct ec_master *m;
+	struct bus *b;
 };
 
 static struct bus *ready(struct kunit *test)
@@ -29,30 +29,29 @@ static void end_change(struct work_struct *work)
 {
 	struct change *c = container_of(to_delayed_work(work), struct change, work);
 
-	ec_show_change_end(&c->m->base->show);
+	ec_show_change_end(bus_show(c->b));
 }
 
 /* What was found is gone, whether the change began in the section or in the pause. */
 static void show_pause_reports_change_that_waited(struct kunit *test)
 {
 	struct bus *b = ready(test);
-	struct change c = { .m = b->m };
+	struct change c = { .b = b };
 	u64 t0 = ktime_get_ns();
 	int ret;
 
 	INIT_DELAYED_WORK_ONSTACK(&c.work, end_change);
-	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
-	ec_show_change_announce(&b->m->base->show);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(bus_show(b)), 0);
+	ec_show_change_announce(bus_show(b));
 	schedule_delayed_work(&c.work, msecs_to_jiffies(20));
-	ret = ec_show_pause(&b->m->base->show);
+	ret = ec_show_pause(bus_show(b));
 	/* else the next change waits for ever */
 	if (!ret)
-		ec_show_end(&b->m->base->show);
+		ec_show_end(bus_show(b));
 	KUNIT_EXPECT_EQ(test, ret, -EAGAIN);
 	KUNIT_EXPECT_GE_MSG(test, ktime_get_ns() - t0, 10 * NSEC_PER_MSEC,
 			    "it waits for the end of the change");
-	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&b->m->base->show.showing), 0,
-			    "the section has ended");
+	KUNIT_EXPECT_EQ_MSG(test, atomic_read(&bus_show(b)->showing), 0, "the section has ended");
 	destroy_delayed_work_on_stack(&c.work);
 }
 
@@ -61,12 +60,12 @@ static void show_pause_goes_on_without_change(struct kunit *test)
 {
 	struct bus *b = ready(test);
 
-	ec_sessions_lock(&b->m->sessions);
-	ec_sessions_unlock(&b->m->sessions);
-	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
-	KUNIT_EXPECT_EQ(test, ec_show_pause(&b->m->base->show), 0);
-	KUNIT_EXPECT_EQ(test, atomic_read(&b->m->base->show.showing), 1);
-	ec_show_end(&b->m->base->show);
+	bus_lock(b);
+	bus_unlock(b);
+	KUNIT_ASSERT_EQ(test, ec_show_begin(bus_show(b)), 0);
+	KUNIT_EXPECT_EQ(test, ec_show_pause(bus_show(b)), 0);
+	KUNIT_EXPECT_EQ(test, atomic_read(&bus_show(b)->showing), 1);
+	ec_show_end(bus_show(b));
 }
 
 #define CONFIGS	200
@@ -91,16 +90,14 @@ static void show_many_configs_in_pieces(struct kunit *test)
 	for (i = 1; i < CONFIGS; i++)
 		configure(b, i);
 	configure(b, 0);
-	KUNIT_ASSERT_EQ(test, ec_show_begin(&b->m->base->show), 0);
-	KUNIT_EXPECT_NULL(test,
-			  ec_config_at(&b->m->sessions.session->wanted, b->m->bus.slaves[0], 0, 0,
-					     &from));
+	KUNIT_ASSERT_EQ(test, ec_show_begin(bus_show(b)), 0);
+	KUNIT_EXPECT_NULL(test, ec_config_at(bus_wanted(b), bus_slave_at(b, 0), 0, 0, &from));
 	KUNIT_EXPECT_LE(test, from, 64u);
-	ec_show_end(&b->m->base->show);
+	ec_show_end(bus_show(b));
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &slave), 0);
 	KUNIT_EXPECT_EQ(test, slave.config, (u32)CONFIGS);
 	KUNIT_EXPECT_TRUE(test, slave.differs);
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 }
 
 /* What a program leaves in the structure is no alias of a slave. */

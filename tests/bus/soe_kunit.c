@@ -225,7 +225,7 @@ static void soe_and_coe(struct kunit *test)
 
 static struct ec_config *config(struct cyc *c, u32 i)
 {
-	return c->b->m->sessions.session->wanted.configs[i];
+	return bus_config(c->b, i);
 }
 
 static struct cyc *prepare(struct kunit *test)
@@ -246,9 +246,9 @@ static int startup(struct cyc *c, u16 idn, u8 state, u16 value)
 	int ret;
 
 	put_unaligned_le16(value, v);
-	ec_sessions_lock(&c->b->m->sessions);
+	bus_lock(c->b);
 	ret = ec_config_idn_add(config(c, 0), 0, idn, state, v, 2);
-	ec_sessions_unlock(&c->b->m->sessions);
+	bus_unlock(c->b);
 	return ret;
 }
 

@@ -114,7 +114,7 @@ static u32 in_init(struct bus *b)
 {
 	u32 i, n = 0;
 
-	for (i = 0; i < b->m->bus.n_slaves; i++)
+	for (i = 0; i < bus_n_slaves(b); i++)
 		n += (bus_esc(b, i)->mem[EC_REG_AL_STATUS] & EC_AL_STATE_MASK) == EC_AL_INIT;
 	return n;
 }
@@ -137,7 +137,7 @@ static u64 to_op(struct cyc *c, u64 *clocks)
 		KUNIT_ASSERT_LT(b->test, us_since(t0), 5ull * USEC_PER_SEC);
 		cyc_run(c, 1);
 		inits += in_init(b);
-		if (ec_dc_busy(&b->m->dc))
+		if (ec_dc_busy(bus_dc(b)))
 			*clocks = us_since(t0);
 	}
 	KUNIT_EXPECT_EQ(b->test, inits, 0u);
@@ -175,9 +175,9 @@ static void start_to_op(struct kunit *test)
 	for (i = 0; i < 2; i++) {
 		c = configure(b, p);
 		bus_idle(b);
-		b->m->base->debug = debug;
+		bus_base(b)->debug = debug;
 		us = to_op(c, &clocks);
-		b->m->base->debug = 0;
+		bus_base(b)->debug = 0;
 		if (p->dc) {
 			bus_figure("activation to OP, %s, application %u: %llu us of bus time, of which the clocks take %llu us and SYNC0 begins %u us later",
 				   name, i + 1, us, clocks, SYNC_LEAD_US);

@@ -32,7 +32,7 @@ static struct cyc *configure(struct kunit *test)
 
 static const struct ec_status *page(const struct bus *b)
 {
-	return b->m->sessions.session->cycle.shared->status;
+	return bus_status(b);
 }
 
 /* As it was told before: no time in between in which nobody is there. */
@@ -100,7 +100,7 @@ static void state_no_reference(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, B, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, B, EC_AL_PREOP, 5000), ~0ull);
 	bus_idle(b);
-	KUNIT_ASSERT_NE(test, b->m->dc.ref_station, 0);
+	KUNIT_ASSERT_NE(test, bus_dc_ref_station(b), 0);
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
 	cyc_map_all(c, A, 1, 0);
@@ -117,7 +117,7 @@ static void state_no_reference(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, B, 0, 0, 0);
 	cyc_run(c, 3000);
 	KUNIT_EXPECT_EQ(test, page(b)->dc_ref, 1u);
-	KUNIT_EXPECT_EQ(test, b->m->dc.ref_station, bus_slave(b, B)->station);
+	KUNIT_EXPECT_EQ(test, bus_dc_ref_station(b), bus_slave(b, B)->station);
 }
 
 static u16 al(struct bus *b, u32 position)
@@ -156,9 +156,9 @@ static void state_reset(struct kunit *test)
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	/* the way down is not turned back */
-	ec_sessions_lock(&b->m->sessions);
-	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(b->m->sessions.session), 0);
-	ec_sessions_unlock(&b->m->sessions);
+	bus_lock(b);
+	KUNIT_EXPECT_EQ(test, ec_session_slaves_down(bus_session(b)), 0);
+	bus_unlock(b);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, al(b, A), EC_AL_PREOP);
@@ -200,10 +200,10 @@ static void state_reset_beside_lock(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, al(c->b, A), EC_AL_PREOP);
 	init_completion(&r.done);
 	INIT_WORK_ONSTACK(&r.work, reset);
-	mutex_lock(&c->b->m->sessions.lock);
+	mutex_lock(bus_mutex(c->b));
 	schedule_work(&r.work);
 	KUNIT_EXPECT_NE(test, wait_for_completion_timeout(&r.done, msecs_to_jiffies(100)), 0ul);
-	mutex_unlock(&c->b->m->sessions.lock);
+	mutex_unlock(bus_mutex(c->b));
 	flush_work(&r.work);
 	destroy_work_on_stack(&r.work);
 	KUNIT_EXPECT_EQ(test, r.ret, 0);

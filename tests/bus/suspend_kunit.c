@@ -38,7 +38,7 @@ static void exchange_slave(struct bus *b)
 static void suspend_idle_silent_then_rescan(struct kunit *test)
 {
 	struct bus *b = idle(test);
-	u32 scans = b->m->bus.scan_count;
+	u32 scans = bus_scans(b);
 	struct ec_file other;
 
 	KUNIT_EXPECT_GT(test, frames(b), 10ull);
@@ -55,8 +55,8 @@ static void suspend_idle_silent_then_rescan(struct kunit *test)
 	/* it waits for the scan */
 	ec_file_init(&other, b->m, true);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&other, EC_IOC_RESERVE, NULL), 0);
-	KUNIT_EXPECT_GT(test, b->m->bus.scan_count, scans);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, 2u);
+	KUNIT_EXPECT_GT(test, bus_scans(b), scans);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 2u);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->info.product, 0x4711u);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&other, EC_IOC_RELEASE, NULL), 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
@@ -72,7 +72,7 @@ static void suspend_link_returns_late(struct kunit *test)
 	exchange_slave(b);
 	ec_power_resume();
 	msleep(2000);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 0u);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 0u);
 	bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->info.product, 0x4711u);
@@ -91,14 +91,14 @@ static void suspend_in_use_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("suspend refused: the master is in use by process"),
 			used + 1);
 	/* its application has exited */
-	ec_session_end(&b->m->sessions, &b->app);
+	bus_end(b);
 	KUNIT_EXPECT_EQ(test, ec_power_sleep(), -EBUSY);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("suspend refused: a detached session is active"),
 			detached + 1);
 	msleep(200);
 	KUNIT_EXPECT_GE(test, kcyc_status(a)->cycle, cycle + 190);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(a->c));
-	KUNIT_ASSERT_EQ(test, ec_session_end_detached(&b->m->sessions), 0);
+	KUNIT_ASSERT_EQ(test, ec_session_end_detached(bus_sessions(b)), 0);
 	/* reserved, but not active: its list of slaves must stay */
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_EQ(test, ec_power_sleep(), -EBUSY);
@@ -130,7 +130,7 @@ static void suspend_scan_under_way_waits(struct kunit *test)
 	bus_plug(b);
 	usleep_range(2000, 2001);
 	KUNIT_ASSERT_EQ(test, ec_power_sleep(), 0);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 2u);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 2u);
 	KUNIT_EXPECT_EQ(test, frames(b), 0ull);
 	ec_power_resume();
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
@@ -140,11 +140,11 @@ static void suspend_scan_under_way_waits(struct kunit *test)
 static void suspend_calls_without_pair(struct kunit *test)
 {
 	struct bus *b = idle(test);
-	u32 scans = b->m->bus.scan_count;
+	u32 scans = bus_scans(b);
 
 	ec_power_resume();
 	msleep(500);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans);
 	KUNIT_ASSERT_EQ(test, ec_power_sleep(), 0);
 	KUNIT_EXPECT_EQ(test, ec_power_sleep(), -EBUSY);
 	KUNIT_EXPECT_EQ(test, frames(b), 0ull);
@@ -152,7 +152,7 @@ static void suspend_calls_without_pair(struct kunit *test)
 	ec_power_resume();
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
 	msleep(500);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans + 1);
+	KUNIT_EXPECT_EQ(test, bus_scans(b), scans + 1);
 }
 
 /* The last of several masters is in use: the others go on. */

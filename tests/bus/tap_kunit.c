@@ -47,7 +47,7 @@ static struct cyc *captured(struct kunit *test, struct program *p)
 	int ret;
 
 	ec_capture = true;
-	ret = ec_capture_create(&b->m->links);
+	ret = ec_capture_create(bus_links(b));
 	ec_capture = false;
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	bus_plug(b);
@@ -59,11 +59,11 @@ static struct cyc *captured(struct kunit *test, struct program *p)
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	rtnl_lock();
-	ret = dev_open(b->m->links.capture->nd, NULL);
+	ret = dev_open(bus_capture_dev(b), NULL);
 	rtnl_unlock();
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	*p = (struct program){ .pt = {
-		.type = htons(ETH_P_ALL), .dev = b->m->links.capture->nd, .func = get,
+		.type = htons(ETH_P_ALL), .dev = bus_capture_dev(b), .func = get,
 	} };
 	dev_add_pack(&p->pt);
 	return c;
@@ -94,7 +94,7 @@ static u32 not_captured(struct bus *b)
 
 static u64 tx_errors(struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.tx_errors);
+	return bus_tx_errors(b);
 }
 
 /* With a worker that runs, the program gets every frame, sent and received. */
@@ -105,7 +105,7 @@ static void tap_worker_runs_all_captured(struct kunit *test)
 	u64 frames = bus_frames(c->b);
 
 	cyc_run(c, 1000);
-	flush_delayed_work(&c->b->m->links.capture->tap.work);
+	flush_delayed_work(&bus_tap(c->b)->work);
 	frames = bus_frames(c->b) - frames;
 	dev_remove_pack(&p.pt);
 	KUNIT_EXPECT_EQ(test, p.bad, 0u);
@@ -123,7 +123,7 @@ static void tap_ring_full_drops_and_counts(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->links.capture->tap;
+	struct ec_tap *t = bus_tap(c->b);
 	struct rtnl_link_stats64 stats;
 	u64 frames, incomplete, errors;
 	u32 dropped, had;
@@ -149,7 +149,7 @@ static void tap_ring_full_drops_and_counts(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 	/* what the interface counts is the same */
-	dev_get_stats(c->b->m->links.capture->nd, &stats);
+	dev_get_stats(bus_capture_dev(c->b), &stats);
 	KUNIT_EXPECT_EQ(test, stats.rx_dropped, (u64)dropped);
 	/* the ring is whole: all it has is shown, and then no frame is dropped any more */
 	release_worker(t);
@@ -168,7 +168,7 @@ static void tap_without_program_not_used(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->links.capture->tap;
+	struct ec_tap *t = bus_tap(c->b);
 	u32 head;
 
 	dev_remove_pack(&p.pt);
@@ -189,7 +189,7 @@ static void tap_other_namespace_not_used(struct kunit *test)
 {
 	struct program p, other = { .pt = { .type = htons(ETH_P_ALL), .func = get } };
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->links.capture->tap;
+	struct ec_tap *t = bus_tap(c->b);
 	struct socket *own;
 	u32 head;
 
@@ -214,7 +214,7 @@ static void tap_worker_ends_with_program(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->links.capture->tap;
+	struct ec_tap *t = bus_tap(c->b);
 
 	cyc_run(c, 100);
 	flush_delayed_work(&t->work);
@@ -239,7 +239,7 @@ static void tap_without_link_shows_nothing(struct kunit *test)
 {
 	struct program p;
 	struct cyc *c = captured(test, &p);
-	struct ec_tap *t = &c->b->m->links.capture->tap;
+	struct ec_tap *t = bus_tap(c->b);
 	u32 sent;
 
 	cyc_run(c, 10);

@@ -34,7 +34,7 @@ static int serial(struct bus *b, u32 slave, u32 *value)
 	size_t got;
 	u32 abort;
 	u8 v[4];
-	int ret = ec_coe_upload(&bus_slave(b, slave)->mbox, 0x1018, 4, false, v, sizeof(v), &got,
+	int ret = ec_coe_upload(bus_mbox(b, slave), 0x1018, 4, false, v, sizeof(v), &got,
 				&abort, &limit);
 
 	*value = get_unaligned_le32(v);
@@ -59,7 +59,7 @@ static int read_idn(void *arg)
 	size_t got;
 	u8 v[64];
 
-	c->ret = ec_soe_read(&bus_slave(c->b, 0)->mbox, 0, 91, v, sizeof(v), &got, &error, NULL);
+	c->ret = ec_soe_read(bus_mbox(c->b, 0), 0, 91, v, sizeof(v), &got, &error, NULL);
 	complete(&c->end);
 	return 0;
 }
@@ -137,7 +137,7 @@ static void transport_late_answer_beside_other_protocol(struct kunit *test)
 
 	for (i = 0; i < 20; i++) {
 		soe = begin(b, read_idn, 0);
-		KUNIT_EXPECT_EQ(test, ec_coe_upload(&bus_slave(b, 0)->mbox, 0x1018, 1, false, v,
+		KUNIT_EXPECT_EQ(test, ec_coe_upload(bus_mbox(b, 0), 0x1018, 1, false, v,
 						    4, &got, &abort, &limit), -ETIMEDOUT);
 		KUNIT_EXPECT_EQ(test, serial(b, 0, &value), 0);
 		KUNIT_EXPECT_EQ(test, value, 11u);
@@ -167,7 +167,7 @@ static void transport_emergencies_beside_requests(struct kunit *test)
 	wait_for_completion(&c->end);
 	msleep(200);
 	KUNIT_EXPECT_GT(test, sent, 20u);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->mbox.n_last, sent);
+	KUNIT_EXPECT_EQ(test, bus_mbox(b, 0)->n_last, sent);
 	KUNIT_EXPECT_GT(test, c->done, 40u);
 	KUNIT_EXPECT_EQ(test, c->failed + c->wrong, 0u);
 }
@@ -190,7 +190,7 @@ static void transport_cycles_begin_and_end(struct kunit *test)
 		cyc_map_all(cyc, 0, 2, 0);
 		cyc_activate(cyc);
 		cyc_run(cyc, 40 + i);
-		ec_session_end(&b->m->sessions, &b->app);
+		bus_end(b);
 		usleep_range(5000 + 137 * i, 5001 + 137 * i);
 	}
 	for (i = 0; i < 2; i++) {
@@ -235,8 +235,8 @@ static void transport_rests(struct kunit *test)
 	u32 value;
 
 	KUNIT_EXPECT_EQ(test, serial(b, 0, &value), 0);
-	KUNIT_EXPECT_FALSE(test, ec_mbox_in_use(&bus_slave(b, 0)->mbox));
-	KUNIT_EXPECT_EQ(test, b->m->links.posts.n_ready + b->m->links.posts.n_flying, 0u);
+	KUNIT_EXPECT_FALSE(test, ec_mbox_in_use(bus_mbox(b, 0)));
+	KUNIT_EXPECT_EQ(test, bus_posts(b), 0u);
 	before = bus_frames(b);
 	msleep(1000);
 	/* 50 looks at the AL status, one at all mailboxes */
@@ -255,9 +255,9 @@ static void transport_slave_lost_beside_stalled_cycle(struct kunit *test)
 	WRITE_ONCE(c->stop, true);
 	msleep(600);
 	KUNIT_EXPECT_TRUE(test, completion_done(&c->end));
-	KUNIT_EXPECT_GE(test, atomic_read(&b->m->links.access.timeouts), 1);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 1u);
-	KUNIT_EXPECT_EQ(test, b->m->links.posts.n_ready + b->m->links.posts.n_flying, 0u);
+	KUNIT_EXPECT_GE(test, bus_timeouts(b), 1);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 1u);
+	KUNIT_EXPECT_EQ(test, bus_posts(b), 0u);
 }
 
 /* The device sends nothing for a while: what has waited in the queue leaves afterwards. */

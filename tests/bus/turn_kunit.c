@@ -36,7 +36,7 @@ static int read_much(void *arg)
 		r->dg[i] = EC_FPRD(bus_slave(r->b, 1)->station, 0, BYTES, r->data[i]);
 		r->dg[i].repeat = false;
 	}
-	r->ret = ec_xfer(&r->b->m->links, r->dg, READS);
+	r->ret = bus_xfer(r->b, r->dg, READS);
 	complete(&r->done);
 	return 0;
 }
@@ -44,7 +44,7 @@ static int read_much(void *arg)
 /* The last slave but @behind is in OP, the others in PREOP. */
 static struct cyc *in_op_of(struct bus *b, u32 behind)
 {
-	return cyc_in_op(b, b->m->bus.n_slaves - 1 - behind, 1);
+	return cyc_in_op(b, bus_n_slaves(b) - 1 - behind, 1);
 }
 
 static struct cyc *in_op(struct kunit *test)
@@ -80,7 +80,7 @@ static void turn_slow_cycle(struct kunit *test)
 	for (i = 0; i < READERS; i++)
 		KUNIT_EXPECT_EQ(test, r[i].ret, 0);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(c->b), EC_ACCESS_CYCLIC);
 	kvfree(r);
 }
 
@@ -91,20 +91,19 @@ static void turn_stalled_cycle(struct kunit *test)
 	u64 t0 = ktime_get_ns();
 	u8 v[4];
 
-	KUNIT_ASSERT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
-	KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&c->b->m->links, bus_slave(c->b, 1)->station, 0, v, 4),
-			0);
+	KUNIT_ASSERT_EQ(test, bus_access_mode(c->b), EC_ACCESS_CYCLIC);
+	KUNIT_EXPECT_EQ(test, bus_fprd(c->b, bus_slave(c->b, 1)->station, 0, v, 4), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 400 * NSEC_PER_MSEC);
 	KUNIT_EXPECT_MEMEQ(test, v, bus_slave(c->b, 1)->regs, 4);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, N);
+	KUNIT_EXPECT_EQ(test, bus_responding(c->b), N);
 }
 
 /* Nobody delivers what has arrived, as when an interrupt is held up. */
 static void turn_overdue(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, N);
-	struct ecdev *dev = b->m->links.link[0].dev;
+	struct ecdev *dev = bus_dev(b);
 	u32 i;
 	u8 v[4];
 
@@ -112,12 +111,11 @@ static void turn_overdue(struct kunit *test)
 	dev->ops->cycle(dev->priv, true);
 	for (i = 0; i < 20; i++) {
 		memset(v, 0, sizeof(v));
-		KUNIT_EXPECT_EQ(test, ec_xfer_fprd(&b->m->links, bus_slave(b, 1)->station, 0, v, 4),
-				0);
+		KUNIT_EXPECT_EQ(test, bus_fprd(b, bus_slave(b, 1)->station, 0, v, 4), 0);
 		KUNIT_EXPECT_MEMEQ(test, v, bus_slave(b, 1)->regs, 4);
 	}
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
-	KUNIT_EXPECT_EQ(test, b->m->bus.responding, N);
+	KUNIT_EXPECT_EQ(test, bus_responding(b), N);
 	dev->ops->cycle(dev->priv, false);
 }
 
@@ -126,11 +124,11 @@ static struct cyc *full(struct cyc *c, u32 late_per_s)
 {
 	struct kunit *test = c->b->test;
 
-	c->b->m->links.share.late_per_s = late_per_s;
-	c->b->m->links.access.interval_us = 5;
+	bus_set_late_per_s(c->b, late_per_s);
+	bus_set_interval(c->b, 5);
 	cyc_run(c, 10);
-	KUNIT_ASSERT_EQ(test, c->b->m->links.access.mode, EC_ACCESS_CYCLIC);
-	KUNIT_ASSERT_LT(test, ec_access_slack_ns(&c->b->m->links), ec_cycle_need_ns());
+	KUNIT_ASSERT_EQ(test, bus_access_mode(c->b), EC_ACCESS_CYCLIC);
+	KUNIT_ASSERT_LT(test, bus_slack_ns(c->b), ec_cycle_need_ns());
 	return c;
 }
 
@@ -154,7 +152,7 @@ static int read_few(void *arg)
 		struct ec_dg dg = EC_DG(EC_CMD_FPRD, f->station, 0, sizeof(v), v);
 
 		dg.repeat = false;
-		f->ret = ec_xfer(&f->b->m->links, &dg, 1);
+		f->ret = bus_xfer(f->b, &dg, 1);
 	}
 	complete(&f->done);
 	return 0;
@@ -194,7 +192,7 @@ static void turn_beside_monitor(struct kunit *test)
 	KUNIT_EXPECT_LT(test, run_few(c, &f, 10, 0, 20000), 2500u);
 	KUNIT_EXPECT_EQ(test, f.ret, 0);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
-	KUNIT_EXPECT_EQ(test, c->b->m->bus.responding, 1u);
+	KUNIT_EXPECT_EQ(test, bus_responding(c->b), 1u);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
 }
 
@@ -238,7 +236,7 @@ static void queue_wait_ends_on_fatal_signal(struct kunit *test)
 	u32 ms;
 
 	/* the one late cycle of this second is over */
-	while (!c->b->m->links.share.late_cycles)
+	while (!bus_late_cycles(c->b))
 		cyc_run(c, 1);
 	ms = run_few(c, &f, 5, 200, 10000);
 	KUNIT_EXPECT_LT(test, ms, 600u);
@@ -250,7 +248,7 @@ static u32 take_places(struct bus *b)
 {
 	u32 n = 0;
 
-	while (ec_gate_try(&b->m->links.link[0].acyclic))
+	while (ec_gate_try(bus_gate(b)))
 		n++;
 	return n;
 }
@@ -258,7 +256,7 @@ static u32 take_places(struct bus *b)
 static void give_places(struct bus *b, u32 n)
 {
 	while (n--)
-		ec_gate_leave(&b->m->links.link[0].acyclic);
+		ec_gate_leave(bus_gate(b));
 }
 
 /* A slave that falls silent, and one that shows an error: the monitor does not wait for tools. */
@@ -285,7 +283,7 @@ static void turn_monitor_passes_tools(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->silent);
 	give_places(b, places);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
-	KUNIT_EXPECT_EQ(test, b->m->links.link[0].acyclic.used, 0u);
+	KUNIT_EXPECT_EQ(test, bus_acyclic(b), 0u);
 }
 
 static struct kunit_case cases[] = {

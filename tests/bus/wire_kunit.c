@@ -26,7 +26,7 @@ static void late_cycles(struct cyc *c, u32 per_s)
 
 static u64 late(const struct bus *b)
 {
-	return atomic64_read(&b->m->links.link[0].stats.late);
+	return bus_late(b);
 }
 
 /* Slaves as terminals have them: what passes is back within the cycle. */
@@ -58,7 +58,7 @@ static void runs(struct cyc *c, u32 domain_bytes)
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
-	KUNIT_EXPECT_EQ(test, c->b->m->sessions.session->wanted.domains[0]->size, domain_bytes);
+	KUNIT_EXPECT_EQ(test, bus_domain(c->b, 0)->size, domain_bytes);
 }
 
 static struct cyc *axes(struct kunit *test, u32 period_us, u32 domain_options)
@@ -78,38 +78,34 @@ static struct cyc *axes(struct kunit *test, u32 period_us, u32 domain_options)
 static void wire_axes(struct kunit *test)
 {
 	struct cyc *c = axes(test, 100, EC_DOMAIN_OPT_OVERLAP);
-	const struct ec_cycle *cycle;
 	u64 before;
 
 	cyc_activate(c);
-	cycle = &c->b->m->sessions.session->cycle;
 	runs(c, 1600);
 	before = late(c->b);
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_EQ(test, late(c->b), before);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->expected, 300u);
-	KUNIT_EXPECT_NE(test, cycle->dc_time, 0ull);
+	KUNIT_EXPECT_NE(test, bus_cycle(c->b)->dc_time, 0ull);
 	/* 800 bytes and three headers of datagrams, two with clocks */
-	KUNIT_EXPECT_EQ(test, cycle->last.ns,
+	KUNIT_EXPECT_EQ(test, bus_last_wire(c->b)->ns,
 			(8 + 14 + 2 + 12 + 8 + 12 + 4 + 12 + 800 + 4 + 12) * 80u);
-	bus_row(cycle->last.ns, 100000,
+	bus_row(bus_last_wire(c->b)->ns, 100000,
 		"ns of wire time: cycle of 100 axes, 8 and 8 bytes, overlapped, with clocks");
-	KUNIT_EXPECT_LE(test, cycle->last.ns, 100000u);
+	KUNIT_EXPECT_LE(test, bus_last_wire(c->b)->ns, 100000u);
 }
 
 /* the same without overlap, for comparison: it needs a longer cycle */
 static void wire_axes_apart(struct kunit *test)
 {
 	struct cyc *c = axes(test, 200, 0);
-	const struct ec_cycle *cycle;
 
 	cyc_activate(c);
-	cycle = &c->b->m->sessions.session->cycle;
 	runs(c, 1600);
-	KUNIT_EXPECT_EQ(test, cycle->last.frames, 3u);
-	KUNIT_EXPECT_GT(test, cycle->last.ns, 100000u);
+	KUNIT_EXPECT_EQ(test, bus_last_wire(c->b)->frames, 3u);
+	KUNIT_EXPECT_GT(test, bus_last_wire(c->b)->ns, 100000u);
 	bus_figure("wire time of 100 axes, 8 and 8 bytes, inputs and outputs apart, with clocks: %u ns in %u frames",
-		   cycle->last.ns, cycle->last.frames);
+		   bus_last_wire(c->b)->ns, bus_last_wire(c->b)->frames);
 }
 
 static const struct digital {
@@ -141,12 +137,11 @@ KUNIT_ARRAY_PARAM(digital, digitals, digital_desc);
 /* Of a cycle with its own datagrams only: a look of the monitor rides with one of ten. */
 static u32 own_ns(struct cyc *c)
 {
-	const struct ec_cycle *cycle = &c->b->m->sessions.session->cycle;
 	u32 ns = U32_MAX, i;
 
 	for (i = 0; i < 3; i++) {
 		cyc_run(c, 1);
-		ns = min(ns, cycle->last.ns);
+		ns = min(ns, bus_last_wire(c->b)->ns);
 	}
 	return ns;
 }
@@ -219,26 +214,24 @@ static struct reader *uploads(struct cyc *c, u32 cycles)
 static void wire_sdo_beside_axes(struct kunit *test)
 {
 	struct cyc *c = axes(test, 100, EC_DOMAIN_OPT_OVERLAP);
-	struct ec_master *m = c->b->m;
 	struct reader *r;
 	u64 before;
 
 	late_cycles(c, 0);
 	cyc_activate(c);
 	runs(c, 1600);
-	KUNIT_EXPECT_FALSE(test, m->sessions.session->cycle.room_logged);
-	KUNIT_EXPECT_EQ(test, ec_access_slack_ns(&m->links),
-			90000 - m->sessions.session->cycle.clocked.ns);
-	KUNIT_EXPECT_LT(test, ec_access_room(&m->links), 256);
+	KUNIT_EXPECT_FALSE(test, bus_room_logged(c->b));
+	KUNIT_EXPECT_EQ(test, bus_slack_ns(c->b), 90000 - bus_clocked_wire(c->b)->ns);
+	KUNIT_EXPECT_LT(test, bus_room(c->b), 256);
 	before = late(c->b);
 	r = uploads(c, 10000);
 	bus_figure("SDO uploads beside 100 axes in a cycle of 100 us, %u ns left: %u in 1 s, %u failed",
-		   ec_access_slack_ns(&m->links), r->done, r->failed);
+		   bus_slack_ns(c->b), r->done, r->failed);
 	KUNIT_EXPECT_GE(test, r->done, 800u);
 	KUNIT_EXPECT_EQ(test, r->failed, 0u);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	KUNIT_EXPECT_EQ(test, late(c->b), before);
-	KUNIT_EXPECT_EQ(test, m->links.share.late_cycles, 0u);
+	KUNIT_EXPECT_EQ(test, bus_late_cycles(c->b), 0u);
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
@@ -246,7 +239,6 @@ static void wire_sdo_beside_axes(struct kunit *test)
 static void wire_full(struct kunit *test)
 {
 	struct cyc *c = axes(test, 100, EC_DOMAIN_OPT_OVERLAP);
-	struct ec_master *m = c->b->m;
 	struct reader *r;
 	u64 cycles;
 	u32 before;
@@ -254,22 +246,22 @@ static void wire_full(struct kunit *test)
 	late_cycles(c, 400);
 	cyc_activate(c);
 	runs(c, 1600);
-	KUNIT_EXPECT_EQ(test, m->links.share.late_cycles, 0u);
+	KUNIT_EXPECT_EQ(test, bus_late_cycles(c->b), 0u);
 	/* the application goes faster */
-	m->links.access.interval_us = 75;
+	bus_set_interval(c->b, 75);
 	c->period_ns = 75000;
 	cyc_run(c, 10);
-	KUNIT_EXPECT_LT(test, ec_access_slack_ns(&m->links), ec_cycle_need_ns());
-	before = m->links.share.late_cycles;
+	KUNIT_EXPECT_LT(test, bus_slack_ns(c->b), ec_cycle_need_ns());
+	before = bus_late_cycles(c->b);
 	cycles = c->cycles;
 	/* a second, and until the last one is done */
 	r = uploads(c, 13333);
 	bus_figure("SDO uploads beside 100 axes in a cycle of 75 us, 400 late cycles a second allowed: %u in 1 s, %u failed, %u late",
-		   r->done, r->failed, m->links.share.late_cycles - before);
+		   r->done, r->failed, bus_late_cycles(c->b) - before);
 	KUNIT_EXPECT_GE(test, r->done, 12u);
 	KUNIT_EXPECT_EQ(test, r->failed, 0u);
-	KUNIT_EXPECT_GE(test, m->links.share.late_cycles - before, 100u);
-	KUNIT_EXPECT_LE(test, m->links.share.late_cycles - before,
+	KUNIT_EXPECT_GE(test, bus_late_cycles(c->b) - before, 100u);
+	KUNIT_EXPECT_LE(test, bus_late_cycles(c->b) - before,
 			div_u64((c->cycles - cycles) * 75 * 400, USEC_PER_SEC) + 20);
 }
 
@@ -279,7 +271,7 @@ static void wire_overload_logged_at_activation(struct kunit *test)
 	struct cyc *c = axes(test, 75, EC_DOMAIN_OPT_OVERLAP);
 
 	cyc_activate(c);
-	KUNIT_EXPECT_TRUE(test, c->b->m->sessions.session->cycle.room_logged);
+	KUNIT_EXPECT_TRUE(test, bus_room_logged(c->b));
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 0);
 }
@@ -294,13 +286,13 @@ static void wire_refused(struct kunit *test)
 	late_cycles(c, 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &a), -ENOSPC);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "6720 ns"), "%s", b->app.reason);
-	KUNIT_EXPECT_EQ(test, b->m->links.access.mode, EC_ACCESS_DIRECT);
+	KUNIT_EXPECT_EQ(test, bus_access_mode(b), EC_ACCESS_DIRECT);
 	/* in a longer cycle the same session works */
 	c->period_ns = 200000;
-	b->m->links.access.interval_us = 200;
+	bus_set_interval(b, 200);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 20000), ~0ull);
-	KUNIT_EXPECT_FALSE(test, b->m->sessions.session->cycle.room_logged);
+	KUNIT_EXPECT_FALSE(test, bus_room_logged(b));
 }
 
 static struct kunit_case cases[] = {

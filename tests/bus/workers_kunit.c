@@ -91,7 +91,7 @@ static void workers_few_remain(struct kunit *test)
 	/* one for each 16 of those that are there */
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 20, 0, 0, 0);
 	msleep(61000);
-	KUNIT_EXPECT_EQ(test, b->m->bus.n_slaves, 20u);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 20u);
 	KUNIT_EXPECT_EQ(test, threads(), 2u);
 	ends(test);
 }
@@ -144,7 +144,7 @@ static struct jobs *jobs_queue(struct bus *b, u32 n)
 		js->job[i].all = js;
 		atomic_inc(&js->left);
 		KUNIT_EXPECT_TRUE(b->test,
-				  ec_workers_queue(&b->m->bus.workers, &js->job[i].job));
+				  ec_workers_queue(bus_workers(b), &js->job[i].job));
 	}
 	return js;
 }
@@ -172,7 +172,7 @@ static void workers_most(struct kunit *test)
 	struct jobs *js;
 	u32 ms;
 
-	ec_bus_need_workers(&b->m->bus, 10000);
+	ec_bus_need_workers(bus_table(b), 10000);
 	js = jobs_queue(b, JOBS);
 	ms = jobs_wait(b, js, JOBS, 1);
 	KUNIT_EXPECT_EQ(test, atomic_read(&js->most), EC_MAX_WORKERS);
@@ -211,8 +211,8 @@ static void workers_again(struct kunit *test)
 
 	usleep_range(1000, 1001);
 	atomic_inc(&js->left);
-	KUNIT_EXPECT_TRUE(test, ec_workers_queue(&b->m->bus.workers, &js->job[0].job));
-	KUNIT_EXPECT_FALSE(test, ec_workers_queue(&b->m->bus.workers, &js->job[0].job));
+	KUNIT_EXPECT_TRUE(test, ec_workers_queue(bus_workers(b), &js->job[0].job));
+	KUNIT_EXPECT_FALSE(test, ec_workers_queue(bus_workers(b), &js->job[0].job));
 	ms = jobs_wait(b, js, 1, 2);
 	KUNIT_EXPECT_GE(test, ms, 2u * MS - 2);
 	ends(test);
