@@ -152,6 +152,9 @@ t "a test name with an article is noticed" \
 t "functions of master/ are named after their file or structure" tests/build/style.py globals
 t "a function with the name of another file is noticed" \
 	rule_notices globals 'int ec_other_begin(void)\n{\n\treturn 0;\n}' 'not named after it'
+t "no static function of master/ has the name of another" tests/build/style.py statics
+t "a static function with the name of another is noticed" rule_notices statics \
+	'static int f(void)\n{\n}\nstatic int f(int a)\n{\n}' 'f() is also in'
 t "checkpatch reports nothing" tests/build/style.py checkpatch
 t "checkpatch notices a space before a bracket" \
 	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE

@@ -10,8 +10,10 @@ names      a KUnit case is named <area>_<condition>_<expected>: in tests/unit th
            of the file; no articles, no words that texts.py replaces; bats tests likewise
 globals    a function of master/ that other files call is named after its file, the first word of
            the file's name, or a structure of its layer; ec_ioc_ is followed by the command
+statics    no two static functions of a module have the same name: a trace shows nothing else of
+           them. One that stands twice begins with the name of its file: log_take()
 
-LIMITS has the findings that are left in each folder. They only go down.
+LIMITS has the findings that are left in each folder. They only go down; None: printed only.
 usage: style.py RULE [FILE...]      default: all files of git
 """
 import os
@@ -31,6 +33,10 @@ LIMITS = {
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 0,
     ("checkpatch", "master"): 8,
+    ("statics", "master"): 70,
+    ("statics", "devices"): None,
+    ("statics", "lib"): None,
+    ("statics", "tool"): None,
 }
 
 # files that cannot have a comment, and what was not written by hand
@@ -175,7 +181,26 @@ def globals_(args):
                 yield f"{name}:1: {m[1]}() is not named after it"
 
 
-RULES = {"globals": globals_, "names": names, "spdx": spdx, "lines": lines,
+STATIC = re.compile(r"^static\b[^=;{}()]*\b(\w+)\((?=[^;]*?\)[^;=]*?\n\{)", re.M)
+MODULES = ("master/", "devices/sim/", "devices/intel/", "devices/", "lib/", "tool/")
+
+
+def statics(args):
+    places = {}
+    for name, path in files(args, (".c", ".h")):
+        module = next((m for m in MODULES if name.startswith(m)), None)
+        if not module and not args:
+            continue
+        text = re.sub(r"/\*.*?\*/", lambda m: "\n" * m[0].count("\n"), path.read_text(), flags=re.S)
+        for m in STATIC.finditer(text):
+            number = text.count("\n", 0, m.start()) + 1
+            places.setdefault((module, m[1]), []).append(f"{name}:{number}")
+    for (_, function), found in sorted(places.items()):
+        if len(found) > 1:
+            yield f"{found[0]}: {function}() is also in {', '.join(found[1:])}"
+
+
+RULES = {"globals": globals_, "statics": statics, "names": names, "spdx": spdx, "lines": lines,
          "kernel-doc": kernel_doc, "checkpatch": checkpatch}
 
 
@@ -188,12 +213,13 @@ def main():
         by_folder.setdefault(re.split(r"[/:]", found)[0], []).append(found)
     for folder, found in sorted(by_folder.items()):
         limit = LIMITS.get((rule, folder), 0)
-        if len(found) > limit:
-            failed = True
+        if limit is None or len(found) > limit:
+            failed |= limit is not None
             print("\n".join(found))
-        print(f"{folder}: {len(found)} findings of {rule}, limit {limit}")
+        print(f"{folder}: {len(found)} findings of {rule}, " +
+              ("no limit" if limit is None else f"limit {limit}"))
     for (a_rule, folder), limit in LIMITS.items():
-        if a_rule == rule and not sys.argv[2:] and len(by_folder.get(folder, ())) < limit:
+        if a_rule == rule and limit and not sys.argv[2:] and len(by_folder.get(folder, ())) < limit:
             print(f"{folder}: lower the limit to {len(by_folder.get(folder, ()))}")
     return 1 if failed else 0
 
