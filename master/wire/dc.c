@@ -8,7 +8,7 @@ static const u8 order[EC_DC_PORTS] = { 0, 3, 1, 2 };
 #define NOISE_NS	50	/* of a way, from that of the receive times */
 #define WAY_MAX_NS	1000000	/* some km of fibre, or hundreds of slaves without a clock */
 
-static u32 place(u8 port)
+static u32 dc_place(u8 port)
 {
 	u32 i = 0;
 
@@ -20,7 +20,7 @@ static u32 place(u8 port)
 /* Open ports of a slave as a frame meets them, the entry first; returns how many. */
 static u32 visited(const struct ec_dc_node *a, u8 port[EC_DC_PORTS])
 {
-	u32 i, start = place(a->entry), n = 0;
+	u32 i, start = dc_place(a->entry), n = 0;
 
 	port[n++] = a->entry;
 	for (i = 1; i < EC_DC_PORTS; i++) {
@@ -133,7 +133,7 @@ static s32 place_behind(struct ec_dc_node *nodes, struct ec_dc_node *a, s32 last
 	for (k = 1; k < ports; k++) {
 		s32 first = a->first[port[k]];
 
-		if (port[k] && place(port[k]) < place(a->entry))
+		if (port[k] && dc_place(port[k]) < dc_place(a->entry))
 			before_unit = false;
 		a->behind += place_chain(nodes, first, a->delay + a->behind,
 					 a->recv[port[k]] - a->recv[port[k - 1]], a->unreliable);

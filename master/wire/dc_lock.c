@@ -52,7 +52,7 @@ s32 ec_dc_lock_wrap(s64 difference, u32 period)
 	return difference < 0 ? -near : near;
 }
 
-static s64 median(const s64 v[3])
+static s64 dc_lock_median(const s64 v[3])
 {
 	s64 low = min(v[0], v[1]), high = max(v[0], v[1]);
 
@@ -83,10 +83,10 @@ static void remember(struct ec_dc_lock *l, s64 error)
 	l->last[0] = error;
 	if (l->n_last < 3)
 		l->n_last++;
-	l->error = (s32)(l->n_last == 3 ? median(l->last) : error);
+	l->error = (s32)(l->n_last == 3 ? dc_lock_median(l->last) : error);
 }
 
-static void judge(struct ec_dc_lock *l)
+static void dc_lock_judge(struct ec_dc_lock *l)
 {
 	u32 magnitude = l->error < 0 ? -(u32)l->error : (u32)l->error;
 
@@ -128,7 +128,7 @@ s32 ec_dc_lock_step(struct ec_dc_lock *l, s32 error)
 
 	l->missing = 0;
 	remember(l, error);
-	judge(l);
+	dc_lock_judge(l);
 	locked = l->state == EC_DC_LOCK_LOCKED;
 	e = (s64)l->error * (1 << FRACTION);
 	p = e >> (locked ? LOCKED_P : SEEK_P);

@@ -103,7 +103,7 @@ struct text {
 #define format(t, ...)	((t)->len = snprintf((t)->buf, (t)->size, __VA_ARGS__))
 #endif
 
-static const char *device(u32 side)
+static const char *event_device(u32 side)
 {
 	return side ? "backup" : "main";
 }
@@ -114,7 +114,7 @@ static void about_link(struct text *t, const struct ec_event *e)
 			   e->kind == EC_EVENT_DEVICE_OFF ? "device detached" :
 			   e->kind == EC_EVENT_LINK_UP ? "link up" : "link down";
 
-	format(t, "%s %s", device(e->arg[0]), what);
+	format(t, "%s %s", event_device(e->arg[0]), what);
 }
 
 /* "slave 5", or "slaves 5 to 9": @n of them */
@@ -130,7 +130,7 @@ static const char *neighbours(const struct ec_event *e, u32 n, char *buf, size_t
 }
 
 /* where slaves are, or were; @n of them */
-static void place(struct text *t, const struct ec_event *e, const char *what, u32 n)
+static void event_place(struct text *t, const struct ec_event *e, const char *what, u32 n)
 {
 	char alias[24] = "", at[40] = "the main device", who[32];
 	struct text a = { .buf = alias, .size = sizeof(alias) };
@@ -166,13 +166,13 @@ static void about_bus(struct text *t, const struct ec_event *e)
 		format(t, "scan complete: %u slave(s) in %u us, %u frames", a[0], a[1], a[2]);
 		break;
 	case EC_EVENT_SLAVE_LOST:
-		place(t, e, "disconnected from", a[6]);
+		event_place(t, e, "disconnected from", a[6]);
 		break;
 	case EC_EVENT_ALL_LOST:
 		format(t, "all %u slave(s) disconnected, last seen %u ms ago", a[0], a[1]);
 		break;
 	case EC_EVENT_SLAVE_FOUND:
-		place(t, e, "connected to", a[5]);
+		event_place(t, e, "connected to", a[5]);
 		break;
 	case EC_EVENT_SLAVE_SILENT:
 		format(t, "no reply from slave %u, frames pass; waiting for a reply", e->slave);

@@ -96,7 +96,7 @@ int ec_foe_tx(struct ec_foe *f, u8 *tx, size_t cap)
 }
 
 /* Only what can be printed: it comes from the slave. */
-static int refused(struct ec_foe *f, const struct ec_foe_hdr *h, const struct ec_rbuf *r)
+static int foe_refused(struct ec_foe *f, const struct ec_foe_hdr *h, const struct ec_rbuf *r)
 {
 	size_t n = min(ec_rbuf_left(r), sizeof(f->text) - 1), i;
 
@@ -167,7 +167,7 @@ int ec_foe_rx(struct ec_foe *f, const u8 *rx, size_t len, size_t room)
 		return -EBADMSG;
 	f->busy = h.opcode == EC_FOE_BUSY;
 	if (h.opcode == EC_FOE_ERR)
-		return refused(f, &h, &r);
+		return foe_refused(f, &h, &r);
 	if (f->busy) {
 		f->done = (u16)h.number;
 		f->entire = (u16)(h.number >> 16);

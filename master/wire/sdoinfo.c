@@ -61,14 +61,14 @@ int ec_sdoinfo_tx(struct ec_sdoinfo *s, u8 *tx, size_t cap)
 	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
 }
 
-static int fail(struct ec_sdoinfo *s, int err)
+static int sdoinfo_fail(struct ec_sdoinfo *s, int err)
 {
 	s->state = EC_SDOINFO_DONE;
 	return err;
 }
 
 /* Does the first fragment answer our question? 0, EC_STALE, -EMSGSIZE */
-static int match(const struct ec_sdoinfo *s, struct ec_rbuf r)
+static int sdoinfo_match(const struct ec_sdoinfo *s, struct ec_rbuf r)
 {
 	u16 index = ec_rbuf_le16(&r);
 	u8 sub = s->opcode == EC_SDOINFO_ENTRY_REQ ? ec_rbuf_u8(&r) : s->sub;
@@ -103,46 +103,46 @@ int ec_sdoinfo_rx(struct ec_sdoinfo *s, const u8 *rx, size_t len)
 	if (s->state == EC_SDOINFO_DONE)
 		return -EINVAL;
 	if (ec_coe_hdr_decode(&r, &h))
-		return fail(s, -EMSGSIZE);
+		return sdoinfo_fail(s, -EMSGSIZE);
 	if (h.service != EC_COE_SDO_INFO)
 		return EC_STALE;
 	opcode = ec_rbuf_u8(&r);
 	ec_rbuf_u8(&r);
 	left = ec_rbuf_le16(&r);
 	if (r.bad)
-		return fail(s, -EMSGSIZE);
+		return sdoinfo_fail(s, -EMSGSIZE);
 
 	if ((opcode & EC_SDOINFO_OPCODE_MASK) == EC_SDOINFO_ERROR) {
 		s->abort = ec_rbuf_le32(&r);
-		return fail(s, r.bad ? -EMSGSIZE : -EIO);
+		return sdoinfo_fail(s, r.bad ? -EMSGSIZE : -EIO);
 	}
 	if ((opcode & EC_SDOINFO_OPCODE_MASK) != s->opcode + 1)
 		return EC_STALE;
 
 	if (s->state == EC_SDOINFO_REQUEST) {
-		ret = match(s, r);
+		ret = sdoinfo_match(s, r);
 		if (ret == EC_STALE)
 			return EC_STALE;
 		if (ret)
-			return fail(s, ret);
+			return sdoinfo_fail(s, ret);
 		if (s->opcode == EC_SDOINFO_LIST_REQ)
 			ec_rbuf_le16(&r);
 	} else if (s->left && left + 1 != s->left) {
-		return fail(s, -EPROTO);
+		return sdoinfo_fail(s, -EPROTO);
 	}
 	if (++s->fragments > EC_SDOINFO_FRAGMENTS)
-		return fail(s, -EPROTO);
+		return sdoinfo_fail(s, -EPROTO);
 
 	n = ec_rbuf_left(&r);
 	if (n > s->cap - s->size)
-		return fail(s, -ENOBUFS);
+		return sdoinfo_fail(s, -ENOBUFS);
 	if (n)
 		memcpy(s->data + s->size, ec_rbuf_take(&r, n), n);
 	s->size += n;
 	s->left = left;
 	/* one of the two is enough: slaves forget the other */
 	if (!(opcode & EC_SDOINFO_INCOMPLETE) && !left)
-		return fail(s, 0);
+		return sdoinfo_fail(s, 0);
 	s->state = EC_SDOINFO_FRAGMENT;
 	return EC_WAIT;
 }
