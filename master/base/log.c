@@ -52,8 +52,8 @@ static bool over(const struct ec_log_event *e, u64 now)
 }
 
 /* The entry of this event, else a free one, else one whose window ended with nothing missed. */
-static struct ec_log_event *find(struct ec_log *l, const struct line *line, const char *fmt,
-				 u64 now)
+static struct ec_log_event *log_find(struct ec_log *l, const struct line *line, const char *fmt,
+				     u64 now)
 {
 	bool many = line->slave != EC_LOG_ANY || line->id;
 	unsigned int i = many ? EC_LOG_OF_MASTER : 0;
@@ -82,9 +82,9 @@ static u32 most_lines(const struct ec_log_event *e, const char *text)
 }
 
 /* Is this line to be logged? @line->more: those that were counted before */
-static bool admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
+static bool log_admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
 {
-	struct ec_log_event *e = find(l, line, fmt, now);
+	struct ec_log_event *e = log_find(l, line, fmt, now);
 	bool yes, flood;
 
 	lockdep_assert_held(&l->lock);
@@ -148,7 +148,7 @@ void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level, const
 	if (n && line.text[n - 1] == '\n')
 		line.text[n - 1] = '\0';
 	raw_spin_lock_irqsave(&l->lock, irq);
-	yes = admit(l, fmt, &line, ktime_get_ns());
+	yes = log_admit(l, fmt, &line, ktime_get_ns());
 	l->lines += yes;
 	raw_spin_unlock_irqrestore(&l->lock, irq);
 	if (yes)
@@ -156,7 +156,7 @@ void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level, const
 }
 
 /* The next line whose window is over; false: there is none. */
-static bool take(struct ec_log *l, unsigned int *i, struct line *line, u64 now, bool all)
+static bool log_take(struct ec_log *l, unsigned int *i, struct line *line, u64 now, bool all)
 {
 	struct ec_log_event *e;
 
@@ -219,7 +219,7 @@ void ec_log_flush(struct ec_base *b, bool all)
 	WRITE_ONCE(l->pending, false);
 	do {
 		raw_spin_lock_irqsave(&l->lock, irq);
-		more = take(l, &i, &line, now, all);
+		more = log_take(l, &i, &line, now, all);
 		raw_spin_unlock_irqrestore(&l->lock, irq);
 		if (more)
 			print(b, &line);

@@ -15,7 +15,7 @@ void ec_show_init(struct ec_show *show)
 	init_waitqueue_head(&show->over);
 }
 
-static bool enter(struct ec_show *show)
+static bool show_enter(struct ec_show *show)
 {
 	if (atomic_read(&show->changing))
 		return false;
@@ -44,7 +44,7 @@ int ec_show_begin(struct ec_show *show)
 {
 	int ret = 0;
 
-	while (!ret && !enter(show))
+	while (!ret && !show_enter(show))
 		ret = wait_event_interruptible(show->over, !atomic_read(&show->changing));
 	return ret;
 }
@@ -96,7 +96,7 @@ int ec_show_pause(struct ec_show *show)
 void ec_show_change_announce(struct ec_show *show)
 {
 	atomic_inc(&show->changing);
-	/* pairs with enter() */
+	/* pairs with show_enter() */
 	smp_mb__after_atomic();
 }
 
