@@ -122,14 +122,14 @@ static bool slaves_settled(struct ec_bus *bus)
 	return ok;
 }
 
-static bool settled(struct ec_bus *bus)
+static bool bus_settled(struct ec_bus *bus)
 {
 	/* a bus that answers is scanned first */
 	return !ec_bus_scan_busy(bus) && READ_ONCE(bus->looked) && slaves_settled(bus);
 }
 
 /* @there takes a lock and may sleep, so the condition of the wait is the count of wake-ups. */
-static int wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), unsigned int ms)
+static int bus_wait_until(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), unsigned int ms)
 {
 	long left = msecs_to_jiffies(ms);
 	int seen;
@@ -151,7 +151,7 @@ static int wait_scans(struct ec_bus *bus, bool (*there)(struct ec_bus *bus), uns
 	int ret;
 
 	atomic_inc(&bus->awaited);
-	ret = wait_until(bus, there, ms);
+	ret = bus_wait_until(bus, there, ms);
 	atomic_dec(&bus->awaited);
 	return ret;
 }
@@ -177,7 +177,7 @@ bool ec_bus_scan_awaited(const struct ec_bus *bus)
  */
 int ec_bus_wait_scan(struct ec_bus *bus)
 {
-	return wait_scans(bus, settled, EC_SCAN_WAIT_MS);
+	return wait_scans(bus, bus_settled, EC_SCAN_WAIT_MS);
 }
 
 static bool no_scan(struct ec_bus *bus)
@@ -207,7 +207,7 @@ int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms)
  */
 int ec_bus_wait_slaves(struct ec_bus *bus)
 {
-	return wait_until(bus, slaves_settled, 10000);
+	return bus_wait_until(bus, slaves_settled, 10000);
 }
 
 /**

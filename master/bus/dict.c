@@ -36,7 +36,7 @@ static size_t bytes(size_t size)
 	return ALIGN(sizeof(struct answer) + size, __alignof__(struct answer));
 }
 
-static struct answer *find(const struct ec_dict *d, const struct ec_sdoinfo *i)
+static struct answer *dict_find(const struct ec_dict *d, const struct ec_sdoinfo *i)
 {
 	size_t at;
 
@@ -59,7 +59,7 @@ static int recall(struct ec_dict *d, struct ec_sdoinfo *i, u32 *forgotten)
 
 	mutex_lock(&d->lock);
 	*forgotten = d->forgotten;
-	a = find(d, i);
+	a = dict_find(d, i);
 	if (a) {
 		i->state = EC_SDOINFO_DONE;
 		i->abort = a->abort;
@@ -98,12 +98,12 @@ static bool make_space(struct ec_dict *d, size_t need)
 }
 
 /* What finds no space, or no memory, is asked for again. */
-static void keep(struct ec_dict *d, const struct ec_sdoinfo *i, u32 forgotten)
+static void dict_keep(struct ec_dict *d, const struct ec_sdoinfo *i, u32 forgotten)
 {
 	size_t size = i->abort ? 0 : i->size;
 
 	mutex_lock(&d->lock);
-	if (d->forgotten == forgotten && !find(d, i) && make_space(d, bytes(size))) {
+	if (d->forgotten == forgotten && !dict_find(d, i) && make_space(d, bytes(size))) {
 		struct answer *a = (struct answer *)(d->answers + d->used);
 
 		*a = (struct answer){
@@ -168,6 +168,6 @@ int ec_dict_info(struct ec_slave *s, struct ec_sdoinfo *info, const struct ec_mb
 		return ret;
 	ret = ec_coe_info(&s->mbox, info, limit);
 	if (lasts(ret, info->abort))
-		keep(&s->dict, info, forgotten);
+		dict_keep(&s->dict, info, forgotten);
 	return ret;
 }

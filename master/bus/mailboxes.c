@@ -48,7 +48,7 @@ static bool any_in_use(const struct ec_bus *bus)
 }
 
 /* Look at the mailboxes of the candidates; @shown: the event of one was seen. True: one is full. */
-static bool look(struct ec_bus *bus, bool all, bool shown)
+static bool mailboxes_look(struct ec_bus *bus, bool all, bool shown)
 {
 	bool found = false;
 	struct ec_slave **of;
@@ -141,7 +141,7 @@ bool ec_mailboxes_look(struct ec_bus *bus, u16 irq)
 	if (all)
 		bus->mailboxes_ns = now;
 	/* a rider's reply is old: the message may have been fetched already */
-	found = look(bus, shown || all, shown);
+	found = mailboxes_look(bus, shown || all, shown);
 	bus->vain_looks = found || !shown ? 0 : bus->vain_looks + 1;
 	return found;
 }

@@ -15,7 +15,7 @@
 #define ANSWER_MS	100
 
 /* The name of an object or entry, or NULL: not asked for yet. */
-static const char *find(const struct ec_names *l, u16 index, u16 sub)
+static const char *names_find(const struct ec_names *l, u16 index, u16 sub)
 {
 	unsigned int i;
 
@@ -37,7 +37,7 @@ static const char *find(const struct ec_names *l, u16 index, u16 sub)
 const char *ec_names_find(const struct ec_slave *s, u16 index, u16 sub)
 {
 	ec_bus_assert_stays(s->bus);
-	return find(&s->names, index, sub) ?: "";
+	return names_find(&s->names, index, sub) ?: "";
 }
 
 struct answer {
@@ -79,7 +79,7 @@ static int read_name(struct ec_slave *s, struct answer *a, struct ec_mbox_buf *b
 	return ret;
 }
 
-static int add(struct ec_names *l, u16 index, u16 sub, const char *text)
+static int names_add(struct ec_names *l, u16 index, u16 sub, const char *text)
 {
 	struct ec_od_name *v;
 
@@ -115,7 +115,7 @@ static bool next_unknown(const struct ec_slave *s, const struct ec_names *l, str
 				*index = at->entry ? e->index : p->index;
 				*sub = at->entry ? e->sub : EC_NAME_OBJECT;
 				if (*index && !(at->entry ? e->name : p->name) &&
-				    !find(l, *index, *sub))
+				    !names_find(l, *index, *sub))
 					return true;
 			}
 		}
@@ -146,7 +146,7 @@ bool ec_names_pending(const struct ec_slave *s)
 }
 
 /* @l takes the place of the slave's names. */
-static void publish(struct ec_slave *s, struct ec_names *l)
+static void names_publish(struct ec_slave *s, struct ec_names *l)
 {
 	struct ec_names old;
 
@@ -159,19 +159,19 @@ static void publish(struct ec_slave *s, struct ec_names *l)
 	kvfree(old.v);
 }
 
-static int copy(struct ec_names *to, const struct ec_names *from)
+static int names_copy(struct ec_names *to, const struct ec_names *from)
 {
 	unsigned int i;
 	int ret = 0;
 
 	for (i = 0; i < from->n && !ret; i++)
-		ret = add(to, from->v[i].index, from->v[i].sub, from->v[i].text);
+		ret = names_add(to, from->v[i].index, from->v[i].sub, from->v[i].text);
 	return ret;
 }
 
 /* Ask for one after the other, until all are known or the time is over. */
-static int read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
-		    struct ec_mbox_buf *b)
+static int names_read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
+			  struct ec_mbox_buf *b)
 {
 	char text[EC_UAPI_STRING];
 	struct place at = { 0 };
@@ -187,7 +187,7 @@ static int read_all(struct ec_slave *s, struct ec_names *l, struct answer *a,
 		ret = read_name(s, a, b, index, sub, text);
 		/* refused: it has no name */
 		if (!ret || ret == -EIO)
-			ret = add(l, index, sub, text);
+			ret = names_add(l, index, sub, text);
 	}
 	return ret;
 }
@@ -208,12 +208,12 @@ void ec_names_read(struct ec_slave *s)
 	int ret = -ENOMEM;
 
 	lockdep_assert_held(&s->lock);
-	if (a && b && !copy(&l, &s->names))
+	if (a && b && !names_copy(&l, &s->names))
 		ret = ec_mbox_claim(&s->mbox, BIT(EC_MBOX_COE), LIMIT_MS);
 	if (!ret) {
-		ret = read_all(s, &l, a, b);
+		ret = names_read_all(s, &l, a, b);
 		ec_mbox_unclaim(&s->mbox, BIT(EC_MBOX_COE));
-		publish(s, &l);
+		names_publish(s, &l);
 		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	} else {
 		kvfree(l.v);

@@ -35,7 +35,7 @@ static void reset_bus(struct ec_bus *bus)
  * Read @len bytes at @ado of all slaves into regs + @ofs: by station address, so that they are
  * of this slave even when a contact opens or closes meanwhile.
  */
-static int read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
+static int scan_read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 {
 	unsigned int i;
 
@@ -65,7 +65,7 @@ unsigned int ec_scan_limit(void)
 static int read_each(struct scan *sc, u16 ado, size_t ofs, u16 len)
 {
 	unsigned int i;
-	int ret = read_all(sc, ado, ofs, len);
+	int ret = scan_read_all(sc, ado, ofs, len);
 	bool missing = false;
 
 	for (i = 0; i < sc->n && !ret; i++) {
@@ -205,7 +205,7 @@ static int read_new(struct scan *sc)
 	return 0;
 }
 
-static int look(struct scan *sc)
+static int scan_look(struct scan *sc)
 {
 	static const u8 latch[4];
 	unsigned int i;
@@ -220,10 +220,10 @@ static int look(struct scan *sc)
 	if (ret)
 		return ret;
 	bwr(sc->bus, EC_REG_DC_RECV(0), latch, 4);
-	ret = read_all(sc, EC_REG_DC_RECV(0), offsetof(struct regs, recv), 16);
+	ret = scan_read_all(sc, EC_REG_DC_RECV(0), offsetof(struct regs, recv), 16);
 	for (i = 0; i < sc->n && !ret; i++)
 		sc->regs[i].delay_only = sc->dg[i].wkc == 1;
-	ret = ret ?: read_all(sc, EC_REG_DC_DELAY, offsetof(struct regs, delay), 4);
+	ret = ret ?: scan_read_all(sc, EC_REG_DC_DELAY, offsetof(struct regs, delay), 4);
 	for (i = 0; i < sc->n && !ret; i++)
 		sc->regs[i].delay_only &= !sc->dg[i].err && !sc->dg[i].wkc;
 	if (ret)
@@ -383,7 +383,7 @@ static void note_aliases(struct scan *sc)
 }
 
 /* The result becomes visible, unless the list is held by now; slaves that are missing are gone. */
-static bool publish(struct scan *sc)
+static bool scan_publish(struct scan *sc)
 {
 	struct ec_bus *bus = sc->bus;
 	struct ec_slave **old;
@@ -468,9 +468,9 @@ int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed)
 		ec_event(bus->base, EC_EVENT_SCAN_START, count);
 	}
 	if (sc.slaves && sc.regs && sc.dg)
-		ret = count ? look(&sc) : 0;
+		ret = count ? scan_look(&sc) : 0;
 	ret = ret ?: ec_scan_proof(&sc);
-	if (!ret && !publish(&sc))
+	if (!ret && !scan_publish(&sc))
 		ret = -EAGAIN;
 	if (!ret) {
 		bus->listed_station = bus->next_station;

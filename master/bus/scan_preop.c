@@ -43,7 +43,7 @@ static bool all_taken(const struct ec_dg *dg, unsigned int n)
 }
 
 /* Mailbox SyncManagers, EEPROM to the PDI, state: state-machine.md 4.2. */
-static void start(struct job *j)
+static void scan_preop_start(struct job *j)
 {
 	static const u8 preop[2] = { EC_AL_PREOP, 0 }, pdi[1] = { EC_EEP_OWNER_PDI };
 	unsigned int i, n = 0;
@@ -74,7 +74,7 @@ static void start(struct job *j)
 }
 
 /* Poll the AL status; those that are there or have an error are done. */
-static void look(struct job *j)
+static void scan_preop_look(struct job *j)
 {
 	unsigned int i, left = 0;
 
@@ -129,13 +129,13 @@ void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 		    READ_ONCE(slaves[i]->al_status) == EC_AL_INIT)
 			j.c[j.n++].slave = slaves[i];
 	if (j.n)
-		start(&j);
+		scan_preop_start(&j);
 	/* the frames of a thousand slaves may take as long: none would be polled */
 	until = ktime_get_ns() + WAIT_NS;
 	while (j.n && !READ_ONCE(bus->base->stopping) && ktime_get_ns() < until) {
 		usleep_range(us, us + us / 4);
 		us = min(us * 2, 2000u);
-		look(&j);
+		scan_preop_look(&j);
 	}
 out:
 	kvfree(j.c);

@@ -58,8 +58,8 @@ static bool is_listed(const struct scan *sc, const struct ec_slave *s)
 }
 
 /* Address and ports of the slave at @i; a known one that fell silent does not reply. */
-static enum doubt check(const struct scan *sc, unsigned int i, const struct ec_dg *dg,
-			const struct reply *r)
+static enum doubt scan_proof_check(const struct scan *sc, unsigned int i, const struct ec_dg *dg,
+				   const struct reply *r)
 {
 	const struct ec_slave *s = sc->slaves[i];
 	bool known = ec_scan_is_known(sc, s);
@@ -122,7 +122,7 @@ static int check_found(struct scan *sc, enum doubt *doubt)
 	}
 	ret = ec_xfer(sc->bus->links, sc->dg, 2 * sc->n);
 	for (i = 0; i < sc->n && !ret; i++)
-		*doubt = max(*doubt, check(sc, i, &sc->dg[2 * i], &r[i]));
+		*doubt = max(*doubt, scan_proof_check(sc, i, &sc->dg[2 * i], &r[i]));
 	kvfree(r);
 	return ret;
 }

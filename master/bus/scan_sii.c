@@ -66,7 +66,7 @@ static void is_done(struct reader *r)
 	WRITE_ONCE(bus->scan_index, bus->scan_index + 1);
 }
 
-static void finish(struct reader *r)
+static void scan_sii_finish(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
 
@@ -76,7 +76,7 @@ static void finish(struct reader *r)
 }
 
 /* @remedy: what the user can do; it is tried again in any case */
-static void fail(struct reader *r, const char *what, const char *remedy)
+static void scan_sii_fail(struct reader *r, const char *what, const char *remedy)
 {
 	struct ec_slave *s = r->slave;
 
@@ -126,7 +126,7 @@ static void interrupt_long(struct job *j)
 }
 
 /* The images of all slaves have a limit together. */
-static bool count(struct ec_bus *bus, size_t bytes)
+static bool scan_sii_count(struct ec_bus *bus, size_t bytes)
 {
 	if (atomic_long_add_return(bytes, &bus->sii_bytes) <= EC_MAX_SII_TOTAL)
 		return true;
@@ -141,15 +141,15 @@ static void enlarge(struct reader *r, size_t bytes)
 	size_t more = bytes - s->sii_counted;
 	u8 *p;
 
-	if (!count(s->bus, more)) {
-		fail(r, "the EEPROMs of all slaves exceed 64 MiB",
-		     "disconnect slaves with large EEPROMs");
+	if (!scan_sii_count(s->bus, more)) {
+		scan_sii_fail(r, "the EEPROMs of all slaves exceed 64 MiB",
+			      "disconnect slaves with large EEPROMs");
 		return;
 	}
 	p = kvzalloc(bytes, GFP_KERNEL);
 	if (!p) {
 		atomic_long_sub(more, &s->bus->sii_bytes);
-		fail(r, "no memory", "free memory of this computer");
+		scan_sii_fail(r, "no memory", "free memory of this computer");
 		return;
 	}
 	if (s->part)
@@ -160,7 +160,7 @@ static void enlarge(struct reader *r, size_t bytes)
 }
 
 /* Room for the next access, and whether there is a next one. */
-static void plan(struct reader *r)
+static void scan_sii_plan(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
 	int need;
@@ -173,7 +173,7 @@ static void plan(struct reader *r)
 		ec_sii_check(s->part, s->part_bytes, &s->flaw);
 		if (!need)
 			s->part_bytes = ec_sii_used(s->part, s->part_bytes) ?: s->part_bytes;
-		finish(r);
+		scan_sii_finish(r);
 		return;
 	}
 	r->need = min_t(size_t, need, EC_MAX_SII_BYTES);
@@ -188,7 +188,7 @@ static u32 next_word(const struct reader *r)
 }
 
 /* An access that ended without data; asking again does not help. */
-static bool refused(const struct reader *r)
+static bool scan_sii_refused(const struct reader *r)
 {
 	u16 ctl = get_unaligned_le16(r->reg);
 
@@ -196,7 +196,7 @@ static bool refused(const struct reader *r)
 }
 
 /* Take a result; true when the slave has answered what was asked. */
-static bool take(struct reader *r)
+static bool scan_sii_take(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
 	u32 word = next_word(r);
@@ -212,12 +212,12 @@ static bool take(struct reader *r)
 	s->part_bytes += got;
 	r->len = 6 + got;
 	r->tries = 0;
-	plan(r);
+	scan_sii_plan(r);
 	return true;
 }
 
 /* Without link, or with other slaves, none is to blame: the scan ends and fails as a whole. */
-static bool go_on(const struct job *j)
+static bool scan_sii_go_on(const struct job *j)
 {
 	return !j->changed && !READ_ONCE(j->bus->base->stopping) && ec_links_is_up(j->bus->links);
 }
@@ -232,7 +232,7 @@ static void command(u8 *c, u32 word)
  * Take the EEPROM interface away from the PDI (0x0500). The address is set to one that is never
  * read, so that the data of a slave that misses the first command are not taken for word 0.
  */
-static int take_over(struct job *j, struct reader **rds, unsigned int n)
+static int scan_sii_take_over(struct job *j, struct reader **rds, unsigned int n)
 {
 	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[1];
 	static const u8 nowhere[4] = { 0xff, 0xff, 0xff, 0xff };
@@ -250,7 +250,7 @@ static int take_over(struct job *j, struct reader **rds, unsigned int n)
 }
 
 /* FPRD 0x0502 of @n readers */
-static void collect(struct job *j, struct reader **rds, unsigned int n)
+static void scan_sii_collect(struct job *j, struct reader **rds, unsigned int n)
 {
 	unsigned int i;
 
@@ -277,7 +277,7 @@ static void check_count(struct job *j, struct reader **rds, unsigned int n)
 }
 
 /* Start the same read in all of @rds; broadcast where all slaves are meant. */
-static void start(struct job *j, struct reader **rds, unsigned int n, u32 word)
+static void scan_sii_start(struct job *j, struct reader **rds, unsigned int n, u32 word)
 {
 	unsigned int i;
 
@@ -291,7 +291,7 @@ static void start(struct job *j, struct reader **rds, unsigned int n, u32 word)
 	ec_xfer(j->bus->links, j->dg, n);
 }
 
-static void sleep_until(u64 ns)
+static void scan_sii_sleep_until(u64 ns)
 {
 	u64 now = ktime_get_ns();
 
@@ -304,7 +304,7 @@ static void sleep_until(u64 ns)
  * When to look first next time: a little sooner, until that was too soon once.
  * @first: the first look found everybody ready.
  */
-static void learn(struct job *j, u64 ready_ns, bool first)
+static void scan_sii_learn(struct job *j, u64 ready_ns, bool first)
 {
 	if (!j->wait_ns) {
 		j->wait_ns = min_t(u64, ready_ns, WAIT_MAX_NS);
@@ -320,15 +320,16 @@ static void learn(struct job *j, u64 ready_ns, bool first)
 }
 
 /* Ask the first @ask of @left readers; the ones without a result yet remain. */
-static unsigned int look(struct job *j, struct reader **rds, unsigned int ask, unsigned int left)
+static unsigned int scan_sii_look(struct job *j, struct reader **rds, unsigned int ask,
+				  unsigned int left)
 {
 	unsigned int i, k = 0;
 
-	collect(j, rds, ask);
+	scan_sii_collect(j, rds, ask);
 	for (i = 0; i < ask; i++) {
-		if (take(rds[i]))
+		if (scan_sii_take(rds[i]))
 			continue;
-		if (refused(rds[i]))
+		if (scan_sii_refused(rds[i]))
 			rds[i]->alone = true;
 		else
 			rds[k++] = rds[i];
@@ -338,25 +339,25 @@ static unsigned int look(struct job *j, struct reader **rds, unsigned int ask, u
 }
 
 /* One access for all slaves at word @word. */
-static void step(struct job *j, struct reader **rds, unsigned int n, u32 word)
+static void scan_sii_step(struct job *j, struct reader **rds, unsigned int n, u32 word)
 {
 	u64 t0 = ktime_get_ns(), looked, ready = 0;
 	unsigned int i, left = n, ask, before;
 	bool first = true, probe = !j->wait_ns;
 
-	start(j, rds, n, word);
-	sleep_until(t0 + j->wait_ns);
+	scan_sii_start(j, rds, n, word);
+	scan_sii_sleep_until(t0 + j->wait_ns);
 	for (;;) {
 		looked = ktime_get_ns() - t0;
 		ask = probe ? min_t(unsigned int, left, PROBE) : left;
 		before = left;
-		left = look(j, rds, ask, left);
+		left = scan_sii_look(j, rds, ask, left);
 		if (left < before && !ready)
 			ready = looked;
 		if (!left)
 			break;
 		check_count(j, rds, left);
-		if (!go_on(j))
+		if (!scan_sii_go_on(j))
 			return;
 		/* the slowest tenth is handled apart instead of holding the others */
 		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
@@ -371,7 +372,7 @@ static void step(struct job *j, struct reader **rds, unsigned int n, u32 word)
 		ready = 0;
 		usleep_range(POLL_US, POLL_US + 5);
 	}
-	learn(j, ready, first);
+	scan_sii_learn(j, ready, first);
 }
 
 /* Each of @rds reads at its own word; errors are acknowledged first. */
@@ -402,8 +403,9 @@ static unsigned int apart(struct job *j, struct reader **rds)
 		if (r->done)
 			continue;
 		if (r->tries++ >= RETRIES)
-			fail(r, r->unheard ? "no reply" : refused(r) ? "no acknowledge" :
-			     "busy too long", "check the slave, then rescan");
+			scan_sii_fail(r, r->unheard ? "no reply" :
+				      scan_sii_refused(r) ? "no acknowledge" : "busy too long",
+				      "check the slave, then rescan");
 		else
 			rds[n++] = r;
 	}
@@ -419,12 +421,13 @@ static void read_apart(struct job *j)
 	unsigned int n, left;
 	u64 t0;
 
-	for (; go_on(j) && (n = apart(j, j->rds)); interrupt_long(j)) {
+	for (; scan_sii_go_on(j) && (n = apart(j, j->rds)); interrupt_long(j)) {
 		start_apart(j, j->rds, n);
 		t0 = ktime_get_ns();
-		for (left = n; left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && go_on(j);) {
+		for (left = n;
+		     left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && scan_sii_go_on(j);) {
 			usleep_range(300, 400);
-			left = look(j, j->rds, left, left);
+			left = scan_sii_look(j, j->rds, left, left);
 			check_count(j, j->rds, left);
 		}
 	}
@@ -450,17 +453,17 @@ static unsigned int waiting(struct job *j, u32 *word)
 	return n;
 }
 
-static void run(struct job *j)
+static void scan_sii_run(struct job *j)
 {
 	unsigned int n;
 	u32 word;
 
 	n = waiting(j, &word);
 	/* no fault of a slave: the scan begins anew */
-	if (take_over(j, j->rds, n) == -ENOMEM)
+	if (scan_sii_take_over(j, j->rds, n) == -ENOMEM)
 		return;
-	for (; n && go_on(j); n = waiting(j, &word)) {
-		step(j, j->rds, n, word);
+	for (; n && scan_sii_go_on(j); n = waiting(j, &word)) {
+		scan_sii_step(j, j->rds, n, word);
 		interrupt_long(j);
 	}
 	read_apart(j);
@@ -501,11 +504,11 @@ void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 		r->began = slaves[i]->part_bytes;
 		/* go on where the scan before was interrupted */
 		if (slaves[i]->part)
-			plan(r);
+			scan_sii_plan(r);
 		else
 			enlarge(r, FIRST_CAP);
 	}
-	run(&j);
+	scan_sii_run(&j);
 out:
 	kvfree(j.rd);
 	kvfree(j.dg);

@@ -187,7 +187,7 @@ const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int
 }
 
 /* What was read of the EEPROM by the scan before. */
-static void take_part(struct ec_slave *s, struct ec_slave *old)
+static void scan_station_take_part(struct ec_slave *s, struct ec_slave *old)
 {
 	swap(s->part, old->part);
 	swap(s->part_bytes, old->part_bytes);
@@ -269,7 +269,7 @@ static bool is_addressed(const struct scan *sc, unsigned int i)
 }
 
 /* An unknown slave: it keeps its address if no slave has had that. The datagram to write one. */
-static int add(struct scan *sc, unsigned int i, struct ec_dg *dg, bool *write)
+static int scan_station_add(struct scan *sc, unsigned int i, struct ec_dg *dg, bool *write)
 {
 	u16 station = ec_scan_address(sc, i), old = station;
 	struct ec_slave *known = sc->known[old], *s;
@@ -290,7 +290,7 @@ static int add(struct scan *sc, unsigned int i, struct ec_dg *dg, bool *write)
 	take_failure(sc, s);
 	/* by its address it is the same */
 	if (known && sc->regs[i].there && sc->claims[old] == 1) {
-		take_part(s, known);
+		scan_station_take_part(s, known);
 		s->found = known->sii ? known->found : 0;
 	}
 	put_unaligned_le16(station, sc->regs[i].station);
@@ -339,7 +339,7 @@ static int assign(struct scan *sc, u16 *at)
 			continue;
 		}
 		same_before &= ec_scan_unreadable(sc->bus, i) != NULL;
-		ret = add(sc, i, &sc->dg[n], &write);
+		ret = scan_station_add(sc, i, &sc->dg[n], &write);
 		if (ret)
 			return ret;
 		at[n] = i;

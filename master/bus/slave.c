@@ -74,7 +74,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	return s;
 }
 
-static void release(struct kref *kref)
+static void slave_release(struct kref *kref)
 {
 	struct ec_slave *s = container_of(kref, struct ec_slave, kref);
 	unsigned int i;
@@ -101,7 +101,7 @@ struct ec_slave *ec_slave_ref(struct ec_slave *slave)
 void ec_slave_unref(struct ec_slave *slave)
 {
 	if (slave)
-		kref_put(&slave->kref, release);
+		kref_put(&slave->kref, slave_release);
 }
 
 static void string(struct ec_slave *s, u8 index, char *buf)

@@ -273,7 +273,7 @@ struct named {
 	unsigned int n;
 };
 
-static int compare(const void *a, const void *b)
+static int slave_pdo_compare(const void *a, const void *b)
 {
 	u64 x = *(const u64 *)a, y = *(const u64 *)b;
 
@@ -281,7 +281,7 @@ static int compare(const void *a, const void *b)
 }
 
 /* The PDOs of the EEPROM: their number, or with @v the named entries of all of them. */
-static unsigned int collect(const struct ec_slave *slave, u64 *v, unsigned int most)
+static unsigned int slave_pdo_collect(const struct ec_slave *slave, u64 *v, unsigned int most)
 {
 	struct ec_sii_pdo_entry e;
 	struct ec_sii_pdo_iter it;
@@ -352,7 +352,7 @@ static void name_pdo(struct ec_pdo *p, const struct named *names)
  */
 void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l)
 {
-	unsigned int i, most = collect(slave, NULL, 0);
+	unsigned int i, most = slave_pdo_collect(slave, NULL, 0);
 	struct named names;
 
 	if (!most)
@@ -360,8 +360,8 @@ void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l)
 	names.v = kvmalloc_array(most, sizeof(*names.v), GFP_KERNEL);
 	if (!names.v)
 		return;
-	names.n = collect(slave, names.v, most);
-	sort(names.v, names.n, sizeof(*names.v), compare, NULL);
+	names.n = slave_pdo_collect(slave, names.v, most);
+	sort(names.v, names.n, sizeof(*names.v), slave_pdo_compare, NULL);
 	for (i = 0; i < l->n; i++) {
 		name_pdo(&l->pdos[i], &names);
 		cond_resched();

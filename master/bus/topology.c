@@ -17,7 +17,7 @@ static bool port_open(const struct ec_slave *s, unsigned int port)
 /* place of each port in that order */
 static const u8 place[EC_MAX_PORT] = { 0, 2, 3, 1 };
 
-static bool has_times(const struct ec_slave *s)
+static bool topology_has_times(const struct ec_slave *s)
 {
 	return ec_slave_features(s) & EC_FEAT_DC;
 }
@@ -37,8 +37,9 @@ static u8 upstream(const struct ec_slave *s)
 
 		if (!port_open(s, p))
 			continue;
-		if (best < 0 || (has_times(s) ? (s32)(s->recv[p] - s->recv[best]) < -NOISE_NS :
-						best != 0))
+		if (best < 0 ||
+		    (topology_has_times(s) ? (s32)(s->recv[p] - s->recv[best]) < -NOISE_NS :
+					     best != 0))
 			best = p;
 	}
 	return max(best, 0);
@@ -105,7 +106,7 @@ static int branch_before(struct ec_slave **slaves, int last, const struct ec_sla
 	if (last < 0 || next_port(slaves[last]) >= 0)
 		return -1;
 	while ((up = parent_of(slaves[up])) >= 0 && next_port(slaves[up]) < 0) {
-		if (!has_times(slaves[up]))
+		if (!topology_has_times(slaves[up]))
 			continue;
 		if (away(slaves[up], EC_MAX_PORT - 1, true) >= time)
 			break;
@@ -137,7 +138,7 @@ static void join(struct ec_slave **slaves, int parent, u8 port, int child)
 	slaves[child]->next[slaves[child]->upstream] = parent;
 }
 
-static void leave(struct ec_slave **slaves, int child)
+static void topology_leave(struct ec_slave **slaves, int child)
 {
 	int parent = parent_of(slaves[child]);
 	unsigned int p;
@@ -161,7 +162,7 @@ static int join_before(struct ec_slave **slaves, int i)
 
 		if (x < 0)
 			continue;
-		leave(slaves, x);
+		topology_leave(slaves, x);
 		join(slaves, i, p, x);
 		last = first_of(slaves, x) - 1;
 	}
