@@ -213,7 +213,7 @@ static void change_ref(struct ec_dc_job *j, bool found)
 		log_ref(j, lost);
 }
 
-static bool is_transient(int ret)
+static bool dc_is_transient(int ret)
 {
 	return ret == -EAGAIN || ret == -ETIMEDOUT || ret == -EBUSY || ret == -ENETDOWN ||
 	       ret == -ENODEV || ret == -ENOMEM;
@@ -235,7 +235,7 @@ static int set_clocks(struct ec_dc_job *j)
 		ret = ec_dc_get_delays(j) ?: ec_dc_latch(j) ?: ec_dc_write(j);
 		if (!ret)
 			change_ref(j, true);
-		if (!is_transient(ret) || READ_ONCE(dc->stop))
+		if (!dc_is_transient(ret) || READ_ONCE(dc->stop))
 			break;
 		if (ret == -EAGAIN)
 			ec_dc_leave_out(j);
@@ -285,12 +285,12 @@ static void log_result(const struct ec_dc_job *j, int ret, u64 t0)
 		ec_event(dc->base, EC_EVENT_DC_SET, us, j->slaves[j->ref]->position);
 	} else if (ret != -ENXIO && ret != -ECANCELED) {
 		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
-			is_transient(ret) ? "; retrying" : "");
-		ec_event(dc->base, EC_EVENT_DC_FAILED, -ret, is_transient(ret));
+			dc_is_transient(ret) ? "; retrying" : "");
+		ec_event(dc->base, EC_EVENT_DC_FAILED, -ret, dc_is_transient(ret));
 	}
 }
 
-static void work(struct work_struct *work)
+static void dc_work(struct work_struct *work)
 {
 	struct ec_dc *dc = container_of(work, struct ec_dc, work);
 	bool first = !READ_ONCE(dc->app.set);
@@ -319,7 +319,7 @@ static void work(struct work_struct *work)
 	}
 	ret = synchronize(&j);
 	log_result(&j, ret, t0);
-	ec_dc_set_state(dc, !ret ? EC_DC_READY : is_transient(ret) ? EC_DC_RETRY_WAIT :
+	ec_dc_set_state(dc, !ret ? EC_DC_READY : dc_is_transient(ret) ? EC_DC_RETRY_WAIT :
 						 EC_DC_FAILED);
 	/* pairs with the barrier in ec_dc_sync_start() */
 	smp_mb();
@@ -415,7 +415,7 @@ void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, 
 	bus->ext[EC_EXT_CLOCK] = dc;
 	bus->slave_bytes[EC_EXT_CLOCK] = sizeof(struct ec_clock);
 	mutex_init(&dc->lock);
-	INIT_WORK(&dc->work, work);
+	INIT_WORK(&dc->work, dc_work);
 	ec_dc_watch_init(dc);
 	init_waitqueue_head(&dc->wq);
 	raw_spin_lock_init(&dc->time_lock);

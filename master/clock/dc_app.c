@@ -31,7 +31,7 @@
 #define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without its time: it leads no longer */
 
 /* A larger deviation is no late cycle, and would move SYNC to another cycle. */
-static s64 limit(const struct ec_dc *dc)
+static s64 dc_app_limit(const struct ec_dc *dc)
 {
 	u32 interval_us = ec_access_interval_us(&dc->links->access);
 
@@ -92,7 +92,7 @@ static void smooth(struct ec_dc_app *a, s64 dev)
 }
 
 /* An application time after the clocks are set; false: it must not be used. */
-static bool follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
+static bool dc_app_follow(struct ec_dc_app *a, u64 time, u64 at_ns, s64 lim)
 {
 	s64 dev = time - a->skip - at_ns - a->base;
 
@@ -230,7 +230,7 @@ bool ec_dc_update_app_time(struct ec_dc *dc, const struct ec_ioc_send *what, u64
 	good = dc->app.set;
 	if (leading(dc, leads, at_ns) == leads) {
 		if (dc->app.set)
-			good = follow(&dc->app, time, at_ns, limit(dc));
+			good = dc_app_follow(&dc->app, time, at_ns, dc_app_limit(dc));
 		else
 			note(&dc->app, time, at_ns);
 	}
@@ -334,7 +334,7 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 		a->mean_part = 0;
 		a->mean_rate = 0;
 		a->n_mean = min_t(u32, a->n_past, EC_DC_APP_PAST);
-		a->n_past = 0;	/* from now on follow() updates @base */
+		a->n_past = 0;	/* from now on dc_app_follow() updates @base */
 		/* slaves that connect later start SYNC on the same grid, whatever time comes */
 		if (!dc->has_phase)
 			dc->phase = 0;

@@ -35,7 +35,7 @@ void ec_dc_job_free(struct ec_dc_job *j)
 	kvfree(j->silent);
 }
 
-static bool has_times(const struct ec_slave *s)
+static bool dc_job_has_times(const struct ec_slave *s)
 {
 	return ec_slave_features(s) & EC_FEAT_DC && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 }
@@ -54,7 +54,7 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = s->next[s->upstream] < j->n ? s->next[s->upstream] : EC_DC_NONE;
 	n->entry = s->upstream;
-	n->dc = has_times(s);
+	n->dc = dc_job_has_times(s);
 	for (p = 0; p < EC_DC_PORTS; p++) {
 		if (s->dl_status & EC_DLS_COMM(p) && !(s->dl_status & EC_DLS_LOOP(p)))
 			n->open |= BIT(p);
@@ -102,7 +102,7 @@ unsigned int ec_dc_count(const struct ec_dc_job *j, enum ec_dc_who who)
 }
 
 /* The clock with this station address, or the first one; @n: there is none. */
-static unsigned int find(const struct ec_dc_job *j, u16 station)
+static unsigned int dc_job_find(const struct ec_dc_job *j, u16 station)
 {
 	unsigned int i;
 
@@ -128,7 +128,8 @@ bool ec_dc_can_be(struct ec_dc *dc, u16 choice)
 
 	down_read(&dc->bus->topo);
 	for (i = 0; i < dc->bus->n_slaves && !ret; i++)
-		ret = has_times(dc->bus->slaves[i]) && ec_slave_has_clock(dc->bus->slaves[i]) &&
+		ret = dc_job_has_times(dc->bus->slaves[i]) &&
+		      ec_slave_has_clock(dc->bus->slaves[i]) &&
 		      (choice == EC_DC_ANY || dc->bus->slaves[i]->station == choice);
 	up_read(&dc->bus->topo);
 	return ret;
@@ -156,12 +157,12 @@ static void choose(struct ec_dc_job *j)
 
 	j->ref = j->n;
 	if (choice != EC_DC_ANY) {
-		j->ref = find(j, choice);
+		j->ref = dc_job_find(j, choice);
 		if (j->ref == j->n && !any_set(j))
 			return;
 	}
 	if (j->ref == j->n)
-		j->ref = find(j, j->followed);
+		j->ref = dc_job_find(j, j->followed);
 }
 
 /**
@@ -386,7 +387,7 @@ static void sum_up(struct ec_dc_job *j)
  * The receive times of a latch are read in the transfer of the next one: by then the frame has
  * passed all ports.
  */
-static int measure(struct ec_dc_job *j)
+static int dc_job_measure(struct ec_dc_job *j)
 {
 	unsigned int rounds = 0, lost = 0, n;
 	bool latched = false;
@@ -455,7 +456,7 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 	lockdep_assert_held(&j->dc->lock);
 	if (known(j, scan))
 		return 0;
-	ret = measure(j);
+	ret = dc_job_measure(j);
 	for (i = 0; i < j->n && !ret; i++) {
 		struct ec_clock *c = ec_job_clock(j, i);
 

@@ -207,7 +207,7 @@ static int tolerate(int ret)
 	return ret == -ETIMEDOUT || ret == -EBUSY ? 0 : ret;
 }
 
-static bool canceled(const struct ec_dc *dc)
+static bool dc_set_canceled(const struct ec_dc *dc)
 {
 	return !READ_ONCE(dc->ref_station) || READ_ONCE(dc->stop);
 }
@@ -241,7 +241,7 @@ static int check_once(struct ec_dc_job *j, unsigned int more, u8 (*v)[4], u32 *m
 	unsigned int first, n;
 	int ret;
 
-	if (canceled(j->dc))
+	if (dc_set_canceled(j->dc))
 		return -ECANCELED;
 	first = add_frames(j, LOOK_FRAMES, SYNCS, more, 1);
 	n = ec_dc_add(j, first, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0], sizeof(v[0]));
@@ -308,7 +308,7 @@ int ec_dc_near(struct ec_dc_job *j)
 
 static int compensate(struct ec_dc_job *j, unsigned int n)
 {
-	if (canceled(j->dc))
+	if (dc_set_canceled(j->dc))
 		return -ECANCELED;
 	return tolerate(ec_xfer_clock(j->dc->links, j->dg, n));
 }

@@ -23,14 +23,14 @@
 #define SYNC1		BIT(10)
 
 /* The clocks are set, or cannot be, those of newly connected slaves included; no attempt is due. */
-static bool settled(const struct ec_dc *dc)
+static bool dc_sync_settled(const struct ec_dc *dc)
 {
 	return !READ_ONCE(dc->changed) && !ec_dc_busy(dc) &&
 	       READ_ONCE(dc->state) != EC_DC_RETRY_DUE;
 }
 
 /* The step to @state is obsolete. The code that changed the request has queued the worker. */
-static bool canceled(const struct ec_slave *s, u8 state)
+static bool dc_sync_canceled(const struct ec_slave *s, u8 state)
 {
 	return READ_ONCE(s->requested) < state || ec_stop_worker(&s->stop);
 }
@@ -53,10 +53,10 @@ int ec_dc_wait(struct ec_slave *s)
 	for (ms = 0; ms < WAIT_SET_MS && set_ms < WAIT_MS; ms += POLL_MS) {
 		if (READ_ONCE(dc->state) == EC_DC_AWAIT_CYCLE)
 			ms = 0;
-		if (wait_event_timeout(dc->wq, settled(dc), msecs_to_jiffies(POLL_MS)))
+		if (wait_event_timeout(dc->wq, dc_sync_settled(dc), msecs_to_jiffies(POLL_MS)))
 			return READ_ONCE(dc->state) == EC_DC_READY && ec_clock_is_set(s) ?
 			       0 : -ENXIO;
-		if (canceled(s, EC_AL_SAFEOP))
+		if (dc_sync_canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
 		if (ec_clock_is_set(s) && !READ_ONCE(dc->changed))
 			set_ms += POLL_MS;
@@ -139,7 +139,7 @@ static u32 sync1_after(const struct ec_dc_sync *c)
  * Write start time and activation, and read the time of the slave in the same frame. -EAGAIN:
  * the start time had passed, or is too far ahead.
  */
-static int activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
+static int dc_sync_activate(struct ec_slave *s, const struct ec_dc_sync *c, u64 first)
 {
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 	u8 start[8], assign[2], t[8] = { 0 };
@@ -186,7 +186,7 @@ static u64 lead(struct ec_slave *s, u32 period, u64 took)
 }
 
 /* One attempt; the longer transfers to the slave take, the later is the start time. */
-static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int try)
+static int dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int try)
 {
 	u32 period = c->period[0] + c->period[1];
 	u64 now, at_ns, t0 = ktime_get_ns(), took;
@@ -196,7 +196,8 @@ static int start(struct ec_slave *s, const struct ec_dc_sync *c, unsigned int tr
 		return ret;
 	took = ktime_get_ns() - t0;
 	now += ktime_get_ns() - at_ns + lead(s, period, took << (try + 1));
-	return activate(s, c, ec_dc_start(now, ec_dc_phase(ec_dc_of(s)), period, c->shift[0]));
+	return dc_sync_activate(s, c,
+				ec_dc_start(now, ec_dc_phase(ec_dc_of(s)), period, c->shift[0]));
 }
 
 #define MODES	8	/* of the SII that are compared and logged */
@@ -284,13 +285,13 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
 		bool set = ec_clock_is_set(s);
 
-		if (canceled(s, EC_AL_SAFEOP))
+		if (dc_sync_canceled(s, EC_AL_SAFEOP))
 			return -ECANCELED;
 		clock->sync_due_ns = 0;
 		WRITE_ONCE(clock->sync_unsynchronized, !set);
 		/* the clock worker sees that, or it is seen below that the clock is set */
 		smp_mb();
-		ret = start(s, c, try);
+		ret = dc_sync_start(s, c, try);
 		if (!ret && !set && ec_clock_is_set(s))
 			ret = -EAGAIN;
 	}
@@ -303,14 +304,14 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 	return ret;
 }
 
-static int wait_until(struct ec_slave *s, u64 ns)
+static int dc_sync_wait_until(struct ec_slave *s, u64 ns)
 {
 	u64 now = ktime_get_ns();
 
 	if (now >= ns)
 		return 0;
-	return wait_event_hrtimeout(s->stop.wake, canceled(s, EC_AL_OP), ns_to_ktime(ns - now)) ?
-	       0 : -ECANCELED;
+	return wait_event_hrtimeout(s->stop.wake, dc_sync_canceled(s, EC_AL_OP),
+				    ns_to_ktime(ns - now)) ? 0 : -ECANCELED;
 }
 
 /* SYNC signals in use that are pending by register 0x0984, or an implausible start. */
@@ -341,7 +342,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 
 	lockdep_assert_held(&s->lock);
 	for (try = 0; clock->sync_due_ns; try++) {
-		ret = wait_until(s, clock->sync_due_ns + CHECK_NS);
+		ret = dc_sync_wait_until(s, clock->sync_due_ns + CHECK_NS);
 		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status,
 					  1);
 		if (ret && (ret != -EIO || known))

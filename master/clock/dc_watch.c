@@ -93,7 +93,7 @@ static void log_window(struct ec_dc *dc)
 }
 
 /* The next slaves whose clock is set or excluded; returns the position to continue from. */
-static unsigned int collect(struct ec_dc *dc, struct batch *b, unsigned int from)
+static unsigned int dc_watch_collect(struct ec_dc *dc, struct batch *b, unsigned int from)
 {
 	b->n = 0;
 	down_read(&dc->bus->topo);
@@ -128,7 +128,7 @@ static bool worth_attempt(struct ec_slave *s)
 }
 
 /* Take the replies of a batch; true: one of the slaves is worth another attempt, if @due. */
-static bool take(struct ec_dc *dc, struct batch *b, bool due)
+static bool dc_watch_take(struct ec_dc *dc, struct batch *b, bool due)
 {
 	bool worth = false;
 	unsigned int i;
@@ -173,9 +173,9 @@ static void watch(struct work_struct *work)
 	if (!b || ec_dc_busy(dc))
 		goto out;
 	do {
-		at = collect(dc, b, at);
+		at = dc_watch_collect(dc, b, at);
 		ec_xfer(dc->links, b->dg, b->n);
-		worth |= take(dc, b, due);
+		worth |= dc_watch_take(dc, b, due);
 	} while (b->n == BATCH && !READ_ONCE(dc->stop));
 	if (due && worth)
 		ec_dc_set_state(dc, EC_DC_RETRY_DUE);
