@@ -21,7 +21,7 @@ static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 	return ec_xfer_fpwr(s->bus->links, s->station, ado, data, len);
 }
 
-static int failed(struct ec_slave *s, u8 state, int ret)
+static int apply_failed(struct ec_slave *s, u8 state, int ret)
 {
 	const struct ec_setup *setup = ec_setup_of(s);
 	const char *refusal = setup->pdo_refusal;
@@ -67,7 +67,7 @@ static int failed(struct ec_slave *s, u8 state, int ret)
  * Frames were lost, the device hung, memory ran out, or the slave needs more time than usual:
  * worth another try. A refusal is not, unless the slave missed the outputs.
  */
-static bool is_transient(const struct ec_slave *s, int ret)
+static bool apply_is_transient(const struct ec_slave *s, int ret)
 {
 	u16 code = READ_ONCE(s->al_code);
 
@@ -87,7 +87,7 @@ static bool is_undecided(const struct ec_slave *s, int ret)
 }
 
 /* What the application allows for a transition, ms; 0: the default. */
-static u32 limit(const struct ec_slave *s, u8 from, u8 to)
+static u32 apply_limit(const struct ec_slave *s, u8 from, u8 to)
 {
 	const struct ec_config *c = ec_config_of(s);
 
@@ -95,7 +95,7 @@ static u32 limit(const struct ec_slave *s, u8 from, u8 to)
 }
 
 /* What a reason shows while the worker waits; NULL ends it. */
-static void waits_for(struct ec_slave *s, const char *what)
+static void apply_waits_for(struct ec_slave *s, const char *what)
 {
 	WRITE_ONCE(ec_setup_of(s)->waits_for, what);
 }
@@ -107,10 +107,12 @@ static int set_state(struct ec_slave *s, u8 state)
 	/* the computer reboots since the worker has begun this way */
 	if (state & EC_AL_BEYOND_PREOP && READ_ONCE(s->bus->down))
 		return -ECANCELED;
-	waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
-		     state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" : "the slave to change its state");
-	ret = ec_al_set(s, state, limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
-	waits_for(s, NULL);
+	apply_waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
+			   state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" :
+						   "the slave to change its state");
+	ret = ec_al_set(s, state,
+			apply_limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
+	apply_waits_for(s, NULL);
 	return ret;
 }
 
@@ -202,13 +204,13 @@ static int to_init(struct ec_slave *s)
 	op_only_off(s);
 	ret = set_state(s, EC_AL_INIT);
 	if (ret)
-		return failed(s, EC_AL_INIT, ret);
+		return apply_failed(s, EC_AL_INIT, ret);
 	in_init(s);
 	return 0;
 }
 
 /* The mailbox of PREOP or BOOT, and that state: state-machine.md 4.2. */
-static int enter(struct ec_slave *s, u8 state)
+static int apply_enter(struct ec_slave *s, u8 state)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
 	u8 page[2 * EC_SM_PAGE];
@@ -234,11 +236,11 @@ static int acknowledge(struct ec_slave *s)
 	int ret;
 
 	for (i = 0; i < ACKS; i++) {
-		waits_for(s, "the slave to take the acknowledge of its error");
+		apply_waits_for(s, "the slave to take the acknowledge of its error");
 		ret = ec_al_ack(s);
-		waits_for(s, NULL);
+		apply_waits_for(s, NULL);
 		if (ret != -ETIME)
-			return ret ? failed(s, state, ret) : 0;
+			return ret ? apply_failed(s, state, ret) : 0;
 	}
 	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 		      EC_CAUSE(AL_ERROR, .state = state, .code = code),
@@ -265,17 +267,17 @@ static int leave_init(struct ec_slave *s, u8 state)
 		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
 				     "BOOT not possible: no bootstrap mailbox in the SII");
 	s->ours = false;
-	ret = enter(s, state);
+	ret = apply_enter(s, state);
 	/* whatever code it has for that: without the event, then */
 	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
 		s->mbox.strict = true;
-		ret = set_state(s, EC_AL_INIT) ?: enter(s, state);
+		ret = set_state(s, EC_AL_INIT) ?: apply_enter(s, state);
 	}
 	if (!ret)
 		has_left_init(s, state);
 	else if (!boot)
 		release_mailbox(s);
-	return ret ? failed(s, state, ret) : 0;
+	return ret ? apply_failed(s, state, ret) : 0;
 }
 
 /* Is there a SyncManager whose PDOs the application did not name? */
@@ -302,9 +304,9 @@ static int start_sync(struct ec_slave *s, const struct ec_config *c)
 		return 0;
 	}
 	ec_dc_sync_compare(s, &c->sync);
-	waits_for(s, "the clocks of the segment to be synchronized");
+	apply_waits_for(s, "the clocks of the segment to be synchronized");
 	ret = ec_dc_wait(s);
-	waits_for(s, NULL);
+	apply_waits_for(s, NULL);
 	if (ret == -ECANCELED)
 		return ret;
 	if (ret)
@@ -338,23 +340,23 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (c) {
-		waits_for(s, "mailbox replies to its configuration");
+		apply_waits_for(s, "mailbox replies to its configuration");
 		ret = ec_startup_run(s, c, EC_TRANSITION_PS) ?: ec_apply_pdos(s, c);
-		waits_for(s, NULL);
+		apply_waits_for(s, NULL);
 		if (ret)
 			return ret;
 	}
 	ret = ec_apply_regs(s, c);
 	if (!ret && c) {
-		waits_for(s, "the time in flag " EC_FLAG_WAIT_SAFEOP);
+		apply_waits_for(s, "the time in flag " EC_FLAG_WAIT_SAFEOP);
 		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
-		waits_for(s, NULL);
+		apply_waits_for(s, NULL);
 	}
 	if (!ret)
 		ret = start_sync(s, c);
 	if (!ret)
 		ret = set_state(s, EC_AL_SAFEOP);
-	return ret ? failed(s, EC_AL_SAFEOP, ret) : 0;
+	return ret ? apply_failed(s, EC_AL_SAFEOP, ret) : 0;
 }
 
 /* Cycles after which all domains of a slave have been sent twice. */
@@ -403,9 +405,9 @@ static int to_op(struct ec_slave *s)
 	const struct ec_config *c = ec_setup_of(s)->active_config;
 	int ret;
 
-	waits_for(s, "two cycles of its domains");
+	apply_waits_for(s, "two cycles of its domains");
 	ret = wait_outputs(s);
-	waits_for(s, NULL);
+	apply_waits_for(s, NULL);
 	if (!ret && c)
 		ret = ec_startup_run(s, c, EC_TRANSITION_SO);
 	if (ret)
@@ -420,7 +422,7 @@ static int to_op(struct ec_slave *s)
 	ret = ret ?: set_state(s, EC_AL_OP);
 	if (ret == -EPROTO)
 		op_only_off(s);
-	return ret ? failed(s, EC_AL_OP, ret) : 0;
+	return ret ? apply_failed(s, EC_AL_OP, ret) : 0;
 }
 
 /*
@@ -449,7 +451,7 @@ static int step_down(struct ec_slave *s, u8 want)
 		return to_init(s);
 	}
 	if (ret)
-		return failed(s, want, ret);
+		return apply_failed(s, want, ret);
 	if (want == EC_AL_PREOP)
 		back_in_preop(s);
 	return 0;
@@ -500,7 +502,7 @@ static int start_clean(struct ec_slave *s)
 }
 
 /* One step towards the requested state; 1: there, 0: again, -errno. */
-static int step(struct ec_slave *s)
+static int apply_step(struct ec_slave *s)
 {
 	struct ec_setup *setup = ec_setup_of(s);
 	u8 want = ec_slave_wanted(s), cur;
@@ -576,7 +578,7 @@ void ec_apply(struct ec_slave *s)
 	WRITE_ONCE(s->stop.worker, current);
 	for (i = 0; i < 16 && !ret && !ec_stop_worker(&s->stop); i++) {
 		take_plan(s);
-		ret = step(s);
+		ret = apply_step(s);
 	}
 	release_mailbox(s);
 	if (ret == 1 && ec_slave_set_ok(s, false)) {
@@ -584,7 +586,7 @@ void ec_apply(struct ec_slave *s)
 		log_return(s);
 	}
 	if (READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
-	    (is_transient(s, ret) || is_undecided(s, ret))) {
+	    (apply_is_transient(s, ret) || is_undecided(s, ret))) {
 		/* it has that time once more: a request anew may set it back */
 		if (ret == -ETIME && READ_ONCE(s->awaited))
 			s->retry_ms = max(s->retry_ms, s->awaited_ms / 2);

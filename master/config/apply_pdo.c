@@ -20,7 +20,7 @@ static int sdo_u(struct ec_slave *s, u16 index, u8 sub, u32 value, u8 bytes, u32
 	return ec_coe_download(&s->mbox, index, sub, false, b, bytes, abort, NULL);
 }
 
-/* Many slaves have fixed lists: what they have instead decides, see check(). */
+/* Many slaves have fixed lists: what they have instead decides, see apply_pdo_check(). */
 static int note_refusal(struct ec_slave *s, unsigned int sm, u16 index, const char *what, int ret,
 			u32 abort)
 {
@@ -196,8 +196,8 @@ static const struct ec_pdo_entry *first_wrong(const struct ec_pdo_list *want,
  * @have is what the slave has, and it will not change it. Process data of other objects
  * than the registered ones would be exchanged with a full working counter.
  */
-static int compare(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
-		   const char *cause)
+static int apply_pdo_compare(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+			     const char *cause)
 {
 	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
 	const struct ec_pdo_entry *e, *h;
@@ -236,7 +236,7 @@ static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
 }
 
 /* The slave refused: what does it have instead? */
-static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+static int apply_pdo_check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 {
 	const char *refusal = ec_setup_of(s)->pdo_refusal;
 	char text[160], why[96];
@@ -245,7 +245,7 @@ static int check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
 	if (ret == -ECANCELED || ret == -EINTR)
 		return ret;
 	if (!ret)
-		return compare(s, c, sm, refusal);
+		return apply_pdo_compare(s, c, sm, refusal);
 	snprintf(text, sizeof(text), "%.80s; its PDOs cannot be read (%s)", refusal,
 		 ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	not_certain(s, sm, text);
@@ -263,7 +263,7 @@ static int check_made(struct ec_slave *s, const struct ec_config *c, unsigned in
 
 	snprintf(sdo, sizeof(sdo), "startup SDO 0x%04x:%02x changes it; register entries after all startup SDOs",
 		 u->index, u->sub);
-	ret = compare(s, c, sm, sdo);
+	ret = apply_pdo_compare(s, c, sm, sdo);
 	for (i = 0; i < c->n_fmmus && !ret; i++)
 		if (c->fmmus[i].sm == sm && c->fmmus[i].size != bytes)
 			ret = ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT, .sm = sm),
@@ -371,7 +371,7 @@ static int check_fixed(struct ec_slave *s, const struct ec_config *c)
 		    names_differ(&c->sm[sm].pdos, &s->sm_pdos[sm]))
 			note_names(s, sm, &c->sm[sm].pdos, &s->sm_pdos[sm]);
 		else if (s->sm_pdos[sm].n)
-			ret = compare(s, c, sm, "without CoE its PDOs cannot be changed");
+			ret = apply_pdo_compare(s, c, sm, "without CoE its PDOs cannot be changed");
 		else
 			not_certain(s, sm, "the slave has no CoE, and its EEPROM lists no PDOs");
 	}
@@ -435,7 +435,7 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 		if (!ret)
 			ec_slave_set_sm_pdos(s, sm, l);
 		else if (ret == REFUSED)
-			ret = check(s, c, sm);
+			ret = apply_pdo_check(s, c, sm);
 	}
 	return ret;
 }

@@ -24,7 +24,7 @@ struct batch {
 	u8 fmmu[MAX_FMMU][EC_FMMU_PAGE];
 };
 
-static void add(struct batch *b, const struct ec_slave *s, u16 ado, void *data, u16 len)
+static void apply_regs_add(struct batch *b, const struct ec_slave *s, u16 ado, void *data, u16 len)
 {
 	b->dg[b->n++] = EC_FPWR(s->station, ado, len, data);
 }
@@ -73,7 +73,7 @@ static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *
 					     "SM%u needs %u bytes, limit %u; map fewer entries",
 					     sm, bytes, EC_MAX_SM_BYTES);
 		sm_page(s, c, sm, b->sm[sm]);
-		add(b, s, EC_REG_SM(sm), b->sm[sm], EC_SM_PAGE);
+		apply_regs_add(b, s, EC_REG_SM(sm), b->sm[sm], EC_SM_PAGE);
 	}
 	return 0;
 }
@@ -133,7 +133,7 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
 	}
 	ec_setup_of(s)->mapped = c->n_fmmus;
 	for (i = 0; i < count_fmmus(s); i++)
-		add(b, s, EC_REG_FMMU(i), b->fmmu[i], EC_FMMU_PAGE);
+		apply_regs_add(b, s, EC_REG_FMMU(i), b->fmmu[i], EC_FMMU_PAGE);
 	return 0;
 }
 

@@ -152,7 +152,7 @@ int ec_config_assign_clear(struct ec_config *c, u8 sm)
 	return 0;
 }
 
-static struct ec_pdo *find(struct ec_config *c, u16 pdo)
+static struct ec_pdo *config_find(struct ec_config *c, u16 pdo)
 {
 	unsigned int i;
 
@@ -170,7 +170,7 @@ static struct ec_pdo *find(struct ec_config *c, u16 pdo)
 
 int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e)
 {
-	struct ec_pdo *p = find(c, pdo);
+	struct ec_pdo *p = config_find(c, pdo);
 	int ret = p ? ec_budget_charge(&c->wanted->budget, sizeof(*e)) : -ENOENT;
 
 	if (ret)
@@ -183,7 +183,7 @@ int ec_config_map_add(struct ec_config *c, u16 pdo, const struct ec_pdo_entry *e
 
 int ec_config_map_clear(struct ec_config *c, u16 pdo)
 {
-	struct ec_pdo *p = find(c, pdo);
+	struct ec_pdo *p = config_find(c, pdo);
 
 	if (p) {
 		ec_budget_release(&c->wanted->budget, p->n_entries * sizeof(*p->entries));

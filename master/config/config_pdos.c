@@ -94,7 +94,7 @@ static u32 le(const u8 *data, u32 size)
 }
 
 /* One startup SDO; subindex 0 has two bytes in complete access. */
-static void follow(struct values *x, const struct ec_startup *u, unsigned int bytes)
+static void config_pdos_follow(struct values *x, const struct ec_startup *u, unsigned int bytes)
 {
 	unsigned int i = u->sub ? u->sub - 1 : 0;
 	u32 at = u->complete && !u->sub ? 2 : 0;
@@ -118,7 +118,7 @@ static bool follow_all(const struct ec_config *c, u16 index, struct values *x, u
 	list_for_each_entry(u, &c->startup, list) {
 		if (u->type != EC_STARTUP_SDO || u->index != index)
 			continue;
-		follow(x, u, bytes);
+		config_pdos_follow(x, u, bytes);
 		any = true;
 	}
 	cond_resched();

@@ -124,7 +124,7 @@ const struct ec_startup *ec_startup_changes(const struct ec_config *c, const str
 }
 
 /* What a command does; @code: the slave's own error number, 0: none */
-static int run(struct ec_slave *s, const struct ec_startup *u, u32 *code)
+static int startup_run(struct ec_slave *s, const struct ec_startup *u, u32 *code)
 {
 	/* a slave that goes through INIT instead would only begin again to store it */
 	static const struct ec_mbox_limit limit = { .patient = true };
@@ -164,7 +164,7 @@ static void why(char *text, size_t size, const struct ec_startup *u, int ret, u3
 				  text, size);
 }
 
-static void failed(struct ec_slave *s, const struct ec_startup *u, int ret, u32 code)
+static void startup_failed(struct ec_slave *s, const struct ec_startup *u, int ret, u32 code)
 {
 	char name[12], text[96];
 
@@ -215,11 +215,11 @@ int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
 		if (u->transition != transition)
 			continue;
 		code = 0;
-		ret = run(s, u, &code);
+		ret = startup_run(s, u, &code);
 		if (ret == -ECANCELED || ret == -EINTR)
 			return ret;
 		if (ret) {
-			failed(s, u, ret, code);
+			startup_failed(s, u, ret, code);
 			return code ? -EREMOTEIO : ret;
 		}
 	}

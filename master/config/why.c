@@ -11,7 +11,7 @@
 #define WALK		64	/* configurations to check without a pause */
 
 /* The ring position that @c names; false: no slave has its alias. @topo is held, or it is shown. */
-static bool place(const struct ec_config *c, unsigned int *pos)
+static bool why_place(const struct ec_config *c, unsigned int *pos)
 {
 	const struct ec_bus *bus = c->wanted->bus;
 
@@ -69,7 +69,7 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 {
 	unsigned int p;
 
-	return place(has, &p) && p == pos;
+	return why_place(has, &p) && p == pos;
 }
 
 /* Without device or link there is no slave at all. */
@@ -106,7 +106,7 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
 				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
 	*cause = *EC_CAUSE(NO_ALIAS);
-	if (!place(c, &pos))
+	if (!why_place(c, &pos))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
 				 bus->n_slaves, c->alias);
 	*cause = *EC_CAUSE(NO_SLAVE, .position = min_t(u32, pos, EC_UAPI_NONE16));
