@@ -232,7 +232,7 @@ static void tell_device(const struct ec_cycle *c)
 }
 
 /* Inputs and working counters of this cycle for the application, which is to be woken then. */
-static void publish(struct ec_cycle_thread *t)
+static void cycle_run_publish(struct ec_cycle_thread *t)
 {
 	struct ec_cycle *c = t->cycle;
 	struct ec_exchange_buffer *b = ec_cycle_run_buffer(t, EC_EXCHANGE_BUFFERS + t->back);
@@ -325,7 +325,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 		if (!ret)
 			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
 	}
-	publish(t);
+	cycle_run_publish(t);
 	ec_cycle_run_wake(c, entered);
 	t->end_ns = ktime_get_ns();
 	ec_late_work(c, t->end_ns - now);

@@ -32,7 +32,7 @@ static void find_turns(struct ec_cycle_thread *t)
 }
 
 /* Until the next cycle; false: the thread shall end. */
-static bool sleep(const struct ec_cycle_thread *t)
+static bool cycle_thread_sleep(const struct ec_cycle_thread *t)
 {
 	ktime_t at = ns_to_ktime(t->next_ns);
 	bool due = false;
@@ -47,7 +47,7 @@ static bool sleep(const struct ec_cycle_thread *t)
 	return due;
 }
 
-static int run(void *data)
+static int cycle_thread_run(void *data)
 {
 	struct ec_cycle_thread *t = data;
 	const struct ec_ioc_cycle *k = &t->cycle->kernel;
@@ -63,7 +63,7 @@ static int run(void *data)
 		bool more = ec_cycle_timer_run(t);
 
 		if (more) {
-			if (!sleep(t))
+			if (!cycle_thread_sleep(t))
 				break;
 			more = ec_cycle_run_once(t, false);
 		}
@@ -152,7 +152,7 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 	if (ret)
 		goto err;
 	ec_cycle_run_deal(t);
-	t->task = kthread_create(run, t, "EtherCAT%u-cyc", c->base->index);
+	t->task = kthread_create(cycle_thread_run, t, "EtherCAT%u-cyc", c->base->index);
 	if (IS_ERR(t->task)) {
 		ret = PTR_ERR(t->task);
 		goto err;

@@ -21,7 +21,7 @@
  * Enters the links where the cycle may run in an interrupt of this CPU, and says so by
  * EC_CYCLE_PLACE_INTERRUPT. All other places are in the thread.
  */
-static u32 enter(const struct ec_cycle_thread *t)
+static u32 cycle_timer_enter(const struct ec_cycle_thread *t)
 {
 	struct ec_cycle *c = t->cycle;
 
@@ -83,7 +83,7 @@ static enum hrtimer_restart tick(struct hrtimer *timer)
 	/* where a panic lets timers go on, outputs would never end */
 	if (unlikely(READ_ONCE(t->stopped)))
 		return HRTIMER_NORESTART;
-	place = enter(t);
+	place = cycle_timer_enter(t);
 	if (unlikely(place != EC_CYCLE_PLACE_INTERRUPT))
 		return give_back(t, place);
 	t->ended = !ec_cycle_run_once(t, true);
@@ -173,7 +173,7 @@ bool ec_cycle_timer_run(struct ec_cycle_thread *t)
 
 	if (likely(!(t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)))
 		return true;
-	place = enter(t);
+	place = cycle_timer_enter(t);
 	note_place(t->cycle, place);
 	if (t->in_thread)
 		t->in_thread--;

@@ -51,7 +51,7 @@ struct wanted {
 	u32 run;	/* of this run */
 };
 
-static bool is_over(const struct wanted *w)
+static bool cycle_wait_is_over(const struct wanted *w)
 {
 	return !(w->run & 1) || READ_ONCE(w->cycles->run) != w->run ||
 	       READ_ONCE(w->cycles->owner) != w->owner;
@@ -61,7 +61,7 @@ static bool is_over(const struct wanted *w)
  * Not by a wait queue: under PREEMPT_RT a hard interrupt cannot wake one. Returns 0,
  * -ETIMEDOUT or -ERESTARTNOHAND.
  */
-static int sleep(const struct wanted *w, u32 timeout_us)
+static int cycle_wait_sleep(const struct wanted *w, u32 timeout_us)
 {
 	ktime_t until = timeout_us ? ktime_add_us(ktime_get(), timeout_us) : KTIME_MAX;
 	bool expired = false;
@@ -69,7 +69,7 @@ static int sleep(const struct wanted *w, u32 timeout_us)
 
 	while (1) {
 		set_current_state(TASK_INTERRUPTIBLE);
-		if (is_over(w) || ec_read64(&w->cycles->number) > w->cycle)
+		if (cycle_wait_is_over(w) || ec_read64(&w->cycles->number) > w->cycle)
 			break;
 		/* a signal handler runs first, and ends it; kthread_stop() in the same way */
 		ret = expired ? -ETIMEDOUT : signal_pending(current) ? -ERESTARTNOHAND : 0;
@@ -110,11 +110,11 @@ int ec_cycle_thread_wait(struct ec_cycles *cycles, const void *owner, struct ec_
 		return -EPERM;
 	if (!ec_waiters_join(w, &me))
 		return -EBUSY;
-	ret = sleep(&wanted, timeout_us);
+	ret = cycle_wait_sleep(&wanted, timeout_us);
 	ec_waiters_part(w, &me);
 	if (ret)
 		return ret;
-	if (is_over(&wanted))
+	if (cycle_wait_is_over(&wanted))
 		return -ECANCELED;
 	*cycle = ec_read64(&cycles->number);
 	return 0;

@@ -233,7 +233,7 @@ void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index,
 	}
 }
 
-static const u8 *skip(const u8 *data, u16 len)
+static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
 {
 	return data + len + EC_DGRAM_OVERHEAD;
 }
@@ -255,26 +255,26 @@ const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f
 	unsigned int i;
 
 	for (i = 0; i < refs(dc); i++)
-		data = skip(data, 4);
+		data = dc_datagrams_skip(data, 4);
 	if (dc & SYNC_SLAVES) {
 		if (answered(c, f, data, len))
 			take_time(c, data, len, sent_ns);
 		for (i = 0; i < syncs(dc); i++)
-			data = skip(data, len);
+			data = dc_datagrams_skip(data, len);
 	}
 	if (dc & REF_TIME) {
 		if (get_unaligned_le16(data + len)) {
 			c->dc_time64 = clock_time(c, data, len, sent_ns);
 			c->dc_back |= REF_TIME;
 		}
-		data = skip(data, len);
+		data = dc_datagrams_skip(data, len);
 	}
 	if (dc & MONITOR) {
 		if (get_unaligned_le16(data + 4)) {
 			c->dc_diff = get_unaligned_le32(data);
 			c->dc_back |= MONITOR;
 		}
-		data = skip(data, 4);
+		data = dc_datagrams_skip(data, 4);
 	}
 	return data;
 }

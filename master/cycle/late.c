@@ -39,7 +39,7 @@ static unsigned int bucket(u32 ns)
 	return (shift + 1) * 8 + (ns >> shift & 7);
 }
 
-static void forget(struct ec_status_cycle *st)
+static void late_forget(struct ec_status_cycle *st)
 {
 	st->overruns = 0;
 	st->missed = 0;
@@ -57,13 +57,13 @@ static noinline void reset(struct ec_cycle *c)
 {
 	unsigned long flags = ec_status_begin(c->shared->status);
 
-	forget(status(c));
+	late_forget(status(c));
 	ec_status_end(c->shared->status, flags);
 	/* the figures are zero before a reader may read them again */
 	smp_store_release(&c->cycles->late_reset, false);
 }
 
-static __always_inline void count(struct ec_cycle *c, u32 late)
+static __always_inline void late_add(struct ec_cycle *c, u32 late)
 {
 	struct ec_status_cycle *st = status(c);
 	unsigned int i = bucket(late);
@@ -91,11 +91,11 @@ static __always_inline void count(struct ec_cycle *c, u32 late)
  */
 void ec_late_count(struct ec_cycle *c, s64 ns)
 {
-	count(c, clamp_t(s64, ns, 0, U32_MAX));
+	late_add(c, clamp_t(s64, ns, 0, U32_MAX));
 }
 
 /* The median of the last gaps: single delayed sends do not change it. */
-static u32 median(const struct ec_schedule *sc)
+static u32 late_median(const struct ec_schedule *sc)
 {
 	unsigned int n = min_t(unsigned int, sc->n_gaps, EC_SCHEDULE_GAPS), i, k;
 	u32 sorted[EC_SCHEDULE_GAPS];
@@ -124,7 +124,7 @@ static void set_interval_us(struct ec_cycle *c, u32 ns)
  * The interval, when the application has not set it: for the first sends a mean that
  * follows quickly. The frames between two sends need to know it soon.
  */
-static noinline void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
+static noinline void late_measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 {
 	s64 off = ns - sc->interval_ns, limit = NSEC_PER_SEC;
 
@@ -137,7 +137,7 @@ static noinline void measure(struct ec_cycle *c, struct ec_schedule *sc, u64 ns)
 		return;
 	sc->gaps[sc->n_gaps++ % EC_SCHEDULE_GAPS] = ns;
 	if (sc->n_gaps >= GAPS_MIN)
-		set_interval_us(c, median(sc));
+		set_interval_us(c, late_median(sc));
 }
 
 /* A mean that the schedule cannot follow, twice in a row to the same side. */
@@ -164,7 +164,7 @@ static void check_mean(struct ec_cycle *c, struct ec_schedule *sc, u64 now)
 }
 
 /* The interval that was measured may have changed: a little, or so that it is measured again. */
-static noinline void check(struct ec_cycle *c, struct ec_schedule *sc, u64 now, s64 off)
+static noinline void late_check(struct ec_cycle *c, struct ec_schedule *sc, u64 now, s64 off)
 {
 	s8 side = abs(off) <= sc->interval_ns >> FAR_SHIFT ? 0 : off > 0 ? 1 : -1;
 
@@ -179,21 +179,21 @@ static noinline void check(struct ec_cycle *c, struct ec_schedule *sc, u64 now, 
 }
 
 /* Without a set interval: measure it, and then see whether it is still the same. */
-static void learn(struct ec_cycle *c, struct ec_schedule *sc, u64 now)
+static void late_learn(struct ec_cycle *c, struct ec_schedule *sc, u64 now)
 {
 	u64 ns = now - ec_read64(&c->links->access.last_send_ns);
 	s64 off = ns - sc->interval_ns;
 
 	sc->n_block++;
 	if (sc->sends < MEASURE_SENDS)
-		measure(c, sc, ns);
+		late_measure(c, sc, ns);
 	else if (unlikely(sc->far || sc->n_block >= MEASURE_SENDS ||
 			  abs(off) > sc->interval_ns >> FAR_SHIFT))
-		check(c, sc, now, off);
+		late_check(c, sc, now, off);
 }
 
 /* The first send, or the first one of another interval. */
-static void begin(struct ec_schedule *sc, u64 now)
+static void late_begin(struct ec_schedule *sc, u64 now)
 {
 	sc->block_ns = now;
 	sc->before_ns = 0;
@@ -203,7 +203,7 @@ static void begin(struct ec_schedule *sc, u64 now)
 }
 
 /* A whole interval late or more: what was due in between is left out. */
-static noinline s64 skip(struct ec_cycle *c, s64 off)
+static noinline s64 late_skip(struct ec_cycle *c, s64 off)
 {
 	struct ec_schedule *sc = &c->schedule;
 	u64 n = div_u64(off, sc->interval_ns);
@@ -241,11 +241,11 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 		sc->interval_ns = ec_access_interval_us(&c->links->access) *
 				 (u32)NSEC_PER_USEC;
 	else if (sc->sends)
-		learn(c, sc, now);
+		late_learn(c, sc, now);
 	sc->last_ns = now;
 	if (unlikely(sc->sends < (set ? 1 : MEASURE_SENDS) || !sc->interval_ns)) {
 		if (!sc->sends++)
-			begin(sc, now);
+			late_begin(sc, now);
 		sc->due_ns = now;
 		return;
 	}
@@ -253,9 +253,9 @@ void ec_late_send(struct ec_cycle *c, u64 now)
 	off = now - sc->due_ns;
 	if (unlikely(off < -(s64)(sc->interval_ns / 2)))
 		off = go_back(sc, off);
-	count(c, min_t(u64, abs(off), U32_MAX));
+	late_add(c, min_t(u64, abs(off), U32_MAX));
 	if (unlikely(off >= sc->interval_ns))
-		off = skip(c, off);
+		off = late_skip(c, off);
 	step = step_ns(sc);
 	sc->due_ns += clamp_t(s64, off, -step, step);
 }
@@ -309,7 +309,7 @@ static void get(struct ec_cycle *c, struct ec_ioc_cycle_stats *info,
 	describe(c, info);
 	ec_status_copy(c->shared->status, st, status(c), sizeof(*st));
 	if (forgotten)
-		forget(st);
+		late_forget(st);
 }
 
 /**
@@ -365,5 +365,5 @@ void ec_late_reset(struct ec_cycles *cycles)
 	if (cycles->active)
 		WRITE_ONCE(cycles->late_reset, true);
 	else
-		forget(&cycles->late.status);
+		late_forget(&cycles->late.status);
 }

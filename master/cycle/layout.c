@@ -21,7 +21,7 @@ struct layout {
 };
 
 /* Slaves with data of @dir in the stretch; each counts once. */
-static u16 count_slaves(const struct layout *o, const struct ec_stretch *st, u8 dir)
+static u16 layout_count_slaves(const struct layout *o, const struct ec_stretch *st, u8 dir)
 {
 	const struct ec_domain_fmmu *r = o->l.refs;
 	unsigned int i, j;
@@ -194,7 +194,7 @@ static bool is_solid(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
 	       g->n_plain && g->n_inputs == g->n_plain;
 }
 
-static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
+static int layout_fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
 {
 	struct ec_cyc_dgram *g = add_dgram(o, st, cmd, expected);
 	int ret;
@@ -213,8 +213,8 @@ static int fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16
 
 static int add_stretch(struct layout *o, const struct ec_stretch *st)
 {
-	u16 out = count_slaves(o, st, EC_CFG_DIR_OUTPUT);
-	u16 in = count_slaves(o, st, EC_CFG_DIR_INPUT);
+	u16 out = layout_count_slaves(o, st, EC_CFG_DIR_OUTPUT);
+	u16 in = layout_count_slaves(o, st, EC_CFG_DIR_INPUT);
 	unsigned int i;
 	int ret = 0;
 
@@ -222,13 +222,13 @@ static int add_stretch(struct layout *o, const struct ec_stretch *st)
 		for (i = st->first; i < st->last; i++)
 			o->l.refs[i].config->lrw = true;
 		o->d->expected += 2 * out + in;
-		return fill_dgram(o, st, EC_CMD_LRW, 2 * out + in);
+		return layout_fill_dgram(o, st, EC_CMD_LRW, 2 * out + in);
 	}
 	o->d->expected += out + in;
 	if (out)
-		ret = fill_dgram(o, st, EC_CMD_LWR, out);
+		ret = layout_fill_dgram(o, st, EC_CMD_LWR, out);
 	if (in && !ret)
-		ret = fill_dgram(o, st, EC_CMD_LRD, in);
+		ret = layout_fill_dgram(o, st, EC_CMD_LRD, in);
 	return ret;
 }
 
@@ -266,7 +266,8 @@ static int layout_domain(struct ec_cycle *c, struct ec_domain *d)
  * Frames of a cycle that sends all domains, packed as the send packs them, and
  * how long they occupy the wire.
  */
-static struct ec_cyc_wire plan(const struct ec_cycle *c, unsigned int max_datagrams, bool clocks)
+static struct ec_cyc_wire layout_plan(const struct ec_cycle *c, unsigned int max_datagrams,
+				      bool clocks)
 {
 	unsigned int count = clocks ? DC_DGRAMS : 0, own = 0, i;
 	size_t body = clocks ? DC_BYTES + DC_DGRAMS * EC_DGRAM_OVERHEAD : 0;
@@ -324,8 +325,8 @@ int ec_cycle_layout(struct ec_cycle *c)
 		if (!c->stage)
 			return -ENOMEM;
 	}
-	c->plain = plan(c, c->links->max_datagrams, false);
-	c->clocked = plan(c, c->links->max_datagrams, true);
+	c->plain = layout_plan(c, c->links->max_datagrams, false);
+	c->clocked = layout_plan(c, c->links->max_datagrams, true);
 	return c->clocked.frames > EC_MAX_CYCLE_FRAMES ? -EOVERFLOW : 0;
 }
 

@@ -89,7 +89,7 @@ static void take_config(struct place *p, struct ec_config *c)
 }
 
 /* Is it the first FMMU of its configuration in the domain? */
-static bool is_first(const struct place *p, const struct ec_domain_fmmu *ref)
+static bool logical_is_first(const struct place *p, const struct ec_domain_fmmu *ref)
 {
 	const struct ec_config_fmmu *f = ref->config->fmmus;
 
@@ -108,14 +108,14 @@ static void arrange(struct place *p)
 
 		if (way_of(p, ref->config) == APART || way_of(p, ref->config) == FREE)
 			p->l->refs[p->l->n++] = *ref;
-		else if (is_first(p, ref))
+		else if (logical_is_first(p, ref))
 			take_config(p, ref->config);
 	}
 	if (p->d->options & EC_DOMAIN_OPT_OVERLAP && !p->l->separate)
 		sort(p->l->refs, p->l->n, sizeof(p->l->refs[0]), by_ring, NULL);
 }
 
-static void put(struct place *p, struct ec_config_fmmu *f)
+static void logical_put(struct place *p, struct ec_config_fmmu *f)
 {
 	u32 *end = is_out(f) ? &p->out : &p->in;
 
@@ -132,7 +132,7 @@ static void put_unit(struct place *p, unsigned int i, unsigned int k, enum way w
 		struct ec_config_fmmu *f = p->l->refs[i].fmmu;
 		u32 outputs = p->out;
 
-		put(p, f);
+		logical_put(p, f);
 		f->shared = (way == OWN || way == RING) && !is_out(f) && f->logical < outputs;
 		p->l->refs[i].config->in_ring |= way == RING;
 		/* outputs of later slaves must not lie at these inputs */

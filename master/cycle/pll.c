@@ -82,7 +82,7 @@ static bool measured(struct ec_pll *l, const struct ec_cycle *c, s32 *error)
 	return true;
 }
 
-static void publish(const struct ec_pll *l, struct ec_status_cycle *st)
+static void pll_publish(const struct ec_pll *l, struct ec_status_cycle *st)
 {
 	if (st->lock >= EC_CYCLE_LOCK_LOCKED && l->pi.state < EC_DC_LOCK_LOCKED)
 		WRITE_ONCE(st->lock_losses, st->lock_losses + 1);
@@ -115,7 +115,7 @@ s32 ec_pll_step(struct ec_pll *l, struct ec_cycle *c, u64 due, u64 epoch_ns)
 	if (l->follow) {
 		correction = measured(l, c, &error) ? ec_dc_lock_step(&l->pi, error) :
 						      ec_dc_lock_miss(&l->pi);
-		publish(l, &c->shared->status->kernel);
+		pll_publish(l, &c->shared->status->kernel);
 	}
 	l->past[k].due = due;
 	l->past[k].time = l->time;

@@ -187,7 +187,7 @@ static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 }
 
 /* Domains that were sent or came back since the last receive. */
-static void judge(struct ec_cycle *c)
+static void receive_judge(struct ec_cycle *c)
 {
 	u64 left = c->sent | c->back;
 
@@ -297,7 +297,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	rcu_read_unlock();
 	c->n_flight = left;
 	ec_links_events(l, irq);
-	judge(c);
+	receive_judge(c);
 	flags = ec_status_begin(st);
 	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
 	if (c->dc_asked | c->dc_back)

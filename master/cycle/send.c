@@ -39,7 +39,7 @@ struct send {
 };
 
 /* Outputs, and the last value of inputs. */
-static void fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u8 *data)
+static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u8 *data)
 {
 	const struct ec_cyc_area *a = &c->areas[d->first_copy];
 	const u8 *image = c->domains[d->domain].image;
@@ -82,7 +82,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 				 d->logical >> 16, d->len);
 		if (!p)
 			break;
-		fill_dgram(c, d, p);
+		send_fill_dgram(c, d, p);
 		room--;
 	}
 	send->riding.mask = 0;

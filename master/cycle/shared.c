@@ -8,7 +8,7 @@
 #include <linux/vmalloc.h>
 #include "shared.h"
 
-static void release(struct kref *kref)
+static void shared_release(struct kref *kref)
 {
 	struct ec_shared *sh = container_of(kref, struct ec_shared, kref);
 
@@ -27,7 +27,7 @@ void ec_shared_get(struct ec_shared *sh)
 
 void ec_shared_put(struct ec_shared *sh)
 {
-	kref_put(&sh->kref, release);
+	kref_put(&sh->kref, shared_release);
 }
 
 /**
