@@ -11,7 +11,7 @@
 
 /* works ---------------------------------------------------------------------*/
 
-static void release(struct kref *kref)
+static void request_release(struct kref *kref)
 {
 	struct ec_requests *rq = container_of(kref, struct ec_requests, kref);
 
@@ -22,21 +22,22 @@ static void release(struct kref *kref)
 	kfree(rq);
 }
 
-static void put(struct ec_requests *rq)
+static void request_put(struct ec_requests *rq)
 {
-	kref_put(&rq->kref, release);
+	kref_put(&rq->kref, request_release);
 }
 
 /* The work has a reference while it is queued or runs. */
-static void queue(struct ec_requests *rq, struct workqueue_struct *wq, struct work_struct *work)
+static void request_queue(struct ec_requests *rq, struct workqueue_struct *wq,
+			  struct work_struct *work)
 {
 	kref_get(&rq->kref);
 	if (!queue_work(wq, work))
-		put(rq);
+		request_put(rq);
 }
 
 /* The session these requests belong to, or NULL: it has ended. */
-static struct ec_session *session_of(const struct ec_requests *rq)
+static struct ec_session *request_session_of(const struct ec_requests *rq)
 {
 	struct ec_session *s = rq->sessions->session;
 
@@ -45,7 +46,7 @@ static struct ec_session *session_of(const struct ec_requests *rq)
 
 /* begin and end of a request ------------------------------------------------*/
 
-static void finish(struct ec_request *r)
+static void request_finish(struct ec_request *r)
 {
 	const struct ec_request_result *res = &r->res;
 
@@ -61,10 +62,10 @@ static void finish(struct ec_request *r)
 	smp_store_release(&r->rec->done, r->seq);
 }
 
-static void fail(struct ec_request *r, int err)
+static void request_fail(struct ec_request *r, int err)
 {
 	r->res = (struct ec_request_result){ .err = err };
-	finish(r);
+	request_finish(r);
 }
 
 /* Nothing in a record can be trusted: each field is read once, then checked. */
@@ -89,7 +90,7 @@ static void pick_up(struct ec_request *r, u64 now)
 		memcpy(r->buf, r->data - EC_FOE_NAME, EC_FOE_NAME);
 	ret = ec_request_accept(r, READ_ONCE(r->rec->flags), READ_ONCE(r->rec->size));
 	if (ret) {
-		fail(r, ret);
+		request_fail(r, ret);
 		return;
 	}
 	if (ec_request_is_file(r))
@@ -106,7 +107,7 @@ static void end_cancelled(struct ec_request *r)
 		return;
 	WRITE_ONCE(r->stop, true);
 	if (r->phase == EC_REQUEST_PENDING)
-		fail(r, -ECANCELED);
+		request_fail(r, -ECANCELED);
 }
 
 static bool expired(const struct ec_request *r, u64 now)
@@ -120,7 +121,7 @@ static bool expired(const struct ec_request *r, u64 now)
  * New starts, those that are cancelled or have waited too long, and work for the lanes. False
  * when nothing has to be looked after any more.
  */
-static bool look(struct ec_requests *rq)
+static bool request_look(struct ec_requests *rq)
 {
 	u64 now = ktime_get_ns();
 	struct ec_session *s;
@@ -128,7 +129,7 @@ static bool look(struct ec_requests *rq)
 	unsigned int i;
 
 	mutex_lock(&rq->sessions->lock);
-	s = session_of(rq);
+	s = request_session_of(rq);
 	if (!s)
 		goto out;
 	mutex_lock(&rq->lock);
@@ -143,15 +144,15 @@ static bool look(struct ec_requests *rq)
 			if (r->phase != EC_REQUEST_PENDING)
 				continue;
 			if (r->kind == EC_REQUEST_VOE && !there)
-				fail(r, -ENOTCONN);
+				request_fail(r, -ENOTCONN);
 			else if (expired(r, now))
-				fail(r, -ETIMEDOUT);
+				request_fail(r, -ETIMEDOUT);
 			else
 				todo = true;
 		}
 		more |= todo;
 		if (todo && there)
-			queue(rq, rq->sessions->lanes, &lane->work);
+			request_queue(rq, rq->sessions->lanes, &lane->work);
 	}
 	mutex_unlock(&rq->lock);
 out:
@@ -163,9 +164,9 @@ static void kick_work(struct work_struct *work)
 {
 	struct ec_requests *rq = container_of(work, struct ec_requests, kick);
 
-	if (look(rq))
-		queue(rq, rq->sessions->service, &rq->watch);
-	put(rq);
+	if (request_look(rq))
+		request_queue(rq, rq->sessions->service, &rq->watch);
+	request_put(rq);
 }
 
 static void watch_work(struct work_struct *work)
@@ -175,8 +176,8 @@ static void watch_work(struct work_struct *work)
 	/* a request begins by a write to mapped memory, which wakes no thread */
 	do
 		usleep_range(WATCH_US, WATCH_US + WATCH_US / 10);
-	while (look(rq));
-	put(rq);
+	while (request_look(rq));
+	request_put(rq);
 }
 
 /* lanes ---------------------------------------------------------------------*/
@@ -196,7 +197,7 @@ static bool ready(const struct ec_slave *s, const struct ec_request *r)
 }
 
 /* The oldest request that can begin, and its slave with a reference. */
-static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
+static struct ec_request *request_take(struct ec_lane *lane, struct ec_slave **slave)
 {
 	struct ec_requests *rq = lane->rq;
 	struct ec_request *r, *oldest = NULL;
@@ -204,7 +205,7 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 	struct ec_session *s;
 
 	mutex_lock(&rq->sessions->lock);
-	s = session_of(rq);
+	s = request_session_of(rq);
 	*slave = s ? s->wanted.configs[lane->config]->slave : NULL;
 	if (!*slave || (*slave)->stop.gone) {
 		*slave = NULL;
@@ -216,7 +217,7 @@ static struct ec_request *take(struct ec_lane *lane, struct ec_slave **slave)
 		if (r->phase != EC_REQUEST_PENDING || !ready(*slave, r))
 			continue;
 		if (expired(r, now))
-			fail(r, -ETIMEDOUT);
+			request_fail(r, -ETIMEDOUT);
 		else if (!oldest || r->since_ns < oldest->since_ns)
 			oldest = r;
 	}
@@ -236,16 +237,16 @@ static void lane_work(struct work_struct *work)
 	struct ec_slave *slave;
 
 	do {
-		r = take(lane, &slave);
+		r = request_take(lane, &slave);
 		if (r) {
 			ec_request_run(r, slave);
 			mutex_lock(&rq->lock);
-			finish(r);
+			request_finish(r);
 			mutex_unlock(&rq->lock);
 		}
 		ec_slave_unref(slave);
 	} while (r);
-	put(rq);
+	request_put(rq);
 }
 
 /* session -------------------------------------------------------------------*/
@@ -280,7 +281,7 @@ int ec_requests_begin(struct ec_session *s)
 	rq->lanes = kvcalloc(rq->n_lanes, sizeof(*rq->lanes), GFP_KERNEL_ACCOUNT);
 	rq->bufs = kvzalloc(max_t(size_t, ec_requests_buf_bytes(s), 1), GFP_KERNEL_ACCOUNT);
 	if (!rq->reqs || !rq->lanes || !rq->bufs) {
-		put(rq);
+		request_put(rq);
 		return -ENOMEM;
 	}
 	for (i = 0; i < rq->n_lanes; i++)
@@ -310,7 +311,7 @@ void ec_requests_end(struct ec_session *s)
 	lockdep_assert_held(s->wanted.lock);
 	if (!rq)
 		return;
-	/* none begins any more: take() and look() find no session */
+	/* none begins any more: request_take() and request_look() find no session */
 	for (i = 0; i < rq->n_lanes; i++)
 		list_for_each_entry(r, &rq->lanes[i].requests, list)
 			WRITE_ONCE(r->stop, true);
@@ -321,7 +322,7 @@ void ec_requests_end(struct ec_session *s)
 		if (c->slave)
 			wake_up_all(&c->slave->stop.wake);
 	}
-	put(rq);
+	request_put(rq);
 }
 
 /**
@@ -340,7 +341,7 @@ void ec_requests_kick(struct ec_session *s)
 	area = (void *)rq->shared->requests;
 	/* ec_requests_notice() need not look at these again; pairs with ec_request_started() */
 	WRITE_ONCE(rq->starts, smp_load_acquire(&area->starts));
-	queue(rq, rq->sessions->service, &rq->kick);
+	request_queue(rq, rq->sessions->service, &rq->kick);
 }
 
 /**
@@ -365,7 +366,7 @@ void ec_requests_notice(struct ec_cycle *c)
 	if (starts == READ_ONCE(rq->starts))
 		return;
 	WRITE_ONCE(rq->starts, starts);
-	queue(rq, rq->sessions->service, &rq->kick);
+	request_queue(rq, rq->sessions->service, &rq->kick);
 }
 
 /**

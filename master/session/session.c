@@ -54,7 +54,7 @@ static void to_preop(struct ec_sessions *ss)
 }
 
 /* -EAGAIN: a scan has begun since the wait for it, which has returned @waited. */
-static int begin(struct ec_sessions *ss, struct ec_session *s, int waited)
+static int session_begin(struct ec_sessions *ss, struct ec_session *s, int waited)
 {
 	int ret = 0;
 
@@ -182,7 +182,7 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 	RCU_INIT_POINTER(s->cycle.waiters, waiters);
 	note_process(s);
 	s->ref_config = EC_UAPI_NONE32;
-	while ((ret = begin(ss, s, ret)) == -EAGAIN) {
+	while ((ret = session_begin(ss, s, ret)) == -EAGAIN) {
 		ret = ec_bus_wait_scan(ss->bus);
 		if (ret == -EINTR)
 			break;
@@ -578,14 +578,14 @@ u32 ec_session_place(struct ec_session *s)
 }
 
 /**
- * fits() - is there memory for an activation within the limit?
+ * session_fits() - is there memory for an activation within the limit?
  * @s: session
  * @image_size: bytes of all domains
  *
  * Context: Process, session lock held.
  * Return: 0 or -EDQUOT.
  */
-static int fits(const struct ec_session *s, size_t image_size)
+static int session_fits(const struct ec_session *s, size_t image_size)
 {
 	/* with six images for the exchange; requests have a copy of their data */
 	size_t images = s->cycle.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
@@ -621,7 +621,7 @@ int ec_session_activate(struct ec_session *s)
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
 		return -EOVERFLOW;
-	ret = fits(s, offset);
+	ret = session_fits(s, offset);
 	if (ret)
 		return ret;
 	s->cycle.shared = ec_shared_create(&ss->memory, offset, ec_requests_bytes(s));

@@ -337,7 +337,7 @@ static bool wanted_in_op(const struct ec_session *session, const struct ec_slave
 	       (ec_config_of(s) || s == session->raised);
 }
 
-static void try_again(const struct ec_session *session, struct ec_slave *s)
+static void session_attach_try_again(const struct ec_session *session, struct ec_slave *s)
 {
 	bool op = wanted_in_op(session, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 
@@ -364,7 +364,7 @@ void ec_session_again(struct work_struct *work)
 	mutex_lock(&ss->lock);
 	down_read(&ss->bus->topo);
 	ec_for_each_slave(s, ss->bus)
-		try_again(ss->session, s);
+		session_attach_try_again(ss->session, s);
 	up_read(&ss->bus->topo);
 	mutex_unlock(&ss->lock);
 }
