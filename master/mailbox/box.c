@@ -85,7 +85,7 @@ static void post_repeat(struct ec_mbox *mb, enum ec_mbox_step step)
 }
 
 /* Something has happened: the next access is made at once. */
-static void progress(struct ec_mbox *mb)
+static void box_progress(struct ec_mbox *mb)
 {
 	lockdep_assert_held(&mb->lock);
 	mb->since_ns = ktime_get_ns();
@@ -116,7 +116,7 @@ static void expect_reply(struct ec_mbox *mb)
 		mb->due_ns = mb->since_ns + min_t(u64, mb->took_ns / 4 * 3, SHORT_NS / 2);
 }
 
-static void has_message(struct ec_mbox *mb)
+static void on_message(struct ec_mbox *mb)
 {
 	lockdep_assert_held(&mb->lock);
 	mb->took_ns = ktime_get_ns() - mb->since_ns;
@@ -217,7 +217,7 @@ static void take_message(struct ec_mbox *mb)
 		.on = true, .user = u, .type = u->type, .len = u->len, .discard = u->discard,
 		.emptying = u->discard || (u->first && !mb->answered),
 	};
-	progress(mb);
+	box_progress(mb);
 	if (u->discard)
 		return;
 	mb->counter = ec_mbox_next_counter(mb->counter);
@@ -294,7 +294,7 @@ static void read_lost(struct ec_mbox *mb)
 	ec_mbox_finish_once(mb);
 }
 
-static void has_status(struct ec_mbox *mb, int ret)
+static void on_status(struct ec_mbox *mb, int ret)
 {
 	bool full = mb->status[0] & EC_SM_ST_FULL;
 
@@ -312,7 +312,7 @@ static void has_status(struct ec_mbox *mb, int ret)
 		mb->gap = false;
 	}
 	if (full) {
-		has_message(mb);
+		on_message(mb);
 		begin_read(mb);
 		return;
 	}
@@ -320,7 +320,7 @@ static void has_status(struct ec_mbox *mb, int ret)
 	ec_mbox_found_empty(mb);
 }
 
-static void has_read(struct ec_mbox *mb, int ret)
+static void on_read(struct ec_mbox *mb, int ret)
 {
 	mb->failed = false;
 	if (!ret) {
@@ -329,7 +329,7 @@ static void has_read(struct ec_mbox *mb, int ret)
 			read_on(mb);
 			return;
 		}
-		progress(mb);
+		box_progress(mb);
 		mb->sending.blocked = false;
 		mb->rx_size = mb->size;
 		ec_mbox_received(mb);
@@ -353,7 +353,7 @@ static void sent(struct ec_mbox *mb)
 
 	lockdep_assert_held(&mb->lock);
 	mb->sending.on = false;
-	progress(mb);
+	box_progress(mb);
 	/* its answer may have come before */
 	if (!u || u->phase != EC_MBOX_USER_SENDING)
 		return;
@@ -366,7 +366,7 @@ static void sent(struct ec_mbox *mb)
 	}
 }
 
-static void has_written(struct ec_mbox *mb, int ret)
+static void on_written(struct ec_mbox *mb, int ret)
 {
 	struct ec_mbox_sending *s = &mb->sending;
 
@@ -400,7 +400,7 @@ static void has_written(struct ec_mbox *mb, int ret)
  * Let the slave put its last message into SM1 again (ETG.1000.4 clause 6.7.3, registers
  * 0x080E, 0x080F). A request that is written once more after a lost frame is no second one.
  */
-static void has_repeat(struct ec_mbox *mb)
+static void on_repeat(struct ec_mbox *mb)
 {
 	u8 *b = mb->status;
 
@@ -431,7 +431,7 @@ static void no_repetition(struct ec_mbox *mb, bool silent)
 	ec_post_call(&mb->post);
 }
 
-static void has_ack(struct ec_mbox *mb)
+static void on_ack(struct ec_mbox *mb)
 {
 	if (!!(mb->status[1] & EC_SM_PDI_REPEAT_ACK) == mb->want) {
 		mb->gap = false;
@@ -458,7 +458,7 @@ static void again(struct ec_mbox *mb, enum ec_mbox_step step)
 		post_repeat(mb, step);
 }
 
-static void has_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
+static void on_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
 {
 	if (ret == -EAGAIN) {
 		again(mb, step);
@@ -466,13 +466,13 @@ static void has_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
 	}
 	switch (step) {
 	case EC_MBOX_STATUS:
-		has_status(mb, ret);
+		on_status(mb, ret);
 		break;
 	case EC_MBOX_READ:
-		has_read(mb, ret);
+		on_read(mb, ret);
 		break;
 	case EC_MBOX_WRITE:
-		has_written(mb, ret);
+		on_written(mb, ret);
 		break;
 	case EC_MBOX_REPEAT_GET:
 	case EC_MBOX_REPEAT_SET:
@@ -480,12 +480,12 @@ static void has_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
 		if (ret) {
 			no_repetition(mb, false);
 		} else if (step == EC_MBOX_REPEAT_GET) {
-			has_repeat(mb);
+			on_repeat(mb);
 		} else if (step == EC_MBOX_REPEAT_SET) {
 			mb->due_ns = mb->unseen ? ktime_get_ns() + UNSEEN_NS : 0;
 			post_repeat(mb, EC_MBOX_REPEAT_ACK);
 		} else {
-			has_ack(mb);
+			on_ack(mb);
 		}
 		break;
 	case EC_MBOX_REST:
@@ -509,7 +509,7 @@ void ec_mbox_done(struct ec_post *post)
 	step = mb->step;
 	WRITE_ONCE(mb->step, EC_MBOX_REST);
 	if (!mb->dead)
-		has_step(mb, step, post->dg.err ?: post->dg.wkc == 1 ? 0 : -EIO);
+		on_step(mb, step, post->dg.err ?: post->dg.wkc == 1 ? 0 : -EIO);
 	ec_mbox_go(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }

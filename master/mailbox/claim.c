@@ -65,7 +65,7 @@ void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
 }
 
 /* Give free protocols to those who wait, in their order. */
-static void admit(struct ec_mbox *mb)
+static void claim_admit(struct ec_mbox *mb)
 {
 	struct claim *c, *next;
 	u16 taken = mb->claimed;
@@ -94,7 +94,7 @@ static int claim(struct ec_mbox *mb, u16 types, const struct ec_mbox_until *unti
 		list_add(&c.list, &mb->claims);
 	else
 		list_add_tail(&c.list, &mb->claims);
-	admit(mb);
+	claim_admit(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 	/* the lock below orders all else */
 	while (!READ_ONCE(c.got)) {
@@ -108,7 +108,7 @@ static int claim(struct ec_mbox *mb, u16 types, const struct ec_mbox_until *unti
 		ret = 0;
 	} else {
 		list_del(&c.list);
-		admit(mb);
+		claim_admit(mb);
 	}
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 	return ret;
@@ -167,7 +167,7 @@ void ec_mbox_unclaim(struct ec_mbox *mb, u16 types)
 
 	raw_spin_lock_irqsave(&mb->lock, flags);
 	mb->claimed &= ~types;
-	admit(mb);
+	claim_admit(mb);
 	ec_mbox_go(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }

@@ -16,7 +16,7 @@ static int rx_result(int ret)
 	return ret == -EMSGSIZE ? -EBADMSG : ret;
 }
 
-static int rx(void *ctx, const u8 *buf, size_t len)
+static int coe_rx(void *ctx, const u8 *buf, size_t len)
 {
 	return rx_result(ec_sdo_rx(ctx, buf, len));
 }
@@ -38,11 +38,11 @@ static size_t moved(const struct ec_sdo *s)
  * Other protocols may use the mailbox between the messages of a transfer, another
  * SDO transfer may not.
  */
-static int run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit *limit)
+static int coe_run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit *limit)
 {
 	size_t cap = mb->sii->std.rx_size - EC_MBOX_HDR;
 	struct ec_mbox_request req = {
-		.type = EC_MBOX_COE, .first = true, .late = true, .rx = rx, .ctx = s,
+		.type = EC_MBOX_COE, .first = true, .late = true, .rx = coe_rx, .ctx = s,
 		.limit = ec_mbox_limit(limit, READ_ONCE(mb->reply_ms) ?: EC_SDO_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
@@ -110,7 +110,7 @@ int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data
 	*size = 0;
 	do {
 		ec_sdo_upload_init(&s, index, sub, complete, data, cap);
-		ret = run(mb, &s, limit);
+		ret = coe_run(mb, &s, limit);
 	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES);
 	ret = ec_mbox_read_result(ret);
 	if (ret == -EIO)
@@ -147,7 +147,7 @@ int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const 
 	*abort = 0;
 	ec_sdo_download_init(&s, index, sub, complete, data, size,
 			     mb->sii->std.rx_size - EC_MBOX_HDR);
-	ret = run(mb, &s, limit);
+	ret = coe_run(mb, &s, limit);
 	if (ret == -EIO)
 		*abort = s.abort;
 	ec_mbox_dbg_result(mb, ret, "download 0x%04x:%02x, abort 0x%08x, %zu byte(s)", index,

@@ -14,7 +14,7 @@ struct answer {
 };
 
 /* Frames of the slave's network may come in between. */
-static int rx(void *ctx, const u8 *buf, size_t len)
+static int eoe_rx(void *ctx, const u8 *buf, size_t len)
 {
 	struct answer *a = ctx;
 	int ret = ec_eoe_result_decode(buf, len, a->type, a->result);
@@ -26,12 +26,12 @@ static int rx(void *ctx, const u8 *buf, size_t len)
 }
 
 /* @len bytes of @b->tx go out, the answer of type @resp comes to @b->rx: its length. */
-static int exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u8 resp,
-		    u16 *result)
+static int eoe_exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u8 resp,
+			u16 *result)
 {
 	struct answer a = { .type = resp, .result = result };
 	struct ec_mbox_request req = {
-		.type = EC_MBOX_EOE, .first = true, .limit.timeout_ms = TIMEOUT_MS, .rx = rx,
+		.type = EC_MBOX_EOE, .first = true, .limit.timeout_ms = TIMEOUT_MS, .rx = eoe_rx,
 		.ctx = &a,
 	};
 
@@ -67,7 +67,7 @@ int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result)
 	if (IS_ERR(b))
 		return PTR_ERR(b);
 	ret = ec_eoe_ip_encode(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p);
-	ret = exchange(mb, b, ret, EC_EOE_SET_IP_RESP, result);
+	ret = eoe_exchange(mb, b, ret, EC_EOE_SET_IP_RESP, result);
 	kfree(b);
 	ret = min(ret, 0);
 	ec_mbox_dbg_result(mb, ret, "set IP parameters 0x%02x, EoE result 0x%04x", p->which,
@@ -95,7 +95,7 @@ int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result)
 	if (IS_ERR(b))
 		return PTR_ERR(b);
 	ret = ec_eoe_result_encode(b->tx, sizeof(b->tx), EC_EOE_GET_IP_REQ, 0);
-	ret = exchange(mb, b, ret, EC_EOE_GET_IP_RESP, result);
+	ret = eoe_exchange(mb, b, ret, EC_EOE_GET_IP_RESP, result);
 	if (ret >= 0)
 		ret = ec_eoe_ip_decode(b->rx, ret, p) ? -EBADMSG : 0;
 	ret = ec_mbox_read_result(ret);

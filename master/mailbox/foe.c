@@ -19,7 +19,7 @@ struct transfer {
 	u64 wait_ns;	/* since when it is busy before the first data, 0: it is not */
 };
 
-static int rx(void *ctx, const u8 *buf, size_t len)
+static int foe_rx(void *ctx, const u8 *buf, size_t len)
 {
 	struct transfer *t = ctx;
 	/* what a message of the slave can hold decides which one is the last */
@@ -53,7 +53,7 @@ static int wait_busy(struct transfer *t)
 }
 
 /* Data of a read go to their place; -ENOBUFS: there is no room. */
-static int take(const struct ec_foe *f, const struct ec_foe_file *file, struct ec_mbox_buf *b)
+static int foe_take(const struct ec_foe *f, const struct ec_foe_file *file, struct ec_mbox_buf *b)
 {
 	if (f->size > file->size)
 		return -ENOBUFS;
@@ -61,8 +61,8 @@ static int take(const struct ec_foe *f, const struct ec_foe_file *file, struct e
 }
 
 /* One message and its answer: EC_MORE, 0 or -errno. */
-static int step(struct transfer *t, const struct ec_foe_file *file, struct ec_mbox_request *req,
-		struct ec_mbox_buf *b)
+static int foe_step(struct transfer *t, const struct ec_foe_file *file, struct ec_mbox_request *req,
+		    struct ec_mbox_buf *b)
 {
 	struct ec_foe *f = t->f;
 	int len = ec_foe_tx(f, b->tx, ec_mbox_room(ec_mbox_area(t->mb)->rx_size)), ret;
@@ -86,7 +86,7 @@ static int step(struct transfer *t, const struct ec_foe_file *file, struct ec_mb
 	if (ret < 0)
 		return ret;
 	if (!f->write && !f->busy)
-		ret = take(f, file, b) ?: ret;
+		ret = foe_take(f, file, b) ?: ret;
 	if (file->progress && !f->busy)
 		file->progress(file->ctx, f->write ? ret ? f->at : f->size : f->size);
 	return ret;
@@ -146,7 +146,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 {
 	struct transfer t = { .f = f, .mb = mb };
 	struct ec_mbox_request req = {
-		.type = EC_MBOX_FOE, .first = true, .rx = rx, .ctx = &t,
+		.type = EC_MBOX_FOE, .first = true, .rx = foe_rx, .ctx = &t,
 		.limit = ec_mbox_limit(limit, EC_FOE_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_FOE, EC_FOE_HDR + 1);
@@ -167,7 +167,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	if (f->write)
 		set_bit(EC_MBOX_FILE_WRITE, &mb->flags);
 	do {
-		ret = wait_busy(&t) ?: step(&t, file, &req, b);
+		ret = wait_busy(&t) ?: foe_step(&t, file, &req, b);
 	} while (ret == EC_MORE);
 	if (!f->write)
 		ret = ec_mbox_read_result(ret);

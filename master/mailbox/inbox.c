@@ -200,7 +200,7 @@ static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
  * The user that a message of a type is for: of an error reply, which has no type, the one that
  * has sent its request first. One that has not taken its last message has to take that first.
  */
-static struct ec_mbox_user *find(struct ec_mbox *mb, u8 type)
+static struct ec_mbox_user *inbox_find(struct ec_mbox *mb, u8 type)
 {
 	struct ec_mbox_user *u, *reader = NULL;
 
@@ -253,10 +253,10 @@ static void mark_heard(struct ec_mbox *mb)
 }
 
 /* Whose message is it? It stays in @rx until it is taken. */
-static void dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
+static void inbox_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
 	bool emergency = is_emergency(mb, h);
-	struct ec_mbox_user *u = emergency ? NULL : find(mb, h->type);
+	struct ec_mbox_user *u = emergency ? NULL : inbox_find(mb, h->type);
 
 	lockdep_assert_held(&mb->lock);
 	mb->held = false;
@@ -300,13 +300,13 @@ void ec_mbox_received(struct ec_mbox *mb)
 	lockdep_assert_held(&mb->lock);
 	mb->unread = false;
 	if (ec_mbox_hdr_decode(&r, &h)) {
-		u = find(mb, EC_MBOX_ERR);
+		u = inbox_find(mb, EC_MBOX_ERR);
 		if (u && u->phase != EC_MBOX_USER_DONE) {
 			mb->sending.on &= mb->sending.user != u;
 			ec_mbox_finish(mb, u, -EBADMSG);
 		}
 	} else if (!is_known(mb, h.counter)) {
-		dispatch(mb, &h);
+		inbox_dispatch(mb, &h);
 	} else {
 		mark_heard(mb);
 	}
@@ -330,7 +330,7 @@ bool ec_mbox_has_reader(struct ec_mbox *mb)
 	lockdep_assert_held(&mb->lock);
 	if (ec_mbox_hdr_decode(&r, &h) || h.type != EC_MBOX_VOE)
 		return false;
-	u = find(mb, EC_MBOX_VOE);
+	u = inbox_find(mb, EC_MBOX_VOE);
 	if (!u)
 		return false;
 	deliver(mb, u, &h);
@@ -354,5 +354,5 @@ void ec_mbox_retry_held(struct ec_mbox *mb)
 	if (ec_mbox_hdr_decode(&r, &h))
 		mb->held = false;
 	else
-		dispatch(mb, &h);
+		inbox_dispatch(mb, &h);
 }

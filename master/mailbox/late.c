@@ -98,7 +98,7 @@ void ec_mbox_took_late(struct ec_mbox *mb, u8 type)
 }
 
 /* None has come: this slave may just not reply to some requests. */
-static void give_up(struct ec_mbox *mb, u8 type)
+static void late_give_up(struct ec_mbox *mb, u8 type)
 {
 	unsigned long flags;
 
@@ -150,7 +150,7 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 	if (u.got) {
 		ec_mbox_took_late(mb, u.got_type);
 	} else if (ret == -ETIMEDOUT && until.ns == last) {
-		give_up(mb, r->type);
+		late_give_up(mb, r->type);
 		return 0;
 	} else if (ret && (ret != -ETIMEDOUT || until.ns == begin)) {
 		return ret;

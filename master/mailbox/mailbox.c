@@ -278,8 +278,8 @@ static int answer(struct ec_mbox *mb, const struct ec_mbox_request *r,
 }
 
 /* The request, until its answer is here or it is too late. */
-static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r,
-		    const struct ec_mbox_limit *limit, struct ec_mbox_user *u)
+static int mailbox_exchange(struct ec_mbox *mb, const struct ec_mbox_request *r,
+			    const struct ec_mbox_limit *limit, struct ec_mbox_user *u)
 {
 	struct ec_mbox_until until = ec_mbox_until(limit);
 	int ret, end;
@@ -300,7 +300,8 @@ static int exchange(struct ec_mbox *mb, const struct ec_mbox_request *r,
 }
 
 /* The slave has the request, and its reply is late. It may come just now. */
-static int go_on(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_user *u)
+static int mailbox_go_on(struct ec_mbox *mb, const struct ec_mbox_request *r,
+			 struct ec_mbox_user *u)
 {
 	struct ec_mbox_limit more = r->limit;
 	int ret;
@@ -309,7 +310,7 @@ static int go_on(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_
 	if (r->limit.patient)
 		ec_mbox_warn(mb, "no reply within %u ms to a request that the slave has accepted; waiting %u s more\n",
 			      r->limit.timeout_ms, EC_MBOX_LATE_MS / 1000);
-	ret = exchange(mb, r, &more, u);
+	ret = mailbox_exchange(mb, r, &more, u);
 	if (ret == -ETIMEDOUT && !r->limit.patient)
 		ec_mbox_mark_late(mb, u);
 	return ret;
@@ -348,9 +349,9 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 	if (ret)
 		return ret;
 	ec_mbox_enter(mb, &u);
-	ret = exchange(mb, r, &r->limit, &u);
+	ret = mailbox_exchange(mb, r, &r->limit, &u);
 	if (ret == -ETIMEDOUT && r->late && ec_mbox_is_late(mb, &u))
-		ret = go_on(mb, r, &u);
+		ret = mailbox_go_on(mb, r, &u);
 	ec_mbox_leave(mb, &u, ret >= 0);
 	return ret == -ETIMEDOUT && (u.lost || u.gap) ? -ENOTRECOVERABLE : ret;
 }

@@ -18,16 +18,16 @@ const char *ec_soe_idn_text(u16 idn, char buf[12])
 	return buf;
 }
 
-static int rx(void *ctx, const u8 *buf, size_t len)
+static int soe_rx(void *ctx, const u8 *buf, size_t len)
 {
 	return ec_soe_rx(ctx, buf, len);
 }
 
-static int transfer(struct ec_mbox *mb, struct ec_soe_access *a,
-		    const struct ec_mbox_limit *limit)
+static int soe_transfer(struct ec_mbox *mb, struct ec_soe_access *a,
+			const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_request req = {
-		.type = EC_MBOX_SOE, .first = true, .late = true, .rx = rx, .ctx = a,
+		.type = EC_MBOX_SOE, .first = true, .late = true, .rx = soe_rx, .ctx = a,
 		.limit = ec_mbox_limit(limit, READ_ONCE(mb->reply_ms) ?: EC_SOE_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_SOE, EC_SOE_HDR);
@@ -82,7 +82,7 @@ int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, siz
 			.drive = drive, .element = EC_SOE_VALUE, .idn = idn, .data = data,
 			.cap = cap,
 		};
-		ret = drive < EC_SOE_DRIVES ? transfer(mb, &a, limit) : -EINVAL;
+		ret = drive < EC_SOE_DRIVES ? soe_transfer(mb, &a, limit) : -EINVAL;
 	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES);
 	ret = ec_mbox_read_result(ret);
 	*error = a.error;
@@ -110,7 +110,7 @@ int ec_soe_write(struct ec_mbox *mb, u8 drive, u16 idn, const u8 *data, size_t s
 		.write = true, .drive = drive, .element = EC_SOE_VALUE, .idn = idn,
 		.data = (u8 *)data, .size = size,
 	};
-	int ret = drive < EC_SOE_DRIVES ? transfer(mb, &a, limit) : -EINVAL;
+	int ret = drive < EC_SOE_DRIVES ? soe_transfer(mb, &a, limit) : -EINVAL;
 
 	*error = a.error;
 	return ret;

@@ -28,7 +28,7 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 	return true;
 }
 
-static void flush(struct ec_mbox *mb, unsigned int left)
+static void unasked_flush(struct ec_mbox *mb, unsigned int left)
 {
 	lockdep_assert_held(&mb->unasked_lock);
 	while (mb->n_kept > left) {
@@ -41,7 +41,7 @@ static void flush(struct ec_mbox *mb, unsigned int left)
 }
 
 /* Keep a VoE message for its reader; of too many the oldest are dropped. */
-static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
+static void unasked_keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 {
 	struct kept *k;
 
@@ -56,11 +56,11 @@ static void keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 	if (mb->keep_voe && mb->n_kept == EC_MBOX_KEPT)
 		ec_mbox_warn(mb, "VoE buffer full, %u message(s) not read; the oldest is dropped\n",
 			      EC_MBOX_KEPT);
-	flush(mb, EC_MBOX_KEPT - 1);
+	unasked_flush(mb, EC_MBOX_KEPT - 1);
 	list_add_tail(&k->list, &mb->kept);
 	mb->n_kept++;
 	if (!mb->keep_voe)
-		flush(mb, 0);
+		unasked_flush(mb, 0);
 	spin_unlock(&mb->unasked_lock);
 }
 
@@ -77,7 +77,7 @@ void ec_mbox_keep_voe(struct ec_mbox *mb, bool on)
 	spin_lock(&mb->unasked_lock);
 	WRITE_ONCE(mb->keep_voe, on);
 	if (!on)
-		flush(mb, 0);
+		unasked_flush(mb, 0);
 	spin_unlock(&mb->unasked_lock);
 }
 
@@ -118,7 +118,7 @@ int ec_mbox_take_kept(struct ec_mbox *mb, u8 *rx)
 void ec_mbox_flush_kept(struct ec_mbox *mb)
 {
 	spin_lock(&mb->unasked_lock);
-	flush(mb, 0);
+	unasked_flush(mb, 0);
 	spin_unlock(&mb->unasked_lock);
 }
 
@@ -143,7 +143,7 @@ int ec_mbox_error_reply(struct ec_mbox *mb, const u8 *rx, size_t len)
 }
 
 /* To its protocol; what no protocol wants is an answer that is too late. */
-static void take(struct ec_mbox *mb)
+static void unasked_take(struct ec_mbox *mb)
 {
 	struct ec_rbuf r = ec_rbuf(mb->rx, mb->rx_size);
 	struct ec_mbox_hdr h;
@@ -151,7 +151,7 @@ static void take(struct ec_mbox *mb)
 	if (ec_mbox_hdr_decode(&r, &h))
 		return;
 	if (h.type == EC_MBOX_VOE)
-		keep(mb, r.p, h.len);
+		unasked_keep(mb, r.p, h.len);
 	else if (!emergency(mb, &h, r.p))
 		ec_mbox_took_late(mb, h.type);
 }
@@ -177,7 +177,7 @@ void ec_mbox_unasked(struct ec_post *post)
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 	/* a message that is handed over stays in @rx */
 	if (!taken) {
-		take(mb);
+		unasked_take(mb);
 		/* a reader may have come meanwhile */
 		wake_up_all(&mb->stop->wake);
 	}

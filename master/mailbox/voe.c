@@ -36,8 +36,8 @@ int ec_voe_write(struct ec_mbox *mb, const struct ec_voe_hdr *h, const u8 *data,
 	return ret;
 }
 
-static int take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t cap,
-		size_t *size)
+static int voe_take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, size_t cap,
+		    size_t *size)
 {
 	struct ec_rbuf r = ec_rbuf(rx, len);
 
@@ -81,7 +81,7 @@ int ec_voe_read(struct ec_mbox *mb, bool blind, struct ec_voe_hdr *h, u8 *data, 
 		return PTR_ERR(b);
 	ret = ec_mbox_wait_voe(mb, b, blind, &l);
 	if (ret >= 0)
-		ret = take(b->rx, ret, h, data, cap, size);
+		ret = voe_take(b->rx, ret, h, data, cap, size);
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "VoE read, %zu byte(s)", *size);
 	return ret;
