@@ -9,7 +9,7 @@
 #include "monitor.h"
 #include "config/apply.h"
 
-static void device(struct ec_links *l, const struct ec_link *link, bool attached)
+static void master_device(struct ec_links *l, const struct ec_link *link, bool attached)
 {
 	struct ec_master *m = container_of(l, struct ec_master, links);
 
@@ -50,7 +50,7 @@ static void event(struct ec_links *l)
 }
 
 static const struct ec_links_ops links_ops = {
-	.device = device,
+	.device = master_device,
 	.queued = queued,
 	.event = event,
 };
@@ -122,7 +122,7 @@ err_free:
 	return ERR_PTR(ret);
 }
 
-static int check_name(const char *spec, unsigned int index)
+static int master_check_name(const char *spec, unsigned int index)
 {
 	if (!spec || !*spec) {
 		pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
@@ -150,7 +150,7 @@ static int check_names(char **main, unsigned int n_main, char **backup, unsigned
 	int ret;
 
 	for (i = 0; i < n_main; i++) {
-		ret = check_name(main[i], i);
+		ret = master_check_name(main[i], i);
 		if (ret)
 			return ret;
 		for (k = 0; k < i && !ec_spec_same(main[i], main[k]); k++)

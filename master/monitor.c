@@ -364,7 +364,7 @@ static void note_held(struct watch *w)
 	w->held = held;
 }
 
-static void count_slaves(struct watch *w)
+static void monitor_count_slaves(struct watch *w)
 {
 	note_held(w);
 	w->irq = 0;
@@ -404,7 +404,7 @@ static void watch_events(struct watch *w)
  * is scanned, unless the list is held: another slave may be there then. One that was lost on
  * its way to its state is brought there.
  */
-static void try_again(struct watch *w)
+static void monitor_try_again(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	struct ec_slave *due[16];
@@ -594,10 +594,10 @@ static int monitor(void *data)
 		    ec_access_timed_out(&m->links))
 			ec_access_timeout(&m->links);
 		if (w.link_up || m->bus.n_slaves) {
-			count_slaves(&w);
+			monitor_count_slaves(&w);
 			idle = w.well && !w.survey.chores;
 			if (!idle)
-				try_again(&w);
+				monitor_try_again(&w);
 			maybe_scan(&w);
 			if (!idle)
 				read_pdos(&w);
