@@ -21,10 +21,10 @@ static void master_device(struct ec_links *l, const struct ec_link *link, bool a
 	}
 }
 
-static void queued(struct ec_links *l)
+static void queued(struct ec_carry *c)
 {
-	lockdep_assert_held(&l->access.lock);
-	ec_api_left(container_of(l, struct ec_master, links));
+	lockdep_assert_held(&c->links->access.lock);
+	ec_api_left(container_of(c, struct ec_master, carry));
 }
 
 static void wake(struct ec_bus *bus)
@@ -51,8 +51,12 @@ static void event(struct ec_links *l)
 
 static const struct ec_links_ops links_ops = {
 	.device = master_device,
-	.queued = queued,
+	.changed = ec_carry_changed,
 	.event = event,
+};
+
+static const struct ec_carry_ops carry_ops = {
+	.queued = queued,
 };
 
 /* Service kicks slaves. */
@@ -72,6 +76,8 @@ static void destroy(struct ec_master *m)
 	ec_dc_exit(&m->dc);
 	queues_destroy(m);
 	ec_api_destroy(m);
+	ec_device_unregister(&m->links);
+	ec_carry_exit(&m->carry);
 	ec_links_exit(&m->links);
 	ec_bus_exit(&m->bus);
 	ec_log_flush(m->base, true);
@@ -93,12 +99,16 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	m->sessions.bus = &m->bus;
 	m->sessions.dc = &m->dc;
 	m->sessions.cycles = &m->cycles;
-	ec_cycles_init(&m->cycles, m->base, &m->links, &m->dc);
 	ret = ec_links_init(&m->links, m->base, &links_ops, main, backup);
 	if (ret)
 		goto err_free;
-	ret = ec_rider_register(&m->links, &m->rider) ?:
-	      ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
+	m->riders.links = &m->links;
+	ret = ec_carry_init(&m->carry, &m->links, &carry_ops) ?:
+	      ec_rider_register(&m->riders, &m->rider);
+	if (ret)
+		goto err;
+	ec_cycles_init(&m->cycles, m->base, &m->carry, &m->riders, &m->dc);
+	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
 	      ec_sessions_init(&m->sessions);
 	if (ret)
 		goto err;
@@ -116,6 +126,8 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 err:
 	ec_api_destroy(m);
 	queues_destroy(m);
+	ec_device_unregister(&m->links);
+	ec_carry_exit(&m->carry);
 	ec_links_exit(&m->links);
 err_free:
 	kvfree(m);

@@ -11,7 +11,7 @@
 #include "bus/mailboxes.h"
 #include "bus/slave.h"
 #include "bus/survey.h"
-#include "link/xfer.h"
+#include "carry/xfer.h"
 #include "bus/scan.h"
 #include "wire/regs.h"
 
@@ -227,7 +227,7 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 
 	if (first && ec_access_is_cyclic(&m->links.access) && ktime_get_ns() >= w->alone_ns) {
 		set_rider(r, dg);
-		ret = ec_rider_exchange(&m->links, r);
+		ret = ec_rider_exchange(&m->riders, r);
 		if (ret == -EAGAIN)
 			w->alone_ns = ktime_get_ns() + ALONE_NS;
 	}
@@ -244,7 +244,7 @@ static void set_present(struct ec_master *m, unsigned int count, u32 al_states)
 {
 	WRITE_ONCE(m->bus.responding, count);
 	WRITE_ONCE(m->bus.al_states, al_states);
-	ec_links_saw(&m->links, count, al_states);
+	ec_link_saw(&m->links.link[EC_MAIN], count, al_states);
 }
 
 static void ask_slaves(struct watch *w)
@@ -344,7 +344,7 @@ static void ride(struct watch *w)
 	if (w->ride_ns < w->alone_ns)
 		return;
 	set_rider(&m->rider, &EC_DG(EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, NULL));
-	ec_rider_begin(&m->links, &m->rider);
+	ec_rider_begin(&m->riders, &m->rider);
 	w->riding = true;
 }
 
@@ -585,7 +585,7 @@ static int monitor(void *data)
 	bool idle;
 
 	ec_quiet_init(&w.quiet, m);
-	WRITE_ONCE(m->links.monitor, current);
+	WRITE_ONCE(m->carry.monitor, current);
 	while (!kthread_should_stop()) {
 		if (READ_ONCE(m->pause))
 			stand_still(m);
@@ -657,7 +657,7 @@ void ec_monitor_stop(struct ec_master *m)
 	WRITE_ONCE(m->monitor, NULL);
 	if (t)
 		kthread_stop(t);
-	WRITE_ONCE(m->links.monitor, NULL);
+	WRITE_ONCE(m->carry.monitor, NULL);
 }
 
 /**

@@ -15,7 +15,7 @@
 #include "boundary/cdev.h"
 #include "boundary/master.h"
 #include "bus/slave.h"
-#include "link/xfer.h"
+#include "carry/xfer.h"
 #include "mailbox/foe.h"
 #include "monitor.h"
 #include "power.h"

@@ -53,7 +53,7 @@ static enum hrtimer_restart timer_looks(struct hrtimer *timer)
 	q->looks--;
 	q->m->bus.complete_ns = q->ride_ns;
 	q->ride_ns = ktime_get_ns();
-	ec_rider_again(&q->m->links, &q->m->rider);
+	ec_rider_again(&q->m->riders, &q->m->rider);
 	/* not hrtimer_forward(): it may be before the end of the slack */
 	hrtimer_set_expires_range_ns(timer, ktime_add_ns(ktime_get(), q->after_ns), q->slack_ns);
 	return HRTIMER_RESTART;

@@ -12,7 +12,7 @@ import subprocess
 import sys
 from collections import defaultdict
 
-ORDER = ["wire", "base", "link", "mailbox", "bus", "clock", "config", "cycle", "session",
+ORDER = ["wire", "base", "link", "carry", "mailbox", "bus", "clock", "config", "cycle", "session",
          "boundary", "top"]
 # The first goes down to 0 with the structure of the cycle, never up.
 MOST_UP_INCLUDES = 0

@@ -31,14 +31,13 @@ EXPORT_SYMBOL_GPL(ecrt_master_callbacks);
 /* The queue for the cycle is not empty; what it has may be sent already. */
 static bool left(const struct ec_master *m)
 {
-	return ec_queue_frames(&m->links.queues) || READ_ONCE(m->links.posts.n_ready);
+	return ec_carry_has_left(&m->carry);
 }
 
 /* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */
 static bool awaited(const struct ec_master *m)
 {
-	return (ec_links_acyclic_frames(&m->links) || READ_ONCE(m->links.posts.n_ready) ||
-		READ_ONCE(m->links.posts.n_flying)) &&
+	return ec_carry_is_busy(&m->carry) &&
 	       READ_ONCE(m->links.access.mode) == EC_ACCESS_CYCLIC;
 }
 

@@ -131,7 +131,7 @@ int ecrt_master_send_ext(ec_master_t *master)
 
 	if (ret)
 		return ret == -EBUSY ? -EAGAIN : ret;
-	ec_share_send_between(&master->links);
+	ec_share_send_between(&master->carry);
 	ec_links_leave(&master->links);
 	return 0;
 }

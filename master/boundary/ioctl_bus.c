@@ -5,7 +5,7 @@
 #include "master.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 
 static int reg_access(struct ec_call *call, u8 cmd)
 {

@@ -105,8 +105,8 @@ static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 	i->sent_wire_ns = READ_ONCE(c->last.ns);
 	i->acyclic_slack_ns = ec_access_slack_ns(c->links);
 	i->acyclic_need_ns = ec_cycle_need_ns();
-	i->late_per_s = READ_ONCE(c->links->share.late_per_s);
-	i->late_cycles = READ_ONCE(c->links->share.late_cycles);
+	i->late_per_s = READ_ONCE(c->carry->share.late_per_s);
+	i->late_cycles = READ_ONCE(c->carry->share.late_cycles);
 }
 
 /* What the session adds. */

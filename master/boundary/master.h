@@ -8,7 +8,8 @@
 #include "../clock/dc.h"
 #include "../cycle/cycle.h"
 #include "../link/links.h"
-#include "../link/rider.h"
+#include "../carry/carry.h"
+#include "../carry/rider.h"
 #include "../session/session.h"
 #include "event_readers.h"
 
@@ -21,6 +22,10 @@ struct ec_master {
 	struct ec_base base[1];
 	/** @links: devices, frames and bus access */
 	struct ec_links links;
+	/** @carry: acyclic datagrams */
+	struct ec_carry carry;
+	/** @riders: datagrams in frames of the cycle */
+	struct ec_riders riders;
 	/** @bus: slaves */
 	struct ec_bus bus;
 	/** @dc: distributed clocks */

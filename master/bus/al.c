@@ -4,7 +4,7 @@
 #include <linux/moduleparam.h>
 #include "../base/limits.h"
 #include "slave.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 
 unsigned int ec_al_timeout;
 

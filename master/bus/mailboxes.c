@@ -8,7 +8,7 @@
 #include <linux/slab.h>
 #include "../base/once64.h"
 #include "../link/links.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "../wire/regs.h"
 #include "mailboxes.h"
 #include "slave.h"

@@ -6,7 +6,7 @@
 #include "../base/limits.h"
 #include "../link/links.h"
 #include "../base/once64.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "scan_int.h"
 
 #define LOST_LINES	16	/* in the log, per scan */

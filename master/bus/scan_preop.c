@@ -10,7 +10,7 @@
 #include "../link/links.h"
 #include "mailboxes.h"
 #include "slave.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "scan.h"
 
 #define WAIT_NS		(20 * NSEC_PER_MSEC)

@@ -5,7 +5,7 @@
  */
 #include <linux/slab.h>
 #include "../link/links.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "scan_int.h"
 
 /* link, loop and communication of all ports */

@@ -12,7 +12,7 @@
 #include <linux/slab.h>
 #include "../base/limits.h"
 #include "../link/links.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "scan_int.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */

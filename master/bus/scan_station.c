@@ -6,7 +6,7 @@
  */
 #include <linux/slab.h>
 #include "../link/links.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "scan_int.h"
 
 #define NO_STATION	0xffff	/* the clocks use it for "no slave" */

@@ -409,7 +409,7 @@ void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, 
 {
 	dc->base = base;
 	dc->links = links;
-	links->share.ref_minus_ktime = &dc->ref_minus_ktime;
+	links->carry->ref_minus_ktime = &dc->ref_minus_ktime;
 	dc->bus = bus;
 	dc->service = service;
 	bus->ext[EC_EXT_CLOCK] = dc;

@@ -3,11 +3,11 @@
 #ifndef EC_DC_JOB_H
 #define EC_DC_JOB_H
 
-#include "../link/links.h"
+#include "../carry/carry.h"
 #include "dc.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 
 #define EC_DC_OUT_TRIES	5	/* attempts that may fail because of one slave */
 #define EC_DC_BATCH	7000	/* datagrams of one transfer, beside those of the slaves */

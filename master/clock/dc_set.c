@@ -190,7 +190,7 @@ static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigne
 {
 	unsigned int i, at, n = 0, per = per_send(j);
 
-	/* if the reference clock does not reply; ec_share_stamp() writes a later time */
+	/* if the reference clock does not reply; it is written anew when the frame leaves */
 	put_unaligned_le64(ec_dc_clock_now(j->dc), j->time);
 	for (i = 0; i < frames; i++) {
 		at = i % per;

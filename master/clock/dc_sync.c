@@ -5,7 +5,7 @@
 #include "dc.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 
 #define LEAD_NS		(100 * NSEC_PER_MSEC)	/* until the first SYNC0 */
 #define LEAD_CYCLES	4			/* and so many cycles */

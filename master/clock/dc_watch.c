@@ -12,7 +12,7 @@
 #include "../base/once64.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 
 #define PERIOD_MS	1000
 #define GRACE_NS	(10ULL * NSEC_PER_SEC)	/* for clocks that were set to settle */

@@ -9,7 +9,7 @@
 #include "../bus/mailboxes.h"
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "apply.h"
 
 #define FLAG_MAX_MS	60000	/* upper limit of the flag */

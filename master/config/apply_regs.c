@@ -5,7 +5,7 @@
 #include "../link/links.h"
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "apply.h"
 
 #define MAX_FMMU	16

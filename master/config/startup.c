@@ -4,7 +4,7 @@
 #include "startup.h"
 #include "../base/limits.h"
 #include "../bus/slave.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "../mailbox/coe.h"
 #include "../mailbox/eoe.h"
 #include "../mailbox/mailbox.h"

@@ -9,16 +9,19 @@
  * ec_cycles_init() - no cycle runs
  * @cycles: of a master, zeroed
  * @base: name and log
- * @links: way to the slaves
+ * @carry: what others send beside the cycle, with the way to the slaves
+ * @riders: datagrams in its frames
  * @dc: distributed clocks
  *
  * Context: Any.
  */
-void ec_cycles_init(struct ec_cycles *cycles, struct ec_base *base, struct ec_links *links,
-		    struct ec_dc *dc)
+void ec_cycles_init(struct ec_cycles *cycles, struct ec_base *base, struct ec_carry *carry,
+		    struct ec_riders *riders, struct ec_dc *dc)
 {
 	cycles->base = base;
-	cycles->links = links;
+	cycles->links = carry->links;
+	cycles->carry = carry;
+	cycles->riders = riders;
 	cycles->dc = dc;
 	mutex_init(&cycles->lock);
 }
@@ -36,6 +39,8 @@ void ec_cycle_init(struct ec_cycle *c, struct ec_cycles *cycles, struct ec_wante
 	c->cycles = cycles;
 	c->base = cycles->base;
 	c->links = cycles->links;
+	c->carry = cycles->carry;
+	c->riders = cycles->riders;
 	c->dc = cycles->dc;
 	c->wanted = wanted;
 	c->late_per_s = EC_LATE_PER_S;

@@ -6,7 +6,8 @@
 #include "../base/limits.h"
 #include "../clock/dc.h"
 #include "../config/config.h"
-#include "../link/links.h"
+#include "../carry/carry.h"
+#include "../carry/rider.h"
 #include "ethercat.h"
 #include "shared.h"
 
@@ -222,6 +223,10 @@ struct ec_cycles {
 	struct ec_base *base;
 	/** @links: way to the slaves */
 	struct ec_links *links;
+	/** @carry: what others send beside the cycle */
+	struct ec_carry *carry;
+	/** @riders: datagrams in its frames */
+	struct ec_riders *riders;
 	/** @dc: distributed clocks */
 	struct ec_dc *dc;
 
@@ -262,6 +267,10 @@ struct ec_cycle {
 	struct ec_base *base;
 	/** @links: way to the slaves */
 	struct ec_links *links;
+	/** @carry: what others send beside the cycle */
+	struct ec_carry *carry;
+	/** @riders: datagrams in its frames */
+	struct ec_riders *riders;
 	/** @dc: distributed clocks */
 	struct ec_dc *dc;
 	/** @wanted: slave configurations and domains that it exchanges */
@@ -401,8 +410,8 @@ static inline void ec_cycle_assert_held(const struct ec_cycle *c)
 }
 
 /* cycle.c */
-void ec_cycles_init(struct ec_cycles *cycles, struct ec_base *base, struct ec_links *links,
-		    struct ec_dc *dc);
+void ec_cycles_init(struct ec_cycles *cycles, struct ec_base *base, struct ec_carry *carry,
+		    struct ec_riders *riders, struct ec_dc *dc);
 void ec_cycle_init(struct ec_cycle *c, struct ec_cycles *cycles, struct ec_wanted *wanted);
 void ec_cycle_clear(struct ec_cycle *c);
 void ec_cycle_set_active(struct ec_cycles *cycles, struct ec_cycle *c);

@@ -373,8 +373,8 @@ int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
 	lockdep_assert_held(c->wanted->lock);
 	c->room_logged = false;
 	c->links->access.wire_ns = w->ns;
-	WRITE_ONCE(c->links->share.late_per_s, c->late_per_s);
-	c->links->share.late_cycles = 0;
+	WRITE_ONCE(c->carry->share.late_per_s, c->late_per_s);
+	c->carry->share.late_cycles = 0;
 	if (!c->kernel.period_ns && !c->links->access.interval_set)
 		return 0;
 	return has_room(c, interval, w->ns) || c->late_per_s ? 0 : -ENOSPC;

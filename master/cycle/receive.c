@@ -122,7 +122,7 @@ static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
 	if (unlikely(f->riding.mask))
-		ec_riders_take(c->links, &f->riding, data - EC_DGRAM_HDR,
+		ec_riders_take(c->riders, &f->riding, data - EC_DGRAM_HDR,
 			       f->slot->reply + f->slot->eth_len - EC_ETH_HDR);
 	return irq;
 }
@@ -240,10 +240,13 @@ void ec_cycle_tell_stale(struct ec_cycle *c)
 	}
 }
 
-/* Is the frame given up? The machine may have stood still: it was looked for before. */
+/*
+ * Is the frame given up? The machine may have stood still: it was looked for before. Of several
+ * copies the last one is awaited until the next receive.
+ */
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
-	if (!f->missed)
+	if (!f->missed || ec_slot_settle(f->slot))
 		return false;
 	/* once in a receive, and mostly in none */
 	if (!*now)
@@ -283,11 +286,13 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
-				ec_links_count(l, late);
+				ec_links_count(l, f->slot->back, late);
+			if (unlikely(f->slot->back != f->slot->sides))
+				ec_links_count(l, f->slot->sides & ~f->slot->back, lost);
 			irq |= take_frame(c, f);
 			ec_slot_put(f->slot);
 		} else if (is_lost(c, f, &now)) {
-			ec_links_count(l, lost);
+			ec_links_count(l, f->slot->sides, lost);
 		} else {
 			f->missed = true;
 			if (left++ != i)

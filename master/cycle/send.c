@@ -19,7 +19,7 @@ static bool make_room(struct ec_cycle *c, u64 now)
 		return true;
 	oldest = c->flight[0].slot;
 	if (ec_slot_cancel(oldest, now))
-		ec_links_count(c->links, lost);
+		ec_links_count(c->links, oldest->sides, lost);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
 		ec_slot_put(oldest);
 	else
@@ -86,8 +86,8 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 		room--;
 	}
 	send->riding.mask = 0;
-	if (unlikely(atomic_read(&c->links->riders.queued)))
-		ec_riders_add(c->links, &fb, slot->index, &send->riding);
+	if (unlikely(atomic_read(&c->riders->queued)))
+		ec_riders_add(c->riders, &fb, slot->index, &send->riding);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	return g - first;
 }
@@ -120,25 +120,25 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	if (make_room(c, send->now))
 		slot = ec_slot_get(&c->links->slots, true, send->now);
 	if (!slot) {
-		ec_links_count(c->links, tx_errors);
+		ec_links_count(c->links, c->links->sides, tx_errors);
 		send->dc = 0;
 		return c->n_dgrams;
 	}
 	/* one copy less than through the slot */
-	frame = ec_links_tx_get(c->links) ?: slot->frame;
+	frame = ec_links_tx_get(c->links, c->links->sides) ?: slot->frame;
 	count = fill(c, slot, frame, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_links_transmit(c->links, slot, frame, send->now);
+	ret = ec_links_transmit(c->links, slot, frame, c->links->sides, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		ec_links_count(c->links, tx_errors);
+		ec_links_count(c->links, c->links->sides, tx_errors);
 	if (!ret) {
 		note_flight(c, slot, g, count, send);
 	} else {
 		ec_slot_put(slot);
 		if (send->riding.mask)
-			ec_riders_return(c->links, &send->riding);
+			ec_riders_return(c->riders, &send->riding);
 	}
 	send->dc = 0;
 	return g + count;
@@ -203,9 +203,9 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(c->links->access.wire_ns, max(send.wire.ns, wire_ns(c)));
-	ec_share_begin(&c->links->share, ec_access_interval_us(&c->links->access));
-	if (unlikely(ec_links_have_left(c->links)))
-		ec_share_send_left(c->links, send.wire.ns);
+	ec_share_begin(&c->carry->share, ec_access_interval_us(&c->links->access));
+	if (unlikely(ec_carry_has_left(c->carry)))
+		ec_share_send_left(c->carry, send.wire.ns);
 	ec_links_flush(c->links);
 	rcu_read_unlock();
 	ec_write64(&c->sends, c->sends + 1);

@@ -4,10 +4,8 @@
 #include "../base/once64.h"
 #include "device.h"
 #include "links.h"
-#include "pack.h"
 
 #define SHUT_TRIES	1000	/* to find the cycle owner outside of the links */
-#define FLUSH_WAITS	200	/* for room in the transmit ring: 20 ms at least */
 
 /**
  * ec_access_init() - direct access
@@ -34,35 +32,11 @@ static void own_devices(struct ec_links *l, bool cycle)
 	}
 }
 
-/*
- * Frames in the queue are sent now. When a send fails their caller waits for its timeout:
- * the slot belongs to the caller.
- */
-static void flush(struct ec_links *l, struct ec_queue *q)
+static void changed(struct ec_links *l)
 {
-	static const struct ec_pack_room none;
-	struct ec_queued next;
-	struct ec_pack pack;
-	unsigned int waits = 0;
-	int ret;
-
 	lockdep_assert_held(&l->access.lock);
-	while (ec_queue_peek(&l->queues, q, &next)) {
-		ec_queue_gather(&l->queues, q, &next, &none, &pack);
-		if (!pack.n)
-			continue;
-		rcu_read_lock();
-		ret = ec_links_send_pack(l, &pack, ktime_get_ns());
-		ec_links_flush(l);
-		rcu_read_unlock();
-		if (ret != -EBUSY)
-			continue;
-		if (waits++ < FLUSH_WAITS)
-			/* no driver reports room in its ring */
-			usleep_range(100, 200);
-		else
-			ec_pack_move(&pack, EC_SLOT_QUEUED, EC_SLOT_SENT);
-	}
+	if (l->ops && l->ops->changed)
+		l->ops->changed(l);
 }
 
 /**
@@ -94,15 +68,9 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 			usleep_range(20, 50);
 		if (mode == EC_ACCESS_DIRECT)
 			own_devices(l, false);
-		ec_link_set_places(&l->link[0], mode == EC_ACCESS_CYCLIC);
-		if (mode == EC_ACCESS_DIRECT) {
-			flush(l, &l->queues.acyclic);
-			flush(l, &l->queues.clock);
-		}
+		changed(l);
 	}
 	rt_mutex_unlock(&l->access.lock);
-	if (change)
-		ec_posts_kick(l);
 	return change;
 }
 
@@ -231,7 +199,7 @@ void ec_access_poll(struct ec_links *l)
 	rt_mutex_lock(&l->access.lock);
 	/* a cycle owner polls itself */
 	if (READ_ONCE(l->access.mode) == EC_ACCESS_DIRECT)
-		ec_link_poll(&l->link[0]);
+		ec_links_poll(l);
 	rt_mutex_unlock(&l->access.lock);
 	/* without a poll function an interrupt thread delivers */
 	usleep_range(200, 500);

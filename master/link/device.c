@@ -80,7 +80,7 @@ bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t
 
 	mutex_lock(&devices_lock);
 	list_for_each_entry(l, &masters, list) {
-		if (l->base->index < *index || l->link[0].dev || l->closed)
+		if (l->base->index < *index || l->link[EC_MAIN].dev || l->closed)
 			continue;
 		strscpy(name, l->main, size);
 		*master = l->base->index;
@@ -119,7 +119,8 @@ static void publish(struct ecdev *dev, struct ec_link *link)
 		dev->ops->cycle(dev->priv, true);
 	ec_access_shut(l);
 	WRITE_ONCE(link->dev, dev);
-	ec_link_set_places(link, cyclic);
+	if (l->ops && l->ops->changed)
+		l->ops->changed(l);
 	ec_access_reopen(l);
 	rt_mutex_unlock(&l->access.lock);
 }
@@ -158,17 +159,25 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 	report(link, true);
 }
 
-/* First no caller finds the device any more, then callers that have found it leave. */
+/*
+ * First no caller finds the device any more, then callers that have found it leave. The access
+ * stays cyclic as long as there is another link for it.
+ */
 static void withdraw(struct ec_link *link, struct ecdev *dev)
 {
 	struct ec_links *l = link->links;
 
 	lockdep_assert_held(&devices_lock);
 	rt_mutex_lock(&l->access.lock);
+	ec_access_shut(l);
 	WRITE_ONCE(link->dev, NULL);
 	WRITE_ONCE(link->up, false);
+	if (l->ops && l->ops->changed)
+		l->ops->changed(l);
+	ec_access_reopen(l);
 	rt_mutex_unlock(&l->access.lock);
-	ec_access_change(l, EC_ACCESS_DIRECT);
+	if (!ec_links_attached(l))
+		ec_access_change(l, EC_ACCESS_DIRECT);
 	if (dev->ops->cycle)
 		dev->ops->cycle(dev->priv, false);
 	report(link, false);
@@ -300,7 +309,7 @@ int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival)
 
 	rtnl_lock();
 	mutex_lock(&devices_lock);
-	dev = l->link[0].dev;
+	dev = l->link[EC_MAIN].dev;
 	other = rival_of(l, name);
 	if (other) {
 		*rival = other->base->index;

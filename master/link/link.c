@@ -8,7 +8,6 @@
 #include "capture.h"
 #include "device.h"
 #include "links.h"
-#include "pack.h"
 
 /**
  * ec_link_init() - prepare a link, without device
@@ -22,8 +21,7 @@ void ec_link_init(struct ec_link *link, struct ec_links *l, u8 side)
 {
 	link->links = l;
 	link->side = side;
-	ec_gate_init(&link->acyclic, EC_LINK_ACYCLIC);
-	ec_gate_init(&link->ring_full, 1);
+	link->places = EC_LINK_ACYCLIC;
 }
 
 /**
@@ -69,104 +67,55 @@ void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size
 		atomic64_inc(&link->stats.not_captured);
 }
 
-/* Send the frame of an armed slot. */
-static int send(struct ec_link *link, struct ec_slot *slot)
-{
-	struct ecdev *dev;
-	u8 *buf = ec_link_tx_get(link, &dev);
-
-	if (!buf)
-		return dev ? -EBUSY : -ENODEV;
-	memcpy(buf, slot->frame, ec_slot_padded(slot));
-	buf[7] |= link->side;
-	return ec_link_send_buf(link, dev, buf, ec_slot_padded(slot));
-}
-
 /**
- * ec_links_send() - send the frame of an armed slot on its links
+ * ec_links_send() - send a frame on several links
  * @l: links
- * @slot: slot in state SENT, which holds the frame
+ * @slot: slot in state BUILD, which holds the frame; in BUILD again on failure
+ * @sides: mask of the links
+ * @now: time
  *
- * ec_links_flush() must follow.
+ * A link that does not send it does not stop the others: the slot awaits the copies of these
+ * only. ec_links_flush() must follow.
  *
  * Context: The owner of the links, in an RCU read section. RT-safe.
- * Return: 0, -ENODEV without device, -EBUSY without transmit buffer (then no error
- * is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link
- * is down. The first link that fails ends it.
+ * Return: 0: one has sent it; -ENODEV without device, -EBUSY without transmit buffer (then no
+ * error is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link is
+ * down.
  */
-int ec_links_send(struct ec_links *l, struct ec_slot *slot)
+int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
-	unsigned long left = slot->links;
-	int ret = 0;
+	struct ecdev *dev[EC_MAX_LINKS];
+	u8 *buf[EC_MAX_LINKS], unsent = 0;
+	unsigned long left = sides;
+	int ret = -ENODEV;
 
-	for (; left && !ret; left &= left - 1)
-		ret = send(&l->link[__ffs(left)], slot);
-	return ret;
-}
-
-/**
- * ec_links_send_pack() - send the frame that callers share
- * @l: links
- * @p: the frame; its slots are let go before it leaves
- * @sent_ns: when it leaves (ktime)
- *
- * ec_links_flush() must follow.
- *
- * Context: The owner of the links, in an RCU read section. RT-safe.
- * Return: as ec_links_send(). The frames stay in the queue when it is -EBUSY.
- */
-int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns)
-{
-	struct {
-		struct ecdev *dev;
-		u8 *buf;
-	} tx[EC_MAX_LINKS];
-	unsigned long left, links = p->e[0].slot->links;
-	size_t len = 0;
-	int ret = 0;
-
-	ec_pack_place(&l->slots, p, sent_ns);
-	for (left = links; left && !ret; left &= left - 1) {
+	for (; left; left &= left - 1) {
 		unsigned int i = __ffs(left);
 
-		tx[i].buf = ec_link_tx_get(&l->link[i], &tx[i].dev);
-		if (!tx[i].buf) {
-			ret = tx[i].dev ? -EBUSY : -ENODEV;
-			break;
-		}
-		len = ec_pack_write(p, tx[i].buf);
-		if (p->e[0].slot->clock)
-			ec_share_stamp(l, tx[i].buf + EC_ETH_HDR, len - EC_ETH_HDR, sent_ns);
-		tx[i].buf[7] |= i;
+		buf[i] = ec_link_tx_get(&l->link[i], &dev[i]);
+		if (buf[i])
+			continue;
+		sides &= ~BIT(i);
+		if (dev[i])
+			ret = -EBUSY;
 	}
-	ec_pack_release(p, ret == -EBUSY ? EC_SLOT_QUEUED : EC_SLOT_SENT);
-	if (ret)
+	if (!sides)
 		return ret;
-	for (left = links; left && !ret; left &= left - 1)
-		ret = ec_link_send_buf(&l->link[__ffs(left)], tx[__ffs(left)].dev,
-				       tx[__ffs(left)].buf, len);
-	if (ret == -EBUSY)
-		ec_pack_move(p, EC_SLOT_SENT, EC_SLOT_QUEUED);
-	return ret;
-}
+	ec_slot_arm(&l->slots, slot, slot->frame, sides, now);
+	for (left = sides; left; left &= left - 1) {
+		unsigned int i = __ffs(left);
+		int err;
 
-/**
- * ec_link_set_places() - set how many acyclic frames may be on their way
- * @link: link
- * @cycle: a cyclic caller sends them from a queue, and as many as fit
- *
- * Without a cycle buffers of the device are left for the monitor.
- *
- * Context: Process, with the access lock held.
- */
-void ec_link_set_places(struct ec_link *link, bool cycle)
-{
-	const struct ecdev *dev = link->dev;
-	unsigned int n = dev && dev->ops->burst ? dev->ops->burst : EC_LINK_ACYCLIC;
-
-	lockdep_assert_held(&link->links->access.lock);
-	ec_gate_set_limit(&link->acyclic, cycle ? EC_LINK_QUEUED :
-			  min_t(unsigned int, n, EC_LINK_ACYCLIC));
+		memcpy(buf[i], slot->frame, ec_slot_padded(slot));
+		buf[i][7] |= i;
+		err = ec_link_send_buf(&l->link[i], dev[i], buf[i], ec_slot_padded(slot));
+		if (!err)
+			continue;
+		unsent |= BIT(i);
+		ret = err;
+	}
+	/* a reply that came nevertheless makes it a frame as if it was sent */
+	return unsent && ec_slot_disarm(slot, unsent) ? ret : 0;
 }
 
 /**
@@ -197,14 +146,18 @@ void ec_link_poll(struct ec_link *link)
  */
 void ec_links_poll_cycle(struct ec_links *l)
 {
-	struct ec_link *link = &l->link[0];
-	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+	unsigned long left;
 
-	if (!dev || !dev->ops->poll)
-		return;
-	WRITE_ONCE(link->keep, dev->ops->keeps);
-	dev->ops->poll(dev->priv);
-	WRITE_ONCE(link->keep, false);
+	for (left = l->sides; left; left &= left - 1) {
+		struct ec_link *link = &l->link[__ffs(left)];
+		struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+
+		if (!dev || !dev->ops->poll)
+			continue;
+		WRITE_ONCE(link->keep, dev->ops->keeps);
+		dev->ops->poll(dev->priv);
+		WRITE_ONCE(link->keep, false);
+	}
 }
 
 /**

@@ -6,11 +6,9 @@
 #include <linux/atomic.h>
 #include <linux/types.h>
 #include "ethercat.h"
-#include "gate.h"
 
 struct ecdev;
 struct ec_links;
-struct ec_pack;
 struct ec_slot;
 
 /**
@@ -60,9 +58,9 @@ struct ec_link_rates {
  * @side: 0 main, 1 backup, immutable
  * @dev: attached device or NULL; changes under the access lock. Used by the
  *	owner of the link; others only in an RCU read section
- * @acyclic: places for acyclic frames on their way, also those in the queue; who waits for them
+ * @acyclic: acyclic frames on their way
  * @acyclic_ns: wire time of these frames
- * @ring_full: place of the caller that tries until there is room in the transmit ring
+ * @places: how many they may be
  * @keep: the cycle owner polls the device, and takes replies to the cycle from its memory
  * @up: link state as last seen by the monitor
  * @slaves: that answered the last broadcast on this link
@@ -74,9 +72,9 @@ struct ec_link {
 	struct ec_links *links;
 	u8 side;
 	struct ecdev *dev;
-	struct ec_gate acyclic;
+	atomic_t acyclic;
 	atomic_t acyclic_ns;
-	struct ec_gate ring_full;
+	unsigned int places;
 	bool keep;
 	bool up;
 	u32 slaves;
@@ -88,11 +86,9 @@ struct ec_link {
 void ec_link_init(struct ec_link *link, struct ec_links *l, u8 side);
 void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len);
 void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size_t len);
-int ec_links_send(struct ec_links *l, struct ec_slot *slot);
-int ec_links_send_pack(struct ec_links *l, struct ec_pack *p, u64 sent_ns);
+int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now);
 void ec_link_poll(struct ec_link *link);
 void ec_links_poll_cycle(struct ec_links *l);
-void ec_link_set_places(struct ec_link *link, bool cycle);
 bool ec_link_is_up(const struct ec_link *link);
 bool ec_link_look(struct ec_link *link);
 void ec_link_clear_counters(struct ec_link *link);

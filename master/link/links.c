@@ -25,27 +25,20 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	strscpy(l->main, main, sizeof(l->main));
 	raw_spin_lock_init(&l->main_lock);
 	l->backup = backup;
-	l->carry = BIT(0);
-	l->only = &l->link[0];
+	l->sides = BIT(EC_MAIN);
+	l->only = &l->link[EC_MAIN];
 	l->max_datagrams = 15;
 	l->io_timeout_us = 20000;
 	for (i = 0; i < EC_MAX_LINKS; i++)
 		ec_link_init(&l->link[i], l, i);
 	ec_access_init(&l->access);
-	ec_queues_init(&l->queues);
 	INIT_LIST_HEAD(&l->list);
 	ret = ec_slots_init(&l->slots, backup);
 	if (ret)
 		return ret;
 	ret = ec_capture_create(l);
 	if (ret)
-		goto err_slots;
-	ret = ec_posts_init(l);
-	if (!ret)
-		return 0;
-	ec_capture_destroy(l);
-err_slots:
-	ec_slots_exit(&l->slots);
+		ec_slots_exit(&l->slots);
 	return ret;
 }
 
@@ -58,7 +51,6 @@ err_slots:
 void ec_links_exit(struct ec_links *l)
 {
 	ec_device_unregister(l);
-	ec_posts_exit(l);
 	ec_capture_destroy(l);
 	ec_slots_exit(&l->slots);
 }
@@ -99,7 +91,7 @@ bool ec_links_need_thread(const struct ec_links *l)
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		const struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
 
-		if (l->carry & BIT(i) && dev && !dev->ops->atomic)
+		if (l->sides & BIT(i) && dev && !dev->ops->atomic)
 			return true;
 	}
 	return false;
@@ -146,15 +138,15 @@ void ec_links_update_rates(struct ec_links *l)
 }
 
 /**
- * ec_links_saw() - note what the last broadcast has brought back
- * @l: links
+ * ec_link_saw() - note what the last broadcast has brought back
+ * @link: link
  * @slaves: that answered
  * @al_states: OR of their AL states
  *
  * Context: The monitor.
  */
-void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states)
+void ec_link_saw(struct ec_link *link, u32 slaves, u32 al_states)
 {
-	WRITE_ONCE(l->link[0].slaves, slaves);
-	WRITE_ONCE(l->link[0].al_states, al_states);
+	WRITE_ONCE(link->slaves, slaves);
+	WRITE_ONCE(link->al_states, al_states);
 }

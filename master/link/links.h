@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * The layer "link": devices, frame slots, bus access, ec_xfer(). It knows no slave and
- * no session.
+ * The layer "link": devices, frame slots, sending, bus access. It knows no slave, and not who
+ * waits for a frame.
  */
 #ifndef EC_LINKS_H
 #define EC_LINKS_H
@@ -15,25 +15,24 @@
 #include "access.h"
 #include "device.h"
 #include "link.h"
-#include "post.h"
-#include "queue.h"
-#include "rider.h"
-#include "share.h"
 #include "slots.h"
 
 struct ec_capture;
+struct ec_carry;
 struct ec_links;
-struct task_struct;
 
 /** struct ec_links_ops - what the layer reports to higher ones; each may be NULL */
 struct ec_links_ops {
 	/** @device: a device was attached, or detached and its link is left; may sleep */
 	void (*device)(struct ec_links *l, const struct ec_link *link, bool attached);
-	/** @queued: an acyclic frame waits for the cycle; with the access lock held */
-	void (*queued)(struct ec_links *l);
+	/** @changed: the bus access or a device has changed; with the access lock held */
+	void (*changed)(struct ec_links *l);
 	/** @event: a frame of the cycle has brought an event that is watched for; RT-safe */
 	void (*event)(struct ec_links *l);
 };
+
+#define EC_MAIN		0	/* numbers of the links */
+#define EC_BACKUP	1
 
 /** struct ec_links - links of a master and all that uses them */
 struct ec_links {
@@ -55,48 +54,53 @@ struct ec_links {
 	struct ec_link link[EC_MAX_LINKS];
 	/** @capture: interface for capture programs, NULL: none; immutable while devices are there */
 	struct ec_capture *capture;
-	/** @carry: mask of the links that carry frames, immutable */
-	u8 carry;
+	/** @sides: mask of the links on which frames are sent, immutable */
+	u8 sides;
 	/** @only: the link that carries all of them, NULL: several; immutable */
 	struct ec_link *only;
 	/** @slots: frame slots */
 	struct ec_slots slots;
 	/** @access: bus access */
 	struct ec_access access;
-	/** @queues: acyclic frames that wait for the cycle */
-	struct ec_queues queues;
-	/** @riders: datagrams in frames of the cycle */
-	struct ec_riders riders;
-	/** @posts: acyclic datagrams that no thread waits for */
-	struct ec_posts posts;
-	/** @share: what a cyclic send carries of @queues */
-	struct ec_share share;
+	/** @carry: acyclic datagrams: what the next layer has for these links; immutable */
+	struct ec_carry *carry;
 	/** @events: ECAT events that are reported at once, once; 0: none */
 	u16 events;
-	/** @monitor: thread whose frames overtake those of other callers, NULL: none */
-	const struct task_struct *monitor;
 	/** @max_datagrams: of a frame, immutable */
 	unsigned int max_datagrams;
 	/** @io_timeout_us: after that a frame counts as lost, immutable */
 	unsigned int io_timeout_us;
 };
 
+#define ec_links_for_each(l, link) \
+	for ((link) = (l)->link; (link) < (l)->link + EC_MAX_LINKS; (link)++)
+
 /* physical state of the way to the slaves, now; false also without device */
 static inline bool ec_links_is_up(const struct ec_links *l)
 {
-	return ec_link_is_up(&l->link[0]);
+	const struct ec_link *link;
+
+	ec_links_for_each(l, link)
+		if (l->sides & BIT(link->side) && ec_link_is_up(link))
+			return true;
+	return false;
 }
 
 /* the same, as the monitor saw it last */
 static inline bool ec_links_seen_up(const struct ec_links *l)
 {
-	return READ_ONCE(l->link[0].up);
+	const struct ec_link *link;
+
+	ec_links_for_each(l, link)
+		if (l->sides & BIT(link->side) && READ_ONCE(link->up))
+			return true;
+	return false;
 }
 
 /* the link at the other end of a ring, as the monitor saw it last */
 static inline bool ec_links_ring_end_up(const struct ec_links *l)
 {
-	return READ_ONCE(l->link[1].up);
+	return READ_ONCE(l->link[EC_BACKUP].up);
 }
 
 /* one link at least, as the monitor saw it last */
@@ -108,12 +112,19 @@ static inline bool ec_links_any_up(const struct ec_links *l)
 /* a device that sends frames is attached */
 static inline bool ec_links_attached(const struct ec_links *l)
 {
-	return READ_ONCE(l->link[0].dev);
+	const struct ec_link *link;
+
+	if (likely(l->only))
+		return READ_ONCE(l->only->dev);
+	ec_links_for_each(l, link)
+		if (l->sides & BIT(link->side) && READ_ONCE(link->dev))
+			return true;
+	return false;
 }
 
 static inline bool ec_links_any_device(const struct ec_links *l)
 {
-	return ec_links_attached(l) || READ_ONCE(l->link[1].dev);
+	return ec_links_attached(l) || READ_ONCE(l->link[EC_BACKUP].dev);
 }
 
 /* links that the module parameters name; numbers of ec_links_at() are below */
@@ -159,7 +170,11 @@ static inline void ec_links_events(struct ec_links *l, u16 events)
 /* deliver what the devices have received; the owner of the links, RT-safe */
 static inline void ec_links_poll(struct ec_links *l)
 {
-	ec_link_poll(&l->link[0]);
+	struct ec_link *link;
+
+	ec_links_for_each(l, link)
+		if (l->sides & BIT(link->side))
+			ec_link_poll(link);
 }
 
 /* the device and its next transmit buffer; NULL without one; the owner of the link, RT-safe */
@@ -170,9 +185,18 @@ static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
 	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
 }
 
+/* The one link of a mask, NULL: several. */
+static inline struct ec_link *ec_links_only(struct ec_links *l, u8 sides)
+{
+	if (likely(l->only && sides == l->sides))
+		return l->only;
+	return is_power_of_2(sides) ? &l->link[__ffs(sides)] : NULL;
+}
+
 /**
  * ec_links_tx_get() - a transmit buffer in which a frame may be built
  * @l: links
+ * @sides: mask of those on which it is to be sent
  *
  * The next frame that is sent has to be this one.
  *
@@ -180,31 +204,69 @@ static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
  * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
  * absent: the frame is built in its slot, and ec_links_transmit() finds out.
  */
-static inline u8 *ec_links_tx_get(const struct ec_links *l)
+static inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides)
 {
+	const struct ec_link *link = ec_links_only(l, sides);
 	struct ecdev *dev;
 
-	return l->only ? ec_link_tx_get(l->only, &dev) : NULL;
+	return link ? ec_link_tx_get(link, &dev) : NULL;
 }
 
-/* count a frame of the cycle: lost, late, or tx_errors */
-#define ec_links_count(l, what)	atomic64_inc(&(l)->link[0].stats.what)
+/* count a frame on the links of a mask: lost, late, or tx_errors */
+#define ec_links_count(l, sides, what) do { \
+	unsigned long __left = (sides); \
+\
+	for (; __left; __left &= __left - 1) \
+		atomic64_inc(&(l)->link[__ffs(__left)].stats.what); \
+} while (0)
 
-/* frames sent since the device was attached */
+/* frames sent since the devices were attached */
 static inline u64 ec_links_sent(const struct ec_links *l)
 {
-	return atomic64_read(&l->link[0].stats.tx_frames);
+	const struct ec_link *link;
+	u64 n = 0;
+
+	ec_links_for_each(l, link)
+		n += atomic64_read(&link->stats.tx_frames);
+	return n;
 }
 
-/* acyclic frames in the queue and on their way, and the wire time of them */
-static inline unsigned int ec_links_acyclic_frames(const struct ec_links *l)
-{
-	return READ_ONCE(l->link[0].acyclic.used);
-}
-
+/* wire time of the acyclic frames on their way, of the link that has most of them */
 static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 {
-	return atomic_read(&l->link[0].acyclic_ns);
+	const struct ec_link *link;
+	u32 ns = 0;
+
+	ec_links_for_each(l, link)
+		ns = max_t(u32, ns, atomic_read(&link->acyclic_ns));
+	return ns;
+}
+
+/* acyclic frames on their way, likewise */
+static inline unsigned int ec_links_acyclic(const struct ec_links *l)
+{
+	const struct ec_link *link;
+	unsigned int n = 0;
+
+	ec_links_for_each(l, link)
+		n = max_t(unsigned int, n, atomic_read(&link->acyclic));
+	return n;
+}
+
+/* frames that may be sent in a row beside a cycle */
+static inline unsigned int ec_links_burst(const struct ec_links *l)
+{
+	unsigned int n = EC_SLOTS;
+	const struct ec_link *link;
+
+	ec_links_for_each(l, link) {
+		/* ecdev_withdraw() may run now; it waits for the cycle owner before it goes */
+		const struct ecdev *dev = READ_ONCE(link->dev);
+
+		if (dev && dev->ops->burst)
+			n = min(n, dev->ops->burst);
+	}
+	return n;
 }
 
 /**
@@ -240,6 +302,7 @@ static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *
  * @l: links
  * @slot: the slot is back in BUILD on failure
  * @frame: where it was built: in the slot, or in a buffer of ec_links_tx_get()
+ * @sides: mask of the links, as there
  * @now: time
  *
  * ec_links_flush() must follow.
@@ -247,21 +310,22 @@ static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *
  * Context: The owner of the links, in an RCU read section. RT-safe.
  * Return: as ec_links_send().
  */
-static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u64 now)
+static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u8 sides,
+				    u64 now)
 {
+	struct ec_link *link;
+	struct ecdev *dev;
 	int ret;
 
-	ec_slot_arm(&l->slots, slot, frame, l->carry, now);
-	if (frame == slot->frame) {
-		ret = ec_links_send(l, slot);
-	} else {
-		struct ecdev *dev = READ_ONCE(l->only->dev);	/* withdrawn at the most */
-
-		frame[7] |= l->only->side;
-		ret = dev ? ec_link_send_buf(l->only, dev, frame, ec_slot_padded(slot)) : -ENODEV;
-	}
+	if (frame == slot->frame)
+		return ec_links_send(l, slot, sides, now);
+	ec_slot_arm(&l->slots, slot, frame, sides, now);
+	link = ec_links_only(l, sides);
+	dev = READ_ONCE(link->dev);	/* withdrawn at the most */
+	frame[7] |= link->side;
+	ret = dev ? ec_link_send_buf(link, dev, frame, ec_slot_padded(slot)) : -ENODEV;
 	/* a reply that came nevertheless makes it a frame as if it was sent */
-	return ret && ec_slot_disarm(slot) ? ret : 0;
+	return ret && ec_slot_disarm(slot, sides) ? ret : 0;
 }
 
 /**
@@ -276,21 +340,15 @@ static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8
  */
 static inline void ec_links_flush(struct ec_links *l)
 {
-	unsigned int i;
+	const struct ec_link *link;
 
 	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "frames flushed outside of an RCU read section");
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
+	ec_links_for_each(l, link) {
+		struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
 
 		if (dev && dev->ops->tx_flush)
 			dev->ops->tx_flush(dev->priv);
 	}
-}
-
-/* has anybody left acyclic frames for the next send? */
-static inline bool ec_links_have_left(const struct ec_links *l)
-{
-	return READ_ONCE(l->posts.n_ready) || ec_queue_frames(&l->queues);
 }
 
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
@@ -300,6 +358,6 @@ const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t 
 bool ec_links_need_thread(const struct ec_links *l);
 bool ec_links_look(struct ec_links *l);
 void ec_links_update_rates(struct ec_links *l);
-void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states);
+void ec_link_saw(struct ec_link *link, u32 slaves, u32 al_states);
 
 #endif

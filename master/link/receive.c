@@ -5,9 +5,7 @@
 #include "capture.h"
 #include "device.h"
 #include "links.h"
-#include "pack.h"
 #include "same.h"
-#include "xfer.h"
 
 /* Does the reply carry the same datagrams as the frame that was sent, and no more? */
 static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
@@ -20,13 +18,13 @@ static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
 
 /*
  * Find the slot a frame belongs to and fill it. With @keep a reply to the cycle stays where it is:
- * the cycle owner takes it in this call. @xfer: the caller that waits, whose slot may be in use by
- * another already; untouched: none, or the cycle.
+ * the cycle owner takes it in this call.
  */
 static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, const u8 *data,
-					   size_t len, bool keep, struct ec_xfer **xfer)
+					   size_t len, bool keep)
 {
 	u32 seq = get_unaligned_le32(src + 2);
+	void (*done)(struct ec_slot *slot);
 	struct ec_slot *slot;
 	enum ec_slot_state state;
 	u8 side = src[1];
@@ -39,8 +37,7 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 	/* first: a frame of an earlier use must not hold the slot */
 	if (READ_ONCE(slot->seq) != seq) {
 		state = atomic_read(&slot->state);
-		return state == EC_SLOT_SENT || state == EC_SLOT_QUEUED ?
-		       EC_MATCH_LATE : EC_MATCH_UNMATCHED;
+		return state == EC_SLOT_SENT ? EC_MATCH_LATE : EC_MATCH_UNMATCHED;
 	}
 	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
 		/* given up; otherwise a second copy of a frame that is back already */
@@ -55,32 +52,22 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 		ec_slot_release(slot, EC_SLOT_SENT);
 		return EC_MATCH_UNMATCHED;
 	}
-	if (keep && !slot->xfer && slot->links == BIT(side)) {
+	/* before others may use the slot */
+	done = slot->done;
+	if (keep && !done && slot->sides == BIT(side)) {
 		slot->reply = data;
+		slot->back = slot->sides;
 		ec_slot_release(slot, EC_SLOT_DONE);
-	} else {
-		*xfer = ec_slot_take(slot, side, data + EC_FRAME_HDR);
+	} else if (ec_slot_take(slot, side, data + EC_FRAME_HDR) && done) {
+		done(slot);
 	}
 	return EC_MATCH_DONE;
-}
-
-/* Apart, for its large result. */
-static noinline enum ec_match receive_pack(struct ec_links *l, const u8 *src, const u8 *data,
-					   size_t len)
-{
-	struct ec_pack_matched got;
-	enum ec_match what = ec_pack_match(&l->slots, src, data, len, &got);
-
-	while (got.n)
-		ec_xfer_done(got.xfer[--got.n]);
-	return what;
 }
 
 static __always_inline void receive(struct ec_link *link, const u8 *src, const u8 *data,
 				    size_t len)
 {
 	struct ec_links *l = link->links;
-	struct ec_xfer *xfer = NULL;
 	enum ec_match what;
 
 	atomic64_inc(&link->stats.rx_frames);
@@ -89,12 +76,7 @@ static __always_inline void receive(struct ec_link *link, const u8 *src, const u
 		ec_link_trace(link, "received", data, len);
 	if (unlikely(l->capture) && !ec_capture_received(l->capture, src, data, len))
 		atomic64_inc(&link->stats.not_captured);
-	if (unlikely(src[1] & EC_PACKED))
-		what = receive_pack(l, src, data, len);
-	else
-		what = match(&l->slots, src, data, len, READ_ONCE(link->keep), &xfer);
-	if (xfer)
-		ec_xfer_done(xfer);
+	what = match(&l->slots, src, data, len, READ_ONCE(link->keep));
 	if (unlikely(what == EC_MATCH_LATE))
 		atomic64_inc(&link->stats.late);
 	else if (unlikely(what == EC_MATCH_UNMATCHED))
@@ -136,7 +118,7 @@ bool ecdev_awaits(struct ecdev *dev)
 
 	rcu_read_lock();
 	link = rcu_dereference(dev->link);
-	ret = link && ec_links_acyclic_ns(link->links);
+	ret = link && atomic_read(&link->acyclic);
 	rcu_read_unlock();
 	return ret;
 }

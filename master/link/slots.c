@@ -15,25 +15,29 @@ MODULE_PARM_DESC(frame_numbers, "Number the frames in their source MAC address (
 /**
  * ec_slots_init() - allocate the slots
  * @s: zeroed structure
- * @backup: with memory for the copies of a second link
+ * @two: with memory for the copies of two links
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_slots_init(struct ec_slots *s, bool backup)
+int ec_slots_init(struct ec_slots *s, bool two)
 {
-	unsigned int i;
+	unsigned int i, side;
 
 	s->numbered = frame_numbers;
 	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
-	s->backup = backup ? vzalloc(array_size(EC_SLOTS, COPY_MAX)) : NULL;
-	if (!s->slot || (backup && !s->backup)) {
+	s->copies = two ? vzalloc(array3_size(EC_SLOTS, EC_MAX_LINKS, COPY_MAX)) : NULL;
+	if (!s->slot || (two && !s->copies)) {
 		ec_slots_exit(s);
 		return -ENOMEM;
 	}
 	for (i = 0; i < EC_SLOTS; i++) {
-		s->slot[i].index = i;
-		s->slot[i].backup = backup ? s->backup + i * COPY_MAX : NULL;
+		struct ec_slot *slot = &s->slot[i];
+
+		slot->index = i;
+		for (side = 0; side < EC_MAX_LINKS; side++)
+			slot->copy[side] = two ? s->copies + (i * EC_MAX_LINKS + side) * COPY_MAX :
+						 ec_slot_body(slot);
 	}
 	return 0;
 }
@@ -47,9 +51,9 @@ int ec_slots_init(struct ec_slots *s, bool backup)
 void ec_slots_exit(struct ec_slots *s)
 {
 	vfree(s->slot);
-	vfree(s->backup);
+	vfree(s->copies);
 	s->slot = NULL;
-	s->backup = NULL;
+	s->copies = NULL;
 }
 
 static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
@@ -99,33 +103,8 @@ struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns)
 }
 
 /**
- * ec_slot_wait() - take a slot that is not for the cycle
- * @s: slots
- *
- * The place at the link's gate is the caller's; a slot of a lost frame may still be
- * in quarantine.
- *
- * Context: Process. May sleep.
- * Return: the slot in state BUILD, or NULL.
- */
-struct ec_slot *ec_slot_wait(struct ec_slots *s)
-{
-	struct ec_slot *slot;
-	unsigned int i;
-
-	for (i = 0; i < 100; i++) {
-		slot = search(s, ktime_get_ns(), EC_QUARANTINE_NS);
-		if (slot)
-			return slot;
-		/* a quarantine ends by time */
-		usleep_range(300, 500);
-	}
-	return NULL;
-}
-
-/**
  * ec_slot_cancel() - stop waiting for a frame
- * @slot: slot that was armed or queued
+ * @slot: slot that was armed
  * @now_ns: time; the quarantine begins now, the frame may have left late
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -135,8 +114,7 @@ struct ec_slot *ec_slot_wait(struct ec_slots *s)
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 {
 	/* in this state neither the sender nor the receiver of the frame uses @sent_ns */
-	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT &&
-	    atomic_cmpxchg(&slot->state, EC_SLOT_QUEUED, EC_SLOT_FILL) != EC_SLOT_QUEUED)
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
 		return false;
 	ec_write64(&slot->sent_ns, now_ns);
 	ec_slot_release(slot, EC_SLOT_QUARANTINE);
@@ -144,32 +122,59 @@ bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 }
 
 /**
- * ec_slot_disarm() - take back a frame that was armed and not sent
- * @slot: slot
+ * ec_slot_settle() - the copies of a frame that have come are all
+ * @slot: slot that was armed
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true: it is in BUILD again; false: another station has sent its reply meanwhile,
- * which is taken, or being taken just now.
+ * Return: true: there is one, the slot is DONE, and @done is not called; false: it is as it was.
  */
-bool ec_slot_disarm(struct ec_slot *slot)
+bool ec_slot_settle(struct ec_slot *slot)
 {
-	return atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_BUILD) == EC_SLOT_SENT ||
-	       atomic_cmpxchg(&slot->state, EC_SLOT_QUEUED, EC_SLOT_BUILD) == EC_SLOT_QUEUED;
+	if (!READ_ONCE(slot->back) ||
+	    atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+		return false;
+	/* it may have been in use for another frame until now */
+	ec_slot_release(slot, slot->back ? EC_SLOT_DONE : EC_SLOT_SENT);
+	return slot->back;
+}
+
+/* The reply: that of the first link that has one. With the last copy the slot is DONE. */
+static bool is_complete(struct ec_slot *slot)
+{
+	bool complete = slot->back == slot->sides;
+
+	if (slot->back)
+		slot->reply = slot->copy[__ffs(slot->back)];
+	ec_slot_release(slot, complete ? EC_SLOT_DONE : EC_SLOT_SENT);
+	return complete;
 }
 
 /**
- * ec_slot_queue() - write the Ethernet header; the frame leaves with the cycle
- * @s: slots
- * @slot: in state BUILD, datagrams complete, @eth_len set
- * @links: mask of the links on which it is sent
- * @now_ns: time
+ * ec_slot_disarm() - take back a frame that was armed, where it was not sent
+ * @slot: slot
+ * @sides: mask of these links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: it is in BUILD again; false: it is on its way on other links, or another station
+ * has sent its reply meanwhile, which is taken, or being taken just now.
  */
-void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns)
+bool ec_slot_disarm(struct ec_slot *slot, u8 sides)
 {
-	ec_slot_number(s, slot, slot->frame, links, now_ns);
-	ec_slot_release(slot, EC_SLOT_QUEUED);
+	void (*done)(struct ec_slot *slot);
+
+	if (atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
+		return false;
+	slot->sides &= ~sides;
+	if (!slot->sides) {
+		slot->back = 0;
+		ec_slot_release(slot, EC_SLOT_BUILD);
+		return true;
+	}
+	slot->back &= slot->sides;
+	done = slot->done;
+	if (is_complete(slot) && done)
+		done(slot);
+	return false;
 }
 
 /**
@@ -179,23 +184,12 @@ void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_n
  * @data: datagrams, compared with what was sent
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: who waits, with the last copy; NULL: the cycle, or a copy is still to come.
+ * Return: whether it was the last copy: @done is to be called.
  */
-struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
+bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
 {
-	u8 *to = side ? slot->backup : ec_slot_body(slot);
-	struct ec_xfer *xfer = slot->xfer;
-
-	slot->reply = ec_slot_body(slot);
-	memcpy(to + EC_FRAME_HDR, data, slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
-	/* in a shared frame another caller's datagrams follow, here they end */
-	if (slot->pack.len)
-		ec_frame_ends_at(to + EC_FRAME_HDR + slot->last);
+	memcpy(slot->copy[side] + EC_FRAME_HDR, data,
+	       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
 	slot->back |= BIT(side);
-	if (slot->back != slot->links) {
-		ec_slot_release(slot, EC_SLOT_SENT);
-		return NULL;
-	}
-	ec_slot_release(slot, EC_SLOT_DONE);
-	return xfer;
+	return is_complete(slot);
 }

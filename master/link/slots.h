@@ -3,15 +3,14 @@
  * Frame slots. The datagram index names the slot of the frame, so at most 256
  * frames are on their way. A slot's life:
  *
- *   FREE -> BUILD -> QUEUED -> FILL -> SENT -> FILL -> DONE -> FREE
- *             \-------------------------^
+ *   FREE -> BUILD -> SENT -> FILL -> DONE -> FREE
  *
- * An acyclic frame is QUEUED until the cycle sends it, see queue.c; others are SENT at once.
- * FILL is the state of a slot whose content one thread uses: the sender copies it, the receiver
- * fills it, or a caller gives it up. Entering it is one atomic change: the first wins. What is
- * given up goes through QUARANTINE, and may be used again after 20 ms.
+ * FILL is the state of a slot whose content one thread uses: the receiver fills it, or it is
+ * given up. Entering it is one atomic change: the first wins. What is given up goes through
+ * QUARANTINE, and may be used again after 20 ms.
  *
- * A mask says on which links a frame is sent. Its slot is DONE when each copy is back.
+ * A mask says on which links a frame is sent. Its slot is DONE when each copy is back, or when
+ * those that came are all that will.
  */
 #ifndef EC_SLOTS_H
 #define EC_SLOTS_H
@@ -23,12 +22,9 @@
 #include "../base/once64.h"
 #include "../wire/frame.h"
 
-struct ec_xfer;
-
 enum ec_slot_state {
 	EC_SLOT_FREE,
 	EC_SLOT_BUILD,
-	EC_SLOT_QUEUED,
 	EC_SLOT_SENT,
 	EC_SLOT_FILL,
 	EC_SLOT_DONE,
@@ -36,77 +32,49 @@ enum ec_slot_state {
 };
 
 /**
- * struct ec_packed - where the datagrams of a slot are in a frame it shares with others
- * @seq: sequence number of that frame
- * @len: bytes of that frame behind the EtherType, 0: the slot has a frame of its own
- * @at: offset of the slot's datagrams there
- * @prev: index of the slot before it, its own: it is the first one
- * @next: index of the slot behind it, its own: it is the last one
- */
-struct ec_packed {
-	u32 seq;
-	u16 len;
-	u16 at;
-	u8 prev;
-	u8 next;
-};
-
-/**
  * struct ec_slot - one frame
  * @state: enum ec_slot_state
  * @index: datagram index, immutable
- * @seq: sequence number in the source MAC address
- * @links: mask of the links on which it is sent
+ * @sides: mask of the links on which it is sent
  * @back: those of them whose copy is back
- * @sent_ns: when it was sent (ktime)
- * @xfer: who waits for it, NULL: the cycle
- * @clock: one of ec_xfer_clock()
- * @dgrams: its datagrams, 0: it never shares a frame
- * @last: offset of the last one from the first one
- * @pack: how it shares a frame
  * @eth_len: bytes of the Ethernet frame without padding and FCS
- * @frame: Ethernet frame, or only headers of its datagrams, see ec_slot_arm(); datagrams of
- *	the copy of link 0 when that is back
- * @backup: behind the EtherType: the copy of link 1; NULL without such a link
- * @reply: behind the EtherType: what has come back, in state DONE; in @frame, or for the cycle in
- *	the device, see struct ec_link.keep
+ * @seq: sequence number in the source MAC address
+ * @sent_ns: when it was sent (ktime)
+ * @done: all copies are back, in the context that receives, at state DONE: the slot is its own
+ *	then; RT-safe. NULL: the owner looks at @state
+ * @user: for @done
+ * @reply: behind the EtherType: what has come back, in state DONE; a copy, or for the cycle in
+ *	the memory of the device, see struct ec_link.keep
+ * @copy: behind the EtherType: memory of the copy of each link. With one link that of the frame
+ * @frame: Ethernet frame as it was sent, or only headers of its datagrams, see ec_slot_arm();
+ *	with one link its copy when that is back
  */
 struct ec_slot {
 	atomic_t state;
 	u8 index;
-	u32 seq;
-	u8 links;
+	u8 sides;
 	u8 back;
-	aligned_u64 sent_ns;
-	struct ec_xfer *xfer;
-	bool clock;
-	u8 dgrams;
-	u16 last;
-	struct ec_packed pack;
 	u16 eth_len;
-	u8 frame[EC_ETH_MAX];
-	u8 *backup;
-	const u8 *reply;
-};
-
-/* a slot in a queue; only meant while it is QUEUED with this sequence number */
-struct ec_queued {
-	struct ec_slot *slot;
 	u32 seq;
-	bool urgent;
+	aligned_u64 sent_ns;
+	void (*done)(struct ec_slot *slot);
+	void *user;
+	const u8 *reply;
+	u8 *copy[EC_MAX_LINKS];
+	u8 frame[EC_ETH_MAX];
 };
 
 /**
  * struct ec_slots - all slots of one master
  * @slot: the slots
- * @backup: memory of the copies of link 1
+ * @copies: memory of the copies with a second link, else NULL
  * @hint: where to look for a free one
  * @seq: sequence number of the last frame
  * @numbered: the source address of a frame has its number
  */
 struct ec_slots {
 	struct ec_slot *slot;
-	u8 *backup;
+	u8 *copies;
 	atomic_t hint;
 	atomic_t seq;
 	bool numbered;
@@ -118,20 +86,20 @@ enum ec_match {
 	EC_MATCH_UNMATCHED,	/* nothing of this kind is out, or mangled */
 };
 
-int ec_slots_init(struct ec_slots *s, bool backup);
+int ec_slots_init(struct ec_slots *s, bool two);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns);
-struct ec_slot *ec_slot_wait(struct ec_slots *s);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
-bool ec_slot_disarm(struct ec_slot *slot);
-void ec_slot_queue(struct ec_slots *s, struct ec_slot *slot, u8 links, u64 now_ns);
-struct ec_xfer *ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
+bool ec_slot_settle(struct ec_slot *slot);
+bool ec_slot_disarm(struct ec_slot *slot, u8 sides);
+bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
 
 /* to a slot that was just taken */
 static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
 {
-	slot->xfer = NULL;
-	slot->dgrams = 0;
+	slot->done = NULL;
+	slot->sides = 0;
+	slot->back = 0;
 	return slot;
 }
 
@@ -182,19 +150,14 @@ static inline bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, 
 
 /**
  * ec_slot_put() - give back a slot
- * @slot: in state BUILD or DONE, free afterwards
+ * @slot: in state BUILD or DONE; free afterwards, but first in quarantine when a copy may still
+ *	come
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
 static inline void ec_slot_put(struct ec_slot *slot)
 {
-	ec_slot_release(slot, EC_SLOT_FREE);
-}
-
-/* Of the slots that share a frame one counts what becomes of it. */
-static inline bool ec_slot_leads(const struct ec_slot *slot)
-{
-	return !slot->pack.len || slot->pack.prev == slot->index;
+	ec_slot_release(slot, slot->back == slot->sides ? EC_SLOT_FREE : EC_SLOT_QUARANTINE);
 }
 
 /**
@@ -207,7 +170,7 @@ static inline bool ec_slot_leads(const struct ec_slot *slot)
  */
 static inline bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
 {
-	return side < EC_MAX_LINKS && slot->links & ~slot->back & BIT(side);
+	return side < EC_MAX_LINKS && slot->sides & ~slot->back & BIT(side);
 }
 
 /* bytes of the frame on the wire, without FCS */
@@ -223,23 +186,18 @@ static inline u8 *ec_slot_body(struct ec_slot *slot)
 
 /*
  * The source address is locally administered: slaves set that bit, too. It carries the side,
- * which a link writes when it sends, and the sequence number. Without numbers each frame leaves
- * alone: one that callers share is recognized by its number.
+ * which a link writes when it sends, and the sequence number.
  */
 static __always_inline void ec_slot_number(struct ec_slots *s, struct ec_slot *slot, u8 *f,
-					   u8 links, u64 now_ns)
+					   u8 sides, u64 now_ns)
 {
 	WRITE_ONCE(slot->seq, atomic_inc_return(&s->seq));
 	ec_write64(&slot->sent_ns, now_ns);
-	slot->links = links;
-	slot->back = 0;
-	slot->pack.len = 0;
+	slot->sides = sides;
 	eth_broadcast_addr(f);
 	f[6] = 0x02;
 	f[7] = 0;
 	put_unaligned_le32(s->numbered ? slot->seq : 0, f + 8);
-	if (!s->numbered)
-		slot->dgrams = 0;
 	f[12] = EC_ETHERTYPE >> 8;
 	f[13] = EC_ETHERTYPE & 0xff;
 	if (slot->eth_len < EC_ETH_MIN)
@@ -265,17 +223,17 @@ static __always_inline void ec_slot_note(struct ec_slot *slot, const u8 *frame)
  * @s: slots
  * @slot: in state BUILD, datagrams complete, @eth_len set
  * @frame: where its frame was built; of one that is not in the slot only headers are kept there
- * @links: mask of the links on which it is sent
+ * @sides: mask of the links on which it is sent
  * @now_ns: time
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
 static __always_inline void ec_slot_arm(struct ec_slots *s, struct ec_slot *slot, u8 *frame,
-					u8 links, u64 now_ns)
+					u8 sides, u64 now_ns)
 {
 	if (frame != slot->frame)
 		ec_slot_note(slot, frame);
-	ec_slot_number(s, slot, frame, links, now_ns);
+	ec_slot_number(s, slot, frame, sides, now_ns);
 	ec_slot_release(slot, EC_SLOT_SENT);
 }
 

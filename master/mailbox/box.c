@@ -43,8 +43,8 @@ static void post(struct ec_mbox *mb, enum ec_mbox_step step, u8 cmd, u16 ado, vo
 {
 	lockdep_assert_held(&mb->lock);
 	WRITE_ONCE(mb->step, step);
-	mb->post.dg = EC_DG(cmd, mb->station, ado, len, data);
-	mb->post.dg.repeat = repeat;
+	mb->dg = EC_DG(cmd, mb->station, ado, len, data);
+	mb->dg.repeat = repeat;
 	ec_post_send(&mb->post, mb->due_ns);
 }
 
@@ -324,7 +324,7 @@ static void on_read(struct ec_mbox *mb, int ret)
 {
 	mb->failed = false;
 	if (!ret) {
-		mb->at += mb->post.dg.len;
+		mb->at += mb->dg.len;
 		if (mb->at < mb->size) {
 			read_on(mb);
 			return;
@@ -374,7 +374,7 @@ static void on_written(struct ec_mbox *mb, int ret)
 	if (!s->on)
 		return;
 	if (!ret) {
-		mb->at += mb->post.dg.len;
+		mb->at += mb->dg.len;
 		if (mb->at < mb->size) {
 			write_on(mb);
 			return;
@@ -428,7 +428,7 @@ static void no_repetition(struct ec_mbox *mb, bool silent)
 	if (mb->sending.on && mb->sending.lost)
 		sent(mb);
 	/* for the log */
-	ec_post_call(&mb->post);
+	queue_work(system_highpri_wq, &mb->unasked);
 }
 
 static void on_ack(struct ec_mbox *mb)
@@ -509,7 +509,7 @@ void ec_mbox_done(struct ec_post *post)
 	step = mb->step;
 	WRITE_ONCE(mb->step, EC_MBOX_REST);
 	if (!mb->dead)
-		on_step(mb, step, post->dg.err ?: post->dg.wkc == 1 ? 0 : -EIO);
+		on_step(mb, step, mb->dg.err ?: mb->dg.wkc == 1 ? 0 : -EIO);
 	ec_mbox_go(mb);
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 }

@@ -269,7 +269,7 @@ static void inbox_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 	} else if (!mb->sending.on || !mb->sending.discard) {
 		mb->held = true;
 		mb->handed_over = true;
-		ec_post_call(&mb->post);
+		queue_work(system_highpri_wq, &mb->unasked);
 	}
 }
 

@@ -5,7 +5,7 @@
  * reply must not pass for that of another request.
  */
 #include <linux/ktime.h>
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
 #include "mailbox_int.h"

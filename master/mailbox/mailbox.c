@@ -18,7 +18,10 @@
 void ec_mbox_init(struct ec_mbox *mb)
 {
 	raw_spin_lock_init(&mb->lock);
-	ec_post_init(&mb->post, mb->links, ec_mbox_done, ec_mbox_unasked);
+	ec_post_init(&mb->post, mb->links, ec_mbox_done);
+	mb->post.dg = &mb->dg;
+	mb->post.n = 1;
+	INIT_WORK(&mb->unasked, ec_mbox_unasked);
 	INIT_LIST_HEAD(&mb->queue);
 	INIT_LIST_HEAD(&mb->users);
 	INIT_LIST_HEAD(&mb->claims);
@@ -41,6 +44,7 @@ void ec_mbox_exit(struct ec_mbox *mb)
 	mb->dead = true;
 	raw_spin_unlock_irqrestore(&mb->lock, flags);
 	ec_post_cancel(&mb->post);
+	cancel_work_sync(&mb->unasked);
 	ec_mbox_keep_voe(mb, false);
 	kfree(mb->tx);
 	kfree(mb->rx);

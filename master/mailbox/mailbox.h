@@ -7,10 +7,11 @@
 #include <linux/list.h>
 #include <linux/spinlock.h>
 #include <linux/types.h>
+#include <linux/workqueue.h>
 #include <linux/wait.h>
 #include "ethercat.h"
 #include "../base/stop.h"
-#include "../link/post.h"
+#include "../carry/post.h"
 #include "../wire/al.h"
 #include "../wire/mbox.h"
 #include "../wire/sii.h"
@@ -101,8 +102,12 @@ struct ec_mbox {
 	 * ec_mbox_in_use() reads some without it
 	 */
 	raw_spinlock_t lock;
-	/** @post: its datagram */
+	/** @post: carries @dg */
 	struct ec_post post;
+	/** @dg: its datagram */
+	struct ec_dg dg;
+	/** @unasked: takes what the slave has sent without a request */
+	struct work_struct unasked;
 	/** @step: what @post is, enum ec_mbox_step */
 	u8 step;
 	/** @dead: nothing is sent any more */
@@ -125,7 +130,7 @@ struct ec_mbox {
 	u16 rx_size;
 	/** @held: @rx has a message that was not taken so far */
 	bool held;
-	/** @handed_over: the thread of the posts takes it */
+	/** @handed_over: @unasked takes it */
 	bool handed_over;
 	/** @sending: message to the slave */
 	struct ec_mbox_sending sending;

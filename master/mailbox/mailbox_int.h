@@ -108,7 +108,7 @@ bool ec_mbox_has_reader(struct ec_mbox *mb);
 void ec_mbox_retry_held(struct ec_mbox *mb);
 
 /* unasked.c */
-void ec_mbox_unasked(struct ec_post *post);
+void ec_mbox_unasked(struct work_struct *work);
 int ec_mbox_error_reply(struct ec_mbox *mb, const u8 *rx, size_t len);
 void ec_mbox_flush_kept(struct ec_mbox *mb);
 int ec_mbox_take_kept(struct ec_mbox *mb, u8 *rx);

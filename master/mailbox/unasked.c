@@ -158,13 +158,13 @@ static void unasked_take(struct ec_mbox *mb)
 
 /**
  * ec_mbox_unasked() - take what the slave has sent without a request
- * @post: of the mailbox
+ * @work: of the mailbox
  *
- * Context: Process. Called by the thread of the posts.
+ * Context: Process.
  */
-void ec_mbox_unasked(struct ec_post *post)
+void ec_mbox_unasked(struct work_struct *work)
 {
-	struct ec_mbox *mb = container_of(post, struct ec_mbox, post);
+	struct ec_mbox *mb = container_of(work, struct ec_mbox, unasked);
 	unsigned long flags;
 	bool taken;
 

@@ -9,7 +9,7 @@
 #include "../mailbox/voe.h"
 #include "../wire/sdoinfo.h"
 #include "../wire/voe.h"
-#include "../link/xfer.h"
+#include "../carry/xfer.h"
 
 /* operations of a kind, bit n: EC_REQUEST_OP_ n */
 static const u8 ops[] = {

@@ -200,7 +200,7 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 static void adopt_late(struct ec_session *s, u32 per_s)
 {
 	s->cycle.late_per_s = per_s;
-	WRITE_ONCE(s->sessions->links->share.late_per_s, per_s);
+	WRITE_ONCE(s->sessions->links->carry->share.late_per_s, per_s);
 }
 
 /**

@@ -7,7 +7,8 @@
 #define EC_BUS_ACCESS_LINK_H
 
 #include "master/link/capture.h"
-#include "master/link/xfer.h"
+#include "master/carry/flight.h"
+#include "master/carry/xfer.h"
 
 static inline struct ec_links *bus_links(const struct bus *b)
 {
@@ -105,43 +106,54 @@ static inline struct ec_slot *bus_slot(const struct bus *b, u32 i)
 	return &bus_slots(b)->slot[i];
 }
 
+/* memory for the copies of two links, until bus_one_copy() */
+static inline void bus_two_copies(const struct bus *b, struct ec_slot *slot)
+{
+	u32 side;
+
+	for (side = 0; side < EC_MAX_LINKS; side++) {
+		slot->copy[side] = kunit_kzalloc(b->test, EC_ETH_MAX, GFP_KERNEL);
+		KUNIT_ASSERT_NOT_NULL(b->test, slot->copy[side]);
+	}
+}
+
+static inline void bus_one_copy(struct ec_slot *slot)
+{
+	u32 side;
+
+	for (side = 0; side < EC_MAX_LINKS; side++)
+		slot->copy[side] = ec_slot_body(slot);
+}
+
 static inline struct ec_riders *bus_riders(const struct bus *b)
 {
-	return &bus_links(b)->riders;
+	return &b->m->riders;
 }
 
-/* acyclic frames that wait for the cycle */
-static inline struct ec_queues *bus_queues(const struct bus *b)
+static inline struct ec_carry *bus_carry(const struct bus *b)
 {
-	return &bus_links(b)->queues;
+	return &b->m->carry;
 }
 
+/* posts that have not left */
 static inline unsigned int bus_queued(const struct bus *b)
 {
-	return ec_queue_frames(bus_queues(b));
+	return READ_ONCE(bus_carry(b)->n_ready);
 }
 
-/* posted datagrams that are not back */
-static inline u32 bus_posts(const struct bus *b)
-{
-	const struct ec_posts *p = &bus_links(b)->posts;
-
-	return p->n_ready + p->n_flying;
-}
-
-/* places for acyclic frames */
-static inline struct ec_gate *bus_gate(const struct bus *b)
-{
-	return &bus_link(b, 0)->acyclic;
-}
-
-/* of these, taken */
+/* acyclic frames on their way */
 static inline unsigned int bus_acyclic(const struct bus *b)
 {
-	return READ_ONCE(bus_gate(b)->used);
+	return READ_ONCE(bus_carry(b)->n_flying);
 }
 
-/* wire time of the frames in them */
+/* posts that have not left, and frames on their way */
+static inline u32 bus_posts(const struct bus *b)
+{
+	return bus_queued(b) + bus_acyclic(b);
+}
+
+/* wire time of these frames */
 static inline int bus_acyclic_ns(const struct bus *b)
 {
 	return atomic_read(&bus_link(b, 0)->acyclic_ns);
@@ -220,17 +232,17 @@ static inline u16 bus_room(const struct bus *b)
 /* cycles that acyclic frames have delayed */
 static inline u32 bus_late_cycles(const struct bus *b)
 {
-	return READ_ONCE(bus_links(b)->share.late_cycles);
+	return READ_ONCE(bus_carry(b)->share.late_cycles);
 }
 
 static inline u32 bus_late_per_s(const struct bus *b)
 {
-	return READ_ONCE(bus_links(b)->share.late_per_s);
+	return READ_ONCE(bus_carry(b)->share.late_per_s);
 }
 
 static inline void bus_set_late_per_s(const struct bus *b, u32 cycles)
 {
-	bus_links(b)->share.late_per_s = cycles;
+	bus_carry(b)->share.late_per_s = cycles;
 }
 
 #endif

@@ -54,7 +54,8 @@ static u32 clock_frames(struct bus *b)
 	for (i = 0; i < EC_SLOTS; i++) {
 		const struct ec_slot *s = bus_slot(b, i);
 
-		n += s->xfer && s->clock && atomic_read(&s->state) != EC_SLOT_QUEUED && s->sent_ns >= bus_last_send_ns(b);
+		n += s->done == ec_flight_landed && s->sent_ns >= bus_last_send_ns(b) &&
+		     bus_carry(b)->flight[i].class == EC_POST_CLOCK;
 	}
 	return n;
 }

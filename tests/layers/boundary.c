@@ -36,7 +36,11 @@ static bool attached(const struct ec_slave *s)
 	return ec_config_of(s);
 }
 
-/* of layers below; the links report nothing */
+static const struct ec_links_ops links_ops = {
+	.changed = ec_carry_changed,
+};
+
+/* of layers below */
 static const struct ec_bus_ops bus_ops = {
 	.configure = ec_apply,
 	.attached = attached,
@@ -53,9 +57,13 @@ static int compose(struct ec_master *m)
 	m->sessions.bus = &m->bus;
 	m->sessions.dc = &m->dc;
 	m->sessions.cycles = &m->cycles;
-	ec_cycles_init(&m->cycles, m->base, &m->links, &m->dc);
-	ret = ec_links_init(&m->links, m->base, NULL, "test0", NULL) ?:
-	      ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
+	m->riders.links = &m->links;
+	ret = ec_links_init(&m->links, m->base, &links_ops, "test0", NULL) ?:
+	      ec_carry_init(&m->carry, &m->links, NULL);
+	if (ret)
+		return ret;
+	ec_cycles_init(&m->cycles, m->base, &m->carry, &m->riders, &m->dc);
+	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
 	      ec_sessions_init(&m->sessions);
 	ec_setup_init(&m->bus);
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
@@ -79,6 +87,8 @@ static void bench_free(struct bench *b)
 	ec_sessions_exit(&m->sessions);
 	ec_bus_stop(&m->bus);
 	ec_api_destroy(m);
+	ec_device_unregister(&m->links);
+	ec_carry_exit(&m->carry);
 	ec_links_exit(&m->links);
 	ec_bus_exit(&m->bus);
 	kvfree(m);

@@ -3,7 +3,7 @@
 #include <linux/slab.h>
 #include "master/base/once64.h"
 #include "master/clock/dc.h"
-#include "master/link/xfer.h"
+#include "master/carry/xfer.h"
 #include "scanned.h"
 
 #define SLAVES	3

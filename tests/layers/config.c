@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Slaves get what is wanted of them. No session wants it, and no worker is started. */
-#include "master/link/xfer.h"
+#include "master/carry/xfer.h"
 #include "master/mailbox/coe.h"
 #include "master/wire/fmmu.h"
 #include "plant.h"

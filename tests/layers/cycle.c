@@ -73,7 +73,8 @@ static struct bench *bench_new(void)
 		kvfree(b);
 		return NULL;
 	}
-	ec_cycles_init(&b->cycles, &b->p.s.seg.base, &b->p.s.seg.links, &b->p.dc);
+	ec_cycles_init(&b->cycles, &b->p.s.seg.base, &b->p.s.seg.carry, &b->p.s.seg.riders,
+		       &b->p.dc);
 	ec_cycle_init(&b->cycle, &b->cycles, &b->p.wanted);
 	b->p.wanted.sends = &b->cycle.sends;
 	mutex_lock(&b->p.lock);

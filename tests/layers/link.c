@@ -1,387 +1,273 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* The layer "link" with a device that behaves as a test says; there is no slave. */
-#include <linux/delay.h>
-#include <linux/kthread.h>
-#include <linux/rcupdate.h>
-#include <linux/slab.h>
+/* The layer "link" with devices that behave as a test says; there is no slave. */
 #include "alone.h"
-#include "devices/ecdev.h"
-#include "master/base/limits.h"
-#include "master/base/once64.h"
-#include "master/link/device.h"
-#include "master/link/links.h"
-#include "master/link/xfer.h"
-
-static const u8 mac[ETH_ALEN] = { 0x02, 0x00, 0x00, 0xec, 0x00, 0x01 };
-
-enum behaviour {
-	ANSWERS,	/* at once, as one slave would */
-	HOLDS,		/* keeps the last frame for deliver() */
-};
-
-struct test_device {
-	enum behaviour does;
-	bool up;
-	bool seen;		/* the last look has found it up */
-	bool started;
-	unsigned int sent;
-	size_t len;
-	u8 tx[EC_ETH_MAX];
-	u8 held[EC_ETH_MAX];
-	struct ecdev *dev;
-	const struct ec_links *links;
-	bool cyclic;
-	int mode;		/* of the access when the device heard of it */
-};
-
-/* the held frame comes back */
-static void deliver(struct test_device *d)
-{
-	u8 *body = d->held + EC_ETH_HDR;
-	struct ec_frame_iter it;
-	struct ec_dgram dg;
-
-	ec_frame_iter_init(&it, body, d->len - EC_ETH_HDR);
-	while (ec_frame_iter_next(&it, &dg) == 1) {
-		memset(dg.data, 0xa5, dg.len);
-		ec_dgram_set_wkc(&dg, ec_dgram_wkc(&dg) + 1);
-	}
-	rcu_read_lock();
-	ecdev_receive(d->dev, d->held + ETH_ALEN, body, d->len - EC_ETH_HDR);
-	rcu_read_unlock();
-}
-
-static int start(void *priv, struct ecdev *dev)
-{
-	struct test_device *d = priv;
-
-	d->dev = dev;
-	d->started = true;
-	return 0;
-}
-
-static void stop(void *priv)
-{
-	struct test_device *d = priv;
-
-	d->started = false;
-}
-
-static u8 *tx_get(void *priv)
-{
-	struct test_device *d = priv;
-
-	return d->tx;
-}
-
-static int tx_send(void *priv, u8 *buf, size_t len)
-{
-	struct test_device *d = priv;
-
-	memcpy(d->held, buf, len);
-	d->len = len;
-	d->sent++;
-	if (d->does == ANSWERS)
-		deliver(d);
-	return 0;
-}
-
-static bool link_up(void *priv)
-{
-	const struct test_device *d = priv;
-
-	return READ_ONCE(d->up);
-}
-
-static void cycle(void *priv, bool on)
-{
-	struct test_device *d = priv;
-
-	d->cyclic = on;
-	d->mode = READ_ONCE(d->links->access.mode);
-}
-
-static void look(void *priv)
-{
-	struct test_device *d = priv;
-
-	WRITE_ONCE(d->seen, READ_ONCE(d->up));
-}
-
-static bool link_seen(void *priv)
-{
-	const struct test_device *d = priv;
-
-	return READ_ONCE(d->seen);
-}
-
-static const struct ecdev_ops device_ops = {
-	.kind = "test", .atomic = true, .start = start, .stop = stop, .tx_get = tx_get,
-	.tx_send = tx_send, .cycle = cycle, .link_up = link_up,
-};
-
-/* as a network card without interrupts */
-static const struct ecdev_ops looking_ops = {
-	.kind = "test", .atomic = true, .start = start, .stop = stop, .tx_get = tx_get,
-	.tx_send = tx_send, .cycle = cycle, .link_up = link_seen, .look = look,
-};
+#include "card.h"
 
 /* links of a master that has nothing else */
 struct bench {
 	struct ec_base base;
 	struct ec_links links;
-	struct test_device d;
-	struct ecdev *dev;
+	struct test_device d[EC_MAX_LINKS];
+	struct ecdev *dev[EC_MAX_LINKS];
+	struct ec_slot *done;	/* the last one */
 };
 
 static void bench_free(struct bench *b)
 {
-	if (b->dev)
-		ecdev_withdraw(b->dev);
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		if (b->dev[i])
+			ecdev_withdraw(b->dev[i]);
 	ec_links_exit(&b->links);
 	kvfree(b);
 }
 
-static struct bench *bench_new(enum behaviour does)
+static bool plug(struct bench *b, unsigned int side, enum behaviour does)
+{
+	u8 address[ETH_ALEN];
+	struct ecdev *dev;
+
+	ether_addr_copy(address, mac);
+	address[5] += side;
+	b->d[side].does = does;
+	b->d[side].up = true;
+	b->d[side].links = &b->links;
+	dev = ecdev_offer(side ? "test1" : "test0", address, &device_ops, &b->d[side]);
+	if (!CHECK(!IS_ERR(dev)))
+		return false;
+	b->dev[side] = dev;
+	return CHECK(b->links.link[side].dev == dev);
+}
+
+static struct bench *bench_new(bool two, enum behaviour does)
 {
 	struct bench *b = kvzalloc(sizeof(*b), GFP_KERNEL);
+	bool ok;
 
 	if (!CHECK(b))
 		return NULL;
 	ec_base_init(&b->base, 0, 0);
-	b->d.does = does;
-	b->d.up = true;
-	b->d.links = &b->links;
-	if (!CHECK_EQ(ec_links_init(&b->links, &b->base, NULL, "test0", NULL), 0)) {
+	if (!CHECK_EQ(ec_links_init(&b->links, &b->base, NULL, "test0", two ? "test1" : NULL), 0)) {
 		kvfree(b);
 		return NULL;
 	}
+	if (two) {
+		b->links.sides = BIT(EC_MAIN) | BIT(EC_BACKUP);
+		b->links.only = NULL;
+	}
 	ec_device_register(&b->links);
-	b->dev = ecdev_offer("test0", mac, &device_ops, &b->d);
-	if (CHECK(!IS_ERR(b->dev)) && CHECK_EQ(ec_links_any_device(&b->links), true) &&
-	    CHECK_EQ(ec_links_look(&b->links), true))
+	ok = plug(b, EC_MAIN, does) && (!two || plug(b, EC_BACKUP, does)) &&
+	     CHECK_EQ(ec_links_look(&b->links), true);
+	if (ok)
 		return b;
-	b->dev = NULL;
 	bench_free(b);
 	return NULL;
 }
 
-static void replies_reach_their_callers(void)
+static void slot_done(struct ec_slot *slot)
 {
-	struct bench *b = bench_new(ANSWERS);
-	u8 x[2][4] = { 0 };
-	struct ec_dg dg[] = {
-		EC_DG(EC_CMD_FPRD, 1001, 0x130, 4, x[0]),
-		EC_DG(EC_CMD_BRD, 0, 0x110, 2, x[1]),
-	};
+	struct bench *b = slot->user;
+
+	b->done = slot;
+}
+
+/* a frame with one datagram */
+static int send(struct bench *b, struct ec_slot **slot)
+{
+	struct ec_slot *s = ec_slot_get(&b->links.slots, false, ktime_get_ns());
+	struct ec_frame_buf fb;
+	int ret;
+
+	ec_frame_begin(&fb, ec_slot_body(s), EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	memset(ec_frame_add(&fb, EC_CMD_FPRD, s->index, 1001, 0x130, 4), 0, 4);
+	s->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
+	s->done = slot_done;
+	s->user = b;
+	b->done = NULL;
+	rcu_read_lock();
+	ret = ec_links_transmit(&b->links, s, s->frame, b->links.sides, ktime_get_ns());
+	ec_links_flush(&b->links);
+	rcu_read_unlock();
+	*slot = s;
+	return ret;
+}
+
+static u8 data_of(const struct ec_slot *slot, unsigned int side)
+{
+	return slot->copy[side][EC_FRAME_HDR + EC_DGRAM_HDR];
+}
+
+static void reply_ends_the_slot(void)
+{
+	struct bench *b = bench_new(false, ANSWERS);
+	struct ec_slot *slot;
 
 	if (!b)
 		return;
-	CHECK_EQ(ec_xfer(&b->links, dg, ARRAY_SIZE(dg)), 0);
-	CHECK_EQ(dg[0].wkc, 1);
-	CHECK_EQ(dg[1].wkc, 1);
-	CHECK_EQ(x[0][3], 0xa5);
-	CHECK_EQ(x[1][1], 0xa5);
-	CHECK_EQ(x[1][2], 0);
-	CHECK_EQ(b->d.sent, 1);
+	CHECK_EQ(send(b, &slot), 0);
+	CHECK(b->done == slot);
+	CHECK_EQ(atomic_read(&slot->state), EC_SLOT_DONE);
+	CHECK_EQ(data_of(slot, EC_MAIN), 0xa5);
 	CHECK_EQ(ec_links_sent(&b->links), 1);
+	ec_slot_put(slot);
+	CHECK_EQ(atomic_read(&slot->state), EC_SLOT_FREE);
 	bench_free(b);
 }
 
-/* a read is repeated, a write that is no repeatable one is not */
-static void lost_frames_time_out(void)
+static void cancelled_frame_is_late(void)
 {
-	struct bench *b = bench_new(HOLDS);
-	u8 x[4] = { 0 };
-	struct ec_dg dg = EC_DG(EC_CMD_FPRD, 1001, 0x130, 4, x);
-	u64 t0 = ktime_get_ns();
+	struct bench *b = bench_new(false, HOLDS);
+	struct ec_slot *slot;
 
 	if (!b)
 		return;
-	CHECK_EQ(ec_xfer(&b->links, &dg, 1), -ETIMEDOUT);
-	CHECK_OP(ktime_get_ns() - t0, >=, 4 * 20 * NSEC_PER_MSEC);
-	CHECK_EQ(b->d.sent, 4);
-	dg.repeat = false;
-	CHECK_EQ(ec_xfer(&b->links, &dg, 1), -ETIMEDOUT);
-	CHECK_EQ(b->d.sent, 5);
-	CHECK_EQ(atomic64_read(&b->links.link[0].stats.lost), 5);
-	bench_free(b);
-}
-
-static void late_and_unknown_frames_are_only_counted(void)
-{
-	struct bench *b = bench_new(HOLDS);
-	u8 x[4] = { 0 };
-	struct ec_dg dg = EC_DG(EC_CMD_FPRD, 1001, 0x130, 4, x);
-
-	if (!b)
-		return;
-	dg.repeat = false;
-	CHECK_EQ(ec_xfer(&b->links, &dg, 1), -ETIMEDOUT);
-	deliver(&b->d);
+	CHECK_EQ(send(b, &slot), 0);
+	CHECK_EQ(ec_slot_settle(slot), false);
+	CHECK_EQ(ec_slot_cancel(slot, ktime_get_ns()), true);
+	deliver(&b->d[0]);
+	CHECK(!b->done);
 	CHECK_EQ(atomic64_read(&b->links.link[0].stats.late), 1);
 	/* number of a frame that was never sent */
-	b->d.held[ETH_ALEN + 5] ^= 0x55;
-	deliver(&b->d);
+	b->d[0].held[ETH_ALEN + 5] ^= 0x55;
+	deliver(&b->d[0]);
 	CHECK_EQ(atomic64_read(&b->links.link[0].stats.late), 1);
 	CHECK_EQ(atomic64_read(&b->links.link[0].stats.unmatched), 1);
-	CHECK_EQ(x[0], 0);
-	b->d.does = ANSWERS;
-	CHECK_EQ(ec_xfer(&b->links, &dg, 1), 0);
-	CHECK_EQ(x[0], 0xa5);
 	bench_free(b);
 }
 
-struct caller {
-	struct ec_links *links;
-	struct completion done;
-	int ret;
-};
-
-static int call(void *arg)
+/* each copy, and what was sent, can be read */
+static void two_links_bring_two_copies(void)
 {
-	struct caller *c = arg;
-	u8 x[4];
-
-	c->ret = ec_xfer_one(c->links, EC_CMD_FPRD, 1001, 0x130, x, 4);
-	complete(&c->done);
-	return 0;
-}
-
-static bool caller_begins(struct caller *c, struct bench *b)
-{
-	c->links = &b->links;
-	init_completion(&c->done);
-	return CHECK(!IS_ERR(kthread_run(call, c, "ec_alone")));
-}
-
-static bool queued(void *links)
-{
-	return ec_queue_frames(&((struct ec_links *)links)->queues) == 1;
-}
-
-/* with ops NULL: the queue reports to no application */
-static void cycle_sends_what_others_queue(void)
-{
-	struct bench *b = bench_new(ANSWERS);
-	struct caller c;
+	struct bench *b = bench_new(true, HOLDS);
+	struct ec_slot *slot;
 
 	if (!b)
 		return;
-	CHECK_EQ(ec_access_change(&b->links, EC_ACCESS_CYCLIC), true);
-	if (caller_begins(&c, b)) {
-		CHECK(alone_wait(queued, &b->links, 10));
-		CHECK_EQ(b->d.sent, 0);
-		ec_links_enter(&b->links);
-		ec_write64(&b->links.access.last_send_ns, ktime_get_ns());
-		ec_share_begin(&b->links.share, ec_access_interval_us(&b->links.access));
-		rcu_read_lock();
-		ec_share_send_left(&b->links, 0);
-		ec_links_flush(&b->links);
-		rcu_read_unlock();
-		ec_links_leave(&b->links);
-		wait_for_completion(&c.done);
-		CHECK_EQ(c.ret, 1);
-		CHECK_EQ(b->d.sent, 1);
+	CHECK_EQ(send(b, &slot), 0);
+	CHECK_EQ(b->d[0].sent, 1);
+	CHECK_EQ(b->d[1].sent, 1);
+	deliver(&b->d[1]);
+	CHECK(!b->done);
+	/* twice the same one */
+	deliver(&b->d[1]);
+	CHECK(!b->done);
+	CHECK_EQ(atomic64_read(&b->links.link[1].stats.unmatched), 1);
+	deliver(&b->d[0]);
+	CHECK(b->done == slot);
+	CHECK_EQ(slot->back, 3);
+	CHECK_EQ(data_of(slot, EC_MAIN), 0xa5);
+	CHECK_EQ(data_of(slot, EC_BACKUP), 0xa5);
+	CHECK_EQ(ec_slot_body(slot)[EC_FRAME_HDR + EC_DGRAM_HDR], 0);
+	ec_slot_put(slot);
+	bench_free(b);
+}
+
+/* the copy that came is kept when the other one does not */
+static void one_copy_of_two_settles(void)
+{
+	struct bench *b = bench_new(true, HOLDS);
+	struct ec_slot *slot;
+	unsigned int side;
+
+	if (!b)
+		return;
+	for (side = 0; side < EC_MAX_LINKS; side++) {
+		CHECK_EQ(send(b, &slot), 0);
+		deliver(&b->d[side]);
+		CHECK_EQ(ec_slot_settle(slot), true);
+		CHECK(!b->done);
+		CHECK_EQ(atomic_read(&slot->state), EC_SLOT_DONE);
+		CHECK_EQ(slot->back, BIT(side));
+		CHECK_EQ(data_of(slot, side), 0xa5);
+		/* the other one may still come: it finds nobody */
+		ec_slot_put(slot);
+		CHECK_EQ(atomic_read(&slot->state), EC_SLOT_QUARANTINE);
+		deliver(&b->d[!side]);
+		CHECK_EQ(atomic64_read(&b->links.link[!side].stats.late), 1);
 	}
-	CHECK_EQ(ec_access_change(&b->links, EC_ACCESS_DIRECT), true);
+	bench_free(b);
+}
+
+/* a link that refuses a frame, is full, or has no device, does not stop the other */
+static void failing_link_does_not_stop_the_other(void)
+{
+	struct bench *b = bench_new(true, ANSWERS);
+	struct ec_slot *slot;
+	unsigned int side;
+
+	if (!b)
+		return;
+	for (side = 0; side < EC_MAX_LINKS; side++) {
+		b->d[side].refuses = -ENETDOWN;
+		CHECK_EQ(send(b, &slot), 0);
+		CHECK(b->done == slot);
+		CHECK_EQ(slot->sides, BIT(!side));
+		ec_slot_put(slot);
+		CHECK_EQ(atomic_read(&slot->state), EC_SLOT_FREE);
+		b->d[side].refuses = 0;
+	}
+	b->d[0].refuses = b->d[1].refuses = -ENETDOWN;
+	CHECK_EQ(send(b, &slot), -ENETDOWN);
+	CHECK_EQ(atomic_read(&slot->state), EC_SLOT_BUILD);
+	ec_slot_put(slot);
 	bench_free(b);
 }
 
 /* The owner of the cycle is the only one that polls: the device hears of it before it may. */
 static void device_hears_of_cycle_first(void)
 {
-	struct bench *b = bench_new(ANSWERS);
+	struct bench *b = bench_new(false, ANSWERS);
 
 	if (!b)
 		return;
 	CHECK_EQ(ec_access_change(&b->links, EC_ACCESS_CYCLIC), true);
-	CHECK_EQ(b->d.cyclic, true);
-	CHECK_EQ(b->d.mode, EC_ACCESS_DIRECT);
+	CHECK_EQ(b->d[0].cyclic, true);
+	CHECK_EQ(b->d[0].mode, EC_ACCESS_DIRECT);
 	/* one that comes while there is a cycle */
-	ecdev_withdraw(b->dev);
-	CHECK_EQ(b->d.cyclic, false);
+	ecdev_withdraw(b->dev[0]);
+	b->dev[0] = NULL;
+	CHECK_EQ(b->d[0].cyclic, false);
 	ec_access_change(&b->links, EC_ACCESS_CYCLIC);
-	b->dev = ecdev_offer("test0", mac, &device_ops, &b->d);
-	if (CHECK(!IS_ERR(b->dev)))
-		CHECK_EQ(b->d.cyclic, true);
-	else
-		b->dev = NULL;
+	if (plug(b, EC_MAIN, ANSWERS))
+		CHECK_EQ(b->d[0].cyclic, true);
 	CHECK_EQ(ec_access_change(&b->links, EC_ACCESS_DIRECT), true);
-	CHECK_EQ(b->d.cyclic, false);
+	CHECK_EQ(b->d[0].cyclic, false);
 	bench_free(b);
 }
 
-/* with ops NULL: no one hears of it but the caller */
-static void withdrawn_device_ends_calls(void)
+/* the cycle goes on with the device that is left */
+static void one_device_of_two_leaves_the_cycle(void)
 {
-	struct bench *b = bench_new(HOLDS);
-	struct caller c;
-	u8 x[4];
+	struct bench *b = bench_new(true, ANSWERS);
+	struct ec_slot *slot;
 
 	if (!b)
 		return;
-	if (caller_begins(&c, b)) {
-		usleep_range(2000, 3000);
-		ecdev_withdraw(b->dev);
-		b->dev = NULL;
-		wait_for_completion(&c.done);
-		CHECK_OP(c.ret, <, 0);
-		CHECK_EQ(b->d.started, false);
-		CHECK_EQ(ec_links_any_device(&b->links), false);
-		CHECK_EQ(ec_xfer_one(&b->links, EC_CMD_BRD, 0, 0, x, 1), -ENODEV);
-	}
-	bench_free(b);
-}
-
-static void link_down_ends_calls_at_once(void)
-{
-	struct bench *b = bench_new(HOLDS);
-	struct caller c;
-	u64 t0;
-
-	if (!b)
-		return;
-	if (caller_begins(&c, b)) {
-		usleep_range(2000, 3000);
-		t0 = ktime_get_ns();
-		WRITE_ONCE(b->d.up, false);
-		wait_for_completion(&c.done);
-		CHECK_EQ(c.ret, -ENETDOWN);
-		CHECK_OP(ktime_get_ns() - t0, <, 10 * NSEC_PER_MSEC);
-		CHECK_EQ(ec_links_look(&b->links), false);
-	}
-	bench_free(b);
-}
-
-/* the monitor, which looks, waits for the frame itself */
-static void late_frame_makes_device_look(void)
-{
-	struct bench *b = bench_new(HOLDS);
-	u8 x[4];
-
-	if (!b)
-		return;
-	ecdev_withdraw(b->dev);
-	b->dev = ecdev_offer("test0", mac, &looking_ops, &b->d);
-	if (CHECK(!IS_ERR(b->dev)) && CHECK_EQ(ec_links_look(&b->links), true)) {
-		WRITE_ONCE(b->d.up, false);
-		CHECK_EQ(ec_xfer_one(&b->links, EC_CMD_BRD, 0, 0, x, 1), -ENETDOWN);
-		CHECK_EQ(b->d.seen, false);
-	} else if (IS_ERR(b->dev)) {
-		b->dev = NULL;
-	}
+	ec_access_change(&b->links, EC_ACCESS_CYCLIC);
+	ecdev_withdraw(b->dev[EC_MAIN]);
+	b->dev[EC_MAIN] = NULL;
+	CHECK_EQ(ec_access_is_cyclic(&b->links.access), true);
+	CHECK_EQ(b->d[EC_MAIN].cyclic, false);
+	CHECK_EQ(b->d[EC_BACKUP].cyclic, true);
+	CHECK_EQ(ec_access_try_enter(&b->links), 0);
+	CHECK_EQ(send(b, &slot), 0);
+	CHECK(b->done == slot);
+	ec_slot_put(slot);
+	ec_access_leave(&b->links.access);
+	ecdev_withdraw(b->dev[EC_BACKUP]);
+	b->dev[EC_BACKUP] = NULL;
+	CHECK_EQ(ec_access_is_cyclic(&b->links.access), false);
 	bench_free(b);
 }
 
 const struct alone_test alone_tests[] = {
-	TEST(replies_reach_their_callers),
-	TEST(lost_frames_time_out),
-	TEST(late_and_unknown_frames_are_only_counted),
-	TEST(cycle_sends_what_others_queue),
+	TEST(reply_ends_the_slot),
+	TEST(cancelled_frame_is_late),
+	TEST(two_links_bring_two_copies),
+	TEST(one_copy_of_two_settles),
+	TEST(failing_link_does_not_stop_the_other),
 	TEST(device_hears_of_cycle_first),
-	TEST(withdrawn_device_ends_calls),
-	TEST(link_down_ends_calls_at_once),
-	TEST(late_frame_makes_device_look),
+	TEST(one_device_of_two_leaves_the_cycle),
 	{ }
 };

@@ -5,7 +5,7 @@
 #include <linux/slab.h>
 #include "devices/sim/app.h"
 #include "master/base/stop.h"
-#include "master/link/xfer.h"
+#include "master/carry/xfer.h"
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
 #include "master/wire/al.h"

@@ -7,8 +7,12 @@
 
 static const u8 mac[ETH_ALEN] = { 0x02, 0x00, 0x00, 0xec, 0x00, 0x02 };
 
+static const struct ec_links_ops links_ops = {
+	.changed = ec_carry_changed,
+};
+
 /**
- * segment_begin() - links with ops NULL at a segment
+ * segment_begin() - links that tell nobody at a segment
  * @s: zeroed
  * @text: description of the segment
  *
@@ -23,7 +27,9 @@ bool segment_begin(struct segment *s, const char *text)
 		pr_info("alone: # line %u: %s\n", err.line, err.text);
 		return CHECK(false);
 	}
-	if (!CHECK_EQ(ec_links_init(&s->links, &s->base, NULL, "test0", NULL), 0)) {
+	s->riders.links = &s->links;
+	if (!CHECK_EQ(ec_links_init(&s->links, &s->base, &links_ops, "test0", NULL), 0) ||
+	    !CHECK_EQ(ec_carry_init(&s->carry, &s->links, NULL), 0)) {
 		ec_sim_free(s->sim);
 		return false;
 	}
@@ -43,6 +49,8 @@ bool segment_begin(struct segment *s, const char *text)
  */
 void segment_end(struct segment *s)
 {
+	ec_device_unregister(&s->links);
+	ec_carry_exit(&s->carry);
 	ec_links_exit(&s->links);
 	if (s->device)
 		ec_sim_link_destroy(s->device);

@@ -5,7 +5,8 @@
 
 #include "alone.h"
 #include "devices/sim/sim.h"
-#include "master/link/links.h"
+#include "master/carry/carry.h"
+#include "master/carry/rider.h"
 
 struct ec_sim_link;
 
@@ -19,6 +20,8 @@ struct ec_sim_link;
 struct segment {
 	struct ec_base base;
 	struct ec_links links;
+	struct ec_carry carry;
+	struct ec_riders riders;
 	struct ec_sim *sim;
 	struct ec_sim_link *device;
 };

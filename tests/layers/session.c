@@ -62,7 +62,7 @@ static struct bench *bench_new(void)
 	b->ss.bus = &b->s.bus;
 	b->ss.dc = &b->dc;
 	b->ss.cycles = &b->cycles;
-	ec_cycles_init(&b->cycles, &b->s.seg.base, &b->s.seg.links, &b->dc);
+	ec_cycles_init(&b->cycles, &b->s.seg.base, &b->s.seg.carry, &b->s.seg.riders, &b->dc);
 	ec_setup_init(&b->s.bus);
 	if (CHECK_EQ(ec_sessions_init(&b->ss), 0)) {
 		ec_dc_init(&b->dc, &b->s.seg.base, &b->s.seg.links, &b->s.bus, b->ss.service);

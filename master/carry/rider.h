@@ -59,11 +59,13 @@ struct ec_rider {
 
 /**
  * struct ec_riders - riders of a master
+ * @links: way to the slaves, immutable
  * @rider: all of them, NULL: none with this number
  * @queued: mask of those that may wait for a frame
  * @seq: frames that have carried riders; the cycle owner's
  */
 struct ec_riders {
+	struct ec_links *links;
 	struct ec_rider *rider[EC_RIDERS];
 	atomic_t queued;
 	u32 seq;
@@ -79,16 +81,16 @@ struct ec_riding {
 	u32 seq;
 };
 
-int ec_rider_register(struct ec_links *l, struct ec_rider *r);
-void ec_rider_begin(struct ec_links *l, struct ec_rider *r);
+int ec_rider_register(struct ec_riders *rs, struct ec_rider *r);
+void ec_rider_begin(struct ec_riders *rs, struct ec_rider *r);
 bool ec_rider_is_back(const struct ec_rider *r);
-void ec_rider_again(struct ec_links *l, struct ec_rider *r);
+void ec_rider_again(struct ec_riders *rs, struct ec_rider *r);
 int ec_rider_end(struct ec_rider *r);
-int ec_rider_exchange(struct ec_links *l, struct ec_rider *r);
-void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,
+int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r);
+void ec_riders_add(struct ec_riders *rs, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding);
-void ec_riders_return(struct ec_links *l, const struct ec_riding *riding);
-void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8 *at,
+void ec_riders_return(struct ec_riders *rs, const struct ec_riding *riding);
+void ec_riders_take(struct ec_riders *rs, const struct ec_riding *riding, const u8 *at,
 		    const u8 *end);
 
 #endif

@@ -4,7 +4,7 @@
 #include <linux/jiffies.h>
 #include <linux/ktime.h>
 #include <linux/string.h>
-#include "links.h"
+#include "../link/links.h"
 #include "rider.h"
 
 #define SENDS	3	/* of the cycle; the first one without rider is no reason to give up */
@@ -13,22 +13,22 @@
 
 /**
  * ec_rider_register() - make a rider known to the links
- * @l: links, not in use yet
- * @r: zeroed structure; stays as long as @l
+ * @rs: riders of the master, not in use yet
+ * @r: zeroed structure; stays as long as @rs
  *
  * Context: Process.
  * Return: 0, or -ENOSPC.
  */
-int ec_rider_register(struct ec_links *l, struct ec_rider *r)
+int ec_rider_register(struct ec_riders *rs, struct ec_rider *r)
 {
 	unsigned int i;
 
 	for (i = 0; i < EC_RIDERS; i++) {
-		if (l->riders.rider[i])
+		if (rs->rider[i])
 			continue;
 		init_completion(&r->done);
 		r->number = i;
-		l->riders.rider[i] = r;
+		rs->rider[i] = r;
 		return 0;
 	}
 	return -ENOSPC;
@@ -39,34 +39,36 @@ static bool move(struct ec_rider *r, enum ec_rider_state from, enum ec_rider_sta
 	return atomic_cmpxchg(&r->state, from, to) == from;
 }
 
-static void queue(struct ec_links *l, struct ec_rider *r)
+static void queue(struct ec_riders *rs, struct ec_rider *r)
 {
 	atomic_set_release(&r->state, EC_RIDER_QUEUED);
 	/* the state before the bit: the cycle looks at the bit, then at the state */
 	smp_mb__before_atomic();
-	atomic_or(BIT(r->number), &l->riders.queued);
+	atomic_or(BIT(r->number), &rs->queued);
 }
 
 /* Has the time for a cycle passed, or can none come any more? */
-static bool is_over(struct ec_links *l, u64 until_ns)
+static bool is_over(struct ec_riders *rs, u64 until_ns)
 {
+	struct ec_links *l = rs->links;
+
 	return ktime_get_ns() > until_ns || !ec_access_is_cyclic(&l->access) ||
 	       !ec_links_is_up(l) || ec_access_timed_out(l);
 }
 
 /**
  * ec_rider_begin() - let the next frame of the cycle carry a rider
- * @l: links
+ * @rs: riders of the master
  * @r: rider with command, address, length and data
  *
  * ec_rider_end() must follow.
  *
  * Context: Process; the owner of @r.
  */
-void ec_rider_begin(struct ec_links *l, struct ec_rider *r)
+void ec_rider_begin(struct ec_riders *rs, struct ec_rider *r)
 {
 	reinit_completion(&r->done);
-	queue(l, r);
+	queue(rs, r);
 }
 
 /**
@@ -83,15 +85,15 @@ bool ec_rider_is_back(const struct ec_rider *r)
 
 /**
  * ec_rider_again() - let the next frame of the cycle carry it again
- * @l: links
+ * @rs: riders of the master
  * @r: rider that is back; its data are 0 again
  *
  * Context: Any; the owner of @r. RT-safe.
  */
-void ec_rider_again(struct ec_links *l, struct ec_rider *r)
+void ec_rider_again(struct ec_riders *rs, struct ec_rider *r)
 {
 	memset(r->data, 0, r->len);
-	queue(l, r);
+	queue(rs, r);
 }
 
 /**
@@ -126,31 +128,32 @@ int ec_rider_end(struct ec_rider *r)
 
 /**
  * ec_rider_exchange() - exchange a rider with a frame of the cycle
- * @l: links
+ * @rs: riders of the master
  * @r: rider with command, address, length and data
  *
  * Context: Process; the owner of @r. May sleep.
  * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
  * -ETIMEDOUT: its frame has not come back.
  */
-int ec_rider_exchange(struct ec_links *l, struct ec_rider *r)
+int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r)
 {
+	struct ec_links *l = rs->links;
 	u64 sends_ns = (SENDS * (u64)ec_access_interval_us(&l->access) + SLACK_US) * NSEC_PER_USEC;
 	u64 until = ktime_get_ns() + sends_ns;
 
 	if (!ec_access_is_cyclic(&l->access))
 		return -EAGAIN;
-	ec_rider_begin(l, r);
+	ec_rider_begin(rs, r);
 	/* the completion may be that of an earlier round */
 	for (;;) {
 		wait_for_completion_timeout(&r->done, usecs_to_jiffies(STEP_US));
 		if (atomic_read_acquire(&r->state) == EC_RIDER_BACK)
 			break;
-		if (!is_over(l, until))
+		if (!is_over(rs, until))
 			continue;
 		if (move(r, EC_RIDER_QUEUED, EC_RIDER_IDLE))
 			return -EAGAIN;
-		if (is_over(l, until + sends_ns + l->io_timeout_us * (u64)NSEC_PER_USEC) &&
+		if (is_over(rs, until + sends_ns + l->io_timeout_us * (u64)NSEC_PER_USEC) &&
 		    move(r, EC_RIDER_SENT, EC_RIDER_IDLE))
 			return -ETIMEDOUT;
 	}
@@ -167,7 +170,7 @@ static u32 more_ns(const struct ec_frame_buf *fb, size_t bytes)
 
 /**
  * ec_riders_add() - add the riders that wait to a frame of the cycle, as far as they fit
- * @l: links
+ * @rs: riders of the master
  * @fb: frame with the process data
  * @index: datagram index of the frame
  * @riding: result: which riders, and their round
@@ -176,21 +179,22 @@ static u32 more_ns(const struct ec_frame_buf *fb, size_t bytes)
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,
+void ec_riders_add(struct ec_riders *rs, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding)
 {
-	unsigned long left = atomic_read_acquire(&l->riders.queued);
+	struct ec_links *l = rs->links;
+	unsigned long left = atomic_read_acquire(&rs->queued);
 	u32 slack = ec_access_slack_ns(l);
 
 	riding->mask = 0;
-	riding->seq = l->riders.seq + 1;
+	riding->seq = rs->seq + 1;
 	for (; left && fb->count < l->max_datagrams; left &= left - 1) {
-		struct ec_rider *r = l->riders.rider[__ffs(left)];
+		struct ec_rider *r = rs->rider[__ffs(left)];
 		u32 ns;
 		u8 *p;
 
 		/* before the state: its owner may queue it again at any time */
-		atomic_andnot(BIT(r->number), &l->riders.queued);
+		atomic_andnot(BIT(r->number), &rs->queued);
 		/* see queue(): the bit before the state */
 		smp_mb__after_atomic();
 		if (!move(r, EC_RIDER_QUEUED, EC_RIDER_HELD))
@@ -198,14 +202,14 @@ void ec_riders_add(struct ec_links *l, struct ec_frame_buf *fb, u8 index,
 		ns = more_ns(fb, EC_DGRAM_OVERHEAD + r->len);
 		p = ns <= slack ? ec_frame_add(fb, r->cmd, index, r->adp, r->ado, r->len) : NULL;
 		if (!p) {
-			queue(l, r);
+			queue(rs, r);
 			continue;
 		}
 		memcpy(p, r->data, r->len);
 		slack -= ns;
 		r->seq = riding->seq;
 		riding->mask |= BIT(r->number);
-		l->riders.seq = riding->seq;
+		rs->seq = riding->seq;
 		atomic_set_release(&r->state, EC_RIDER_SENT);
 	}
 }
@@ -223,33 +227,33 @@ static bool hold(struct ec_rider *r, u32 seq)
 
 /**
  * ec_riders_return() - the frame was not sent: its riders wait for the next one
- * @l: links
+ * @rs: riders of the master
  * @riding: riders of the frame
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_riders_return(struct ec_links *l, const struct ec_riding *riding)
+void ec_riders_return(struct ec_riders *rs, const struct ec_riding *riding)
 {
 	unsigned long left = riding->mask;
 
 	for (; left; left &= left - 1) {
-		struct ec_rider *r = l->riders.rider[__ffs(left)];
+		struct ec_rider *r = rs->rider[__ffs(left)];
 
 		if (hold(r, riding->seq))
-			queue(l, r);
+			queue(rs, r);
 	}
 }
 
 /**
  * ec_riders_take() - take what the riders of a frame have brought back
- * @l: links
+ * @rs: riders of the master
  * @riding: riders of the frame
  * @at: datagram behind the process data
  * @end: end of the frame
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8 *at,
+void ec_riders_take(struct ec_riders *rs, const struct ec_riding *riding, const u8 *at,
 		    const u8 *end)
 {
 	/* the iterator only reads; it has no const form */
@@ -258,7 +262,7 @@ void ec_riders_take(struct ec_links *l, const struct ec_riding *riding, const u8
 	struct ec_dgram d;
 
 	for (; left && ec_frame_iter_next(&it, &d) == 1; left &= left - 1) {
-		struct ec_rider *r = l->riders.rider[__ffs(left)];
+		struct ec_rider *r = rs->rider[__ffs(left)];
 
 		/* in memory of the device it may have changed since it was compared */
 		if (d.len != r->len)

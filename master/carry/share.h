@@ -6,6 +6,7 @@
 #include <linux/atomic.h>
 #include <linux/types.h>
 
+struct ec_carry;
 struct ec_links;
 
 /** struct ec_share - acyclic frames since the last cyclic send; owned by the cycle owner */
@@ -16,6 +17,8 @@ struct ec_share {
 	u32 wire_ns;
 	/** @clock_credit: clock frames that may be sent, 1/1000 */
 	u32 clock_credit;
+	/** @was_urgent: the last one was urgent */
+	bool was_urgent;
 	/** @clock_last: the last one was a clock frame */
 	bool clock_last;
 	/** @late_per_s: cycles a second that acyclic frames may delay */
@@ -24,8 +27,6 @@ struct ec_share {
 	u64 late_next_ns;
 	/** @late_cycles: cycles they have delayed since activation */
 	u32 late_cycles;
-	/** @ref_minus_ktime: time of the reference clock less ktime, ns, or NULL; immutable */
-	const atomic64_t *ref_minus_ktime;
 };
 
 #define EC_SHARE_PER_MS		8	/* acyclic frames per millisecond of cycle */
@@ -52,8 +53,7 @@ static inline void ec_share_begin(struct ec_share *share, u32 interval_us)
 }
 
 u16 ec_share_clock_bytes(const struct ec_links *l);
-void ec_share_send_left(struct ec_links *l, u32 wire_ns);
-void ec_share_send_between(struct ec_links *l);
-void ec_share_stamp(const struct ec_links *l, u8 *frame, size_t len, u64 sent_ns);
+void ec_share_send_left(struct ec_carry *c, u32 wire_ns);
+void ec_share_send_between(struct ec_carry *c);
 
 #endif

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* An acyclic datagram with its result. */
+#ifndef EC_DG_H
+#define EC_DG_H
+
+#include <linux/string.h>
+#include <linux/types.h>
+#include "../base/limits.h"
+#include "../wire/frame.h"
+
+#define EC_DG_NO_COPY	0xffff	/* of @side_wkc: no copy came back on that link */
+
+/**
+ * struct ec_dg - one acyclic datagram
+ * @cmd: enum ec_cmd
+ * @repeat: may be sent again when its frame is lost (reads without side
+ *	effect, writes that may be executed twice)
+ * @adp: low half of the address
+ * @ado: high half of the address
+ * @len: data bytes
+ * @data: sent for writing commands, filled for reading ones
+ * @wkc: result: working counter, of all copies together
+ * @side_wkc: result: working counter of each link's copy, or %EC_DG_NO_COPY
+ * @back: result: @adp as it came back (position plus slaves passed)
+ * @irq: result: OR of the enabled events of the slaves passed
+ * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN (link is down), -ENODEV,
+ *	-EINTR (caller killed), -EBUSY (the device sends nothing), -EAGAIN (it does not fit
+ *	beside the cycle any more); -EINPROGRESS while there is none
+ * @sent_ns: result: when its frame left, as far as the master knows (ktime)
+ */
+struct ec_dg {
+	u8 cmd;
+	bool repeat;
+	u16 adp;
+	u16 ado;
+	u16 len;
+	void *data;
+	u16 wkc;
+	u16 side_wkc[EC_MAX_LINKS];
+	u16 back;
+	u16 irq;
+	int err;
+	u64 sent_ns;
+};
+
+#define EC_DG(c, a, o, l, d) \
+	((struct ec_dg){ .cmd = (c), .repeat = true, .adp = (a), .ado = (o), .len = (l), \
+			 .data = (d) })
+
+/* by station address; a write leaves its data as they are */
+#define EC_FPRD(a, o, l, d)	EC_DG(EC_CMD_FPRD, a, o, l, d)
+#define EC_FPWR(a, o, l, d)	EC_DG(EC_CMD_FPWR, a, o, l, (void *)(const void *)(d))
+
+/* The data of a datagram that is sent. */
+static inline void ec_dg_fill(const struct ec_dg *dg, u8 *p)
+{
+	if (ec_cmd_writes(dg->cmd) || dg->cmd == EC_CMD_NOP)
+		memcpy(p, dg->data, dg->len);
+	else
+		memset(p, 0, dg->len);
+}
+
+/* It is to be sent: no result yet. */
+static inline void ec_dg_begin(struct ec_dg *dg)
+{
+	unsigned int i;
+
+	dg->err = -EINPROGRESS;
+	dg->wkc = 0;
+	dg->irq = 0;
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		dg->side_wkc[i] = EC_DG_NO_COPY;
+}
+
+/* A copy that has returned. The data are those of the first one in which a slave took part. */
+static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 side)
+{
+	u16 wkc = ec_dgram_wkc(d);
+
+	if (dg->err || (wkc && !dg->wkc)) {
+		dg->back = d->adp;
+		if (ec_cmd_reads(d->cmd))
+			memcpy(dg->data, d->data, d->len);
+	}
+	dg->side_wkc[side] = wkc;
+	dg->wkc += wkc;
+	dg->irq |= d->irq;
+	dg->err = 0;
+}
+
+#endif

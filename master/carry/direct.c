@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What is sent with direct access: by who has a post, or by the thread. */
+#include <linux/ktime.h>
+#include "direct.h"
+#include "flight.h"
+
+#define FLIGHT_NS	(300 * NSEC_PER_USEC)	/* on the wire: later ones leave together */
+
+static bool next_class(struct ec_carry *c, enum ec_post_class *class)
+{
+	static const enum ec_post_class order[] = {
+		EC_POST_URGENT, EC_POST_NORMAL, EC_POST_CLOCK,
+	};
+	u64 now = ktime_get_ns();
+	unsigned long flags;
+	unsigned int i;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	for (i = 0; i < ARRAY_SIZE(order); i++)
+		if (ec_flight_first(c, order[i], now))
+			break;
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	if (i == ARRAY_SIZE(order))
+		return false;
+	*class = order[i];
+	return true;
+}
+
+/*
+ * Send what is ready, several datagrams in a frame. With @hold no more than keeps the wire busy,
+ * so that what becomes ready meanwhile shares frames. False: the device is full.
+ */
+static bool send_ready(struct ec_carry *c, bool hold)
+{
+	struct ec_links *l = c->links;
+	enum ec_post_class class;
+	int ret = 0;
+
+	lockdep_assert_held(&l->access.lock);
+	WRITE_ONCE(c->held, false);
+	rcu_read_lock();
+	while (ret != -EBUSY && next_class(c, &class)) {
+		const struct ec_flight_room room = {
+			.len = EC_FRAME_HDR + EC_FRAME_BODY_MAX,
+			.dgrams = class == EC_POST_CLOCK ? 0 : l->max_datagrams,
+		};
+
+		if (!ec_carry_has_place(c, class) || (hold && ec_links_acyclic_ns(l) >= FLIGHT_NS)) {
+			WRITE_ONCE(c->held, true);
+			break;
+		}
+		ret = ec_flight_send(c, class, &room, ktime_get_ns());
+	}
+	ec_links_flush(l);
+	rcu_read_unlock();
+	return ret != -EBUSY;
+}
+
+static bool push(struct ec_carry *c, bool hold)
+{
+	struct ec_links *l = c->links;
+	bool ok = true;
+
+	rt_mutex_lock(&l->access.lock);
+	if (READ_ONCE(l->access.mode) == EC_ACCESS_DIRECT)
+		ok = send_ready(c, hold);
+	else if (c->ops && c->ops->queued)
+		c->ops->queued(c);
+	rt_mutex_unlock(&l->access.lock);
+	return ok;
+}
+
+/**
+ * ec_direct_push() - send what is ready; with cyclic access the cycle owner gets to know of it
+ * @c: posts of the master
+ *
+ * Context: Process. May sleep on the access lock, whose owner inherits the caller's priority.
+ */
+void ec_direct_push(struct ec_carry *c)
+{
+	/* no driver reports room in its ring: the thread tries for all */
+	if (!push(c, false))
+		ec_carry_kick(c);
+}
+
+/**
+ * ec_direct_push_on() - the same for what no caller sends
+ * @c: posts of the master
+ *
+ * Context: The thread of the posts.
+ * Return: false: the device is full.
+ */
+bool ec_direct_push_on(struct ec_carry *c)
+{
+	return push(c, true);
+}

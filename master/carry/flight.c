@@ -1,0 +1,318 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Posts of several callers leave as one frame where they fit: what a cyclic send may carry is
+ * limited by frames, and most posts are a single short datagram. The frame has one slot; a post
+ * knows where its datagrams are in it, so one that is cancelled leaves the others as they are.
+ */
+#include <linux/bitops.h>
+#include <linux/ktime.h>
+#include "../base/once64.h"
+#include "../wire/regs.h"
+#include "flight.h"
+#include "post_int.h"
+
+/**
+ * ec_flight_first() - the post of a class that is to leave next
+ * @c: posts of the master
+ * @class: enum ec_post_class
+ * @now_ns: time (ktime); posts that are not due are left out
+ *
+ * Context: Any, with the lock of the posts held. RT-safe.
+ * Return: the post, or NULL.
+ */
+struct ec_post *ec_flight_first(const struct ec_carry *c, enum ec_post_class class, u64 now_ns)
+{
+	struct ec_post *post;
+
+	lockdep_assert_held(&c->lock);
+	list_for_each_entry(post, &c->ready[class], list)
+		if (post->due_ns <= now_ns)
+			return post;
+	return NULL;
+}
+
+/*
+ * May it share the frame? One that a slave never forwards must not take others with it twice,
+ * so what is repeated leaves alone.
+ */
+static bool shares(const struct ec_post *first, const struct ec_post *post, unsigned int n,
+		   unsigned int len, unsigned int dgrams, const struct ec_flight_room *room)
+{
+	return n < EC_POSTS_MAX && !first->tries && !post->tries && post->sides == first->sides &&
+	       dgrams + post->dgrams <= room->dgrams && len + post->len <= room->len;
+}
+
+/* Take posts that leave together to the frame of a slot; their order stays. */
+static struct ec_post *gather(struct ec_carry *c, enum ec_post_class class, struct ec_slot *slot,
+			      const struct ec_flight_room *room, u64 now)
+{
+	struct ec_post *first = ec_flight_first(c, class, now), *post = first, *next;
+	unsigned int len = EC_FRAME_HDR, dgrams = 0, n = 0;
+	struct ec_flight *f = &c->flight[slot->index];
+
+	lockdep_assert_held(&c->lock);
+	f->built = false;
+	f->class = class;
+	if (!first)
+		return NULL;
+	list_for_each_entry_safe_from(post, next, &c->ready[class], list) {
+		if (post->due_ns > now)
+			continue;
+		if (n && !shares(first, post, n, len, dgrams, room))
+			break;
+		list_move_tail(&post->list, &f->posts);
+		post->state = EC_POST_FLYING;
+		post->slot = slot->index;
+		post->at = len;
+		len += post->len;
+		dgrams += post->dgrams;
+		n++;
+	}
+	WRITE_ONCE(c->n_ready, c->n_ready - n);
+	return first;
+}
+
+/* Write the frame. Its posts stay: they cannot be cancelled meanwhile. */
+static void build(struct ec_flight *f, struct ec_slot *slot, u8 *frame)
+{
+	struct ec_frame_buf fb;
+	struct ec_post *post;
+	unsigned int i;
+
+	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	list_for_each_entry(post, &f->posts, list) {
+		for (i = 0; i < post->n; i++) {
+			const struct ec_dg *dg = &post->dg[i];
+			u8 *p;
+
+			if (dg->err != -EINPROGRESS)
+				continue;
+			p = ec_frame_add(&fb, dg->cmd, slot->index, dg->adp, dg->ado, dg->len);
+			if (WARN_ON_ONCE(!p))
+				break;
+			ec_dg_fill(dg, p);
+		}
+	}
+	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
+	f->wire_ns = ec_frame_wire_ns(slot->eth_len);
+}
+
+/*
+ * The time of the reference clock into a frame that sets clocks. If that clock does not reply, the
+ * others take the time that was sent with a drift compensation datagram: one that has waited would
+ * slow them down.
+ */
+static void stamp(const struct ec_carry *c, u8 *frame, size_t len, u64 sent_ns)
+{
+	struct ec_frame_iter it;
+	struct ec_dgram d;
+	u8 time[8];
+
+	if (!c->ref_minus_ktime || ec_frame_iter_init(&it, frame, len))
+		return;
+	put_unaligned_le64(atomic64_read(c->ref_minus_ktime) + sent_ns, time);
+	while (ec_frame_iter_next(&it, &d) == 1)
+		if (d.cmd == EC_CMD_FRMW && d.ado == EC_REG_DC_SYSTIME && d.len <= sizeof(time))
+			memcpy(d.data, time, d.len);
+}
+
+/* Before it leaves, see ecdev_awaits(). */
+static void take_off(struct ec_carry *c, struct ec_flight *f, struct ec_slot *slot, u8 sides)
+{
+	struct ec_links *l = c->links;
+	unsigned long left, flags;
+
+	f->sides = sides;
+	f->overdue = 0;
+	f->polls = READ_ONCE(l->access.polls);
+	for (left = sides; left; left &= left - 1) {
+		atomic_inc(&l->link[__ffs(left)].acyclic);
+		atomic_add(f->wire_ns, &l->link[__ffs(left)].acyclic_ns);
+	}
+	raw_spin_lock_irqsave(&c->lock, flags);
+	__set_bit(slot->index, c->flying);
+	WRITE_ONCE(c->n_flying, c->n_flying + 1);
+	f->built = true;
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+}
+
+static void take_down(struct ec_carry *c, const struct ec_slot *slot)
+{
+	const struct ec_flight *f = &c->flight[slot->index];
+	unsigned long left;
+
+	lockdep_assert_held(&c->lock);
+	__clear_bit(slot->index, c->flying);
+	WRITE_ONCE(c->n_flying, c->n_flying - 1);
+	for (left = f->sides; left; left &= left - 1) {
+		struct ec_link *link = &c->links->link[__ffs(left)];
+
+		atomic_sub(f->wire_ns, &link->acyclic_ns);
+		atomic_dec(&link->acyclic);
+	}
+}
+
+/**
+ * ec_flight_end() - a frame is in the air no more
+ * @c: posts of the master
+ * @slot: its slot, not SENT any more
+ * @posts: result: its posts that were not cancelled; their end is to be told
+ *
+ * Context: Any, with the lock of the posts held. RT-safe.
+ */
+void ec_flight_end(struct ec_carry *c, const struct ec_slot *slot, struct list_head *posts)
+{
+	struct ec_flight *f = &c->flight[slot->index];
+	struct ec_post *post;
+
+	lockdep_assert_held(&c->lock);
+	take_down(c, slot);
+	list_splice_init(&f->posts, posts);
+	list_for_each_entry(post, posts, list) {
+		post->state = EC_POST_IDLE;
+		post->running = true;
+	}
+}
+
+/* The device had no room: its posts are the first ones again. */
+static void put_back(struct ec_carry *c, struct ec_slot *slot)
+{
+	struct ec_flight *f = &c->flight[slot->index];
+	struct ec_post *post, *next;
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	take_down(c, slot);
+	list_for_each_entry_safe_reverse(post, next, &f->posts, list) {
+		post->state = EC_POST_READY;
+		list_move(&post->list, &c->ready[f->class]);
+		WRITE_ONCE(c->n_ready, c->n_ready + 1);
+	}
+	if (!c->full_ns)
+		c->full_ns = ktime_get_ns();
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	ec_slot_put(slot);
+}
+
+/* The device does not send it at all. */
+static void refused(struct ec_carry *c, struct ec_slot *slot, int err)
+{
+	unsigned long flags;
+	LIST_HEAD(posts);
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	ec_flight_end(c, slot, &posts);
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	ec_slot_put(slot);
+	ec_post_lost(c, &posts, err);
+}
+
+/**
+ * ec_flight_send() - send the next post of a class, and with it what else fits
+ * @c: posts of the master; ec_links_flush() must follow
+ * @class: enum ec_post_class
+ * @room: what the frame may hold beside its first post
+ * @sent_ns: when it leaves (ktime)
+ *
+ * Context: The owner of the links, in an RCU read section. RT-safe.
+ * Return: wire time of the frame, ns; 0: there is none; -EBUSY: no slot, or the device is full;
+ * or as ec_links_send(): then its posts have ended.
+ */
+int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
+		   const struct ec_flight_room *room, u64 sent_ns)
+{
+	struct ec_links *l = c->links;
+	u64 now = ktime_get_ns();
+	struct ec_slot *slot = ec_slot_get(&l->slots, class == EC_POST_URGENT, now);
+	struct ec_flight *f;
+	struct ec_post *first;
+	unsigned long flags;
+	u32 wire_ns;
+	u8 sides = 0, *frame;
+	int ret;
+
+	if (!slot)
+		return -EBUSY;
+	f = &c->flight[slot->index];
+	raw_spin_lock_irqsave(&c->lock, flags);
+	first = gather(c, class, slot, room, now);
+	if (first)
+		sides = first->sides;
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	if (!first) {
+		ec_slot_put(slot);
+		return 0;
+	}
+	frame = ec_links_tx_get(l, sides) ?: slot->frame;
+	build(f, slot, frame);
+	if (class == EC_POST_CLOCK)
+		stamp(c, frame + EC_ETH_HDR, slot->eth_len - EC_ETH_HDR, sent_ns);
+	/* after it has left it may be back, and in use by another, at any time */
+	wire_ns = f->wire_ns;
+	slot->done = ec_flight_landed;
+	slot->user = c;
+	take_off(c, f, slot, sides);
+	ret = ec_links_transmit(l, slot, frame, sides, sent_ns);
+	if (ret == -EBUSY) {
+		put_back(c, slot);
+		return ret;
+	}
+	WRITE_ONCE(c->full_ns, 0);
+	if (ret)
+		refused(c, slot, ret);
+	return ret ?: wire_ns;
+}
+
+/* What a post has brought back, on each link. */
+static void take_results(const struct ec_slot *slot, struct ec_post *post)
+{
+	struct ec_frame_iter it[EC_MAX_LINKS];
+	struct ec_dgram d;
+	unsigned long left;
+	unsigned int i;
+
+	for (left = slot->back; left; left &= left - 1) {
+		u8 *copy = slot->copy[__ffs(left)];
+
+		it[__ffs(left)] = (struct ec_frame_iter){
+			.p = copy + post->at, .end = copy + slot->eth_len - EC_ETH_HDR,
+			.more = true,
+		};
+	}
+	for (i = 0; i < post->n; i++) {
+		if (post->dg[i].err != -EINPROGRESS)
+			continue;
+		for (left = slot->back; left; left &= left - 1)
+			/* checked against what was sent when it was matched */
+			if (ec_frame_iter_next(&it[__ffs(left)], &d) == 1)
+				ec_dg_take(&post->dg[i], &d, __ffs(left));
+		post->dg[i].sent_ns = slot->sent_ns;
+		if (post->dg[i].err)
+			post->dg[i].err = -EIO;
+	}
+}
+
+/**
+ * ec_flight_landed() - a frame is back: its posts get their results
+ * @slot: in state DONE, free afterwards
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_flight_landed(struct ec_slot *slot)
+{
+	struct ec_carry *c = slot->user;
+	struct ec_post *post;
+	unsigned long flags;
+	LIST_HEAD(posts);
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	ec_flight_end(c, slot, &posts);
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	list_for_each_entry(post, &posts, list)
+		take_results(slot, post);
+	ec_slot_put(slot);
+	/* the thread sends what found no place */
+	if (READ_ONCE(c->held))
+		ec_carry_kick(c);
+	ec_post_finish(c, &posts);
+}

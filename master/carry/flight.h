@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Posts in one frame: what leaves together, what has come back, what is lost. */
+#ifndef EC_FLIGHT_H
+#define EC_FLIGHT_H
+
+#include "carry.h"
+
+/**
+ * struct ec_flight_room - what a frame may hold beside its first post
+ * @len: bytes behind the EtherType
+ * @dgrams: datagrams, 0: the first post leaves alone
+ */
+struct ec_flight_room {
+	unsigned int len;
+	unsigned int dgrams;
+};
+
+struct ec_post *ec_flight_first(const struct ec_carry *c, enum ec_post_class class, u64 now_ns);
+int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
+		   const struct ec_flight_room *room, u64 sent_ns);
+void ec_flight_end(struct ec_carry *c, const struct ec_slot *slot, struct list_head *posts);
+void ec_flight_landed(struct ec_slot *slot);
+
+#endif

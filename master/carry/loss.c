@@ -1,0 +1,385 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Loss has no event, so a thread looks for it: frames that are overdue, links that are down, posts
+ * that cannot leave. It also sends with direct access what no caller sends. While nothing is on
+ * its way it sleeps without a timer.
+ */
+#include <linux/bitmap.h>
+#include <linux/delay.h>
+#include <linux/kthread.h>
+#include <linux/ktime.h>
+#include <linux/module.h>
+#include <linux/sched.h>
+#include "../base/once64.h"
+#include "../wire/compat.h"
+#include "direct.h"
+#include "flight.h"
+#include "loss.h"
+#include "post_int.h"
+
+#define LOOK_NS		NSEC_PER_MSEC	/* between looks while a caller has waited for long */
+#define REST_NS		(20 * NSEC_PER_MSEC)	/* and otherwise, at most */
+#define RETRY_NS	(100 * NSEC_PER_USEC)	/* until there may be room in the transmit ring */
+#define SLEEP_MIN_NS	(10 * NSEC_PER_USEC)
+#define SLOWEST		4	/* a device that sends at 25 Mbit/s instead of 100 */
+#define STUCK_CYCLES	100	/* a frame that has not left by then is too long for the cycle */
+#define STUCK_NS	(50 * NSEC_PER_MSEC)	/* or by then */
+#define FULL_NS		NSEC_PER_SEC	/* a device that sends nothing for so long hangs */
+#define WAIT_NS		(30 * (u64)NSEC_PER_SEC)	/* many hundred callers may be at work */
+
+static bool fifo = true;
+module_param_named(fifo_posts, fifo, bool, 0444);
+MODULE_PARM_DESC(fifo_posts, "The thread that looks for lost acyclic frames has SCHED_FIFO 1 (Y)");
+
+/**
+ * ec_loss_watch() - a caller has waited for a millisecond: the thread looks each millisecond
+ * @c: posts of the master
+ *
+ * Context: Process.
+ */
+void ec_loss_watch(struct ec_carry *c)
+{
+	if (READ_ONCE(c->watched))
+		return;
+	WRITE_ONCE(c->watched, true);
+	ec_carry_kick(c);
+}
+
+/* frames on their way -------------------------------------------------------*/
+
+/* What the links are at this look. */
+struct look {
+	u64 now;
+	u8 up;		/* mask */
+	u8 there;	/* with a device */
+};
+
+static void look_at_links(struct ec_links *l, struct look *k)
+{
+	unsigned int i;
+
+	k->now = ktime_get_ns();
+	k->up = 0;
+	k->there = 0;
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (READ_ONCE(l->link[i].dev))
+			k->there |= BIT(i);
+		if (ec_link_is_up(&l->link[i]))
+			k->up |= BIT(i);
+	}
+}
+
+static int link_error(const struct look *k, u8 sides)
+{
+	return sides & k->up ? 0 : sides & k->there ? -ENETDOWN : -ENODEV;
+}
+
+static u64 limit_ns(const struct ec_links *l)
+{
+	u64 ns = l->io_timeout_us * (u64)NSEC_PER_USEC;
+
+	if (ec_access_is_cyclic(&l->access))
+		return ns;
+	/* half of it is for the frame, the rest for what is on its way before it */
+	return max(ns, ns / 2 + SLOWEST * (u64)ec_links_acyclic_ns(l));
+}
+
+/*
+ * Why a frame will not come back; 0: it may. It has been overdue at two looks then, with a poll
+ * between them: the machine may have stood still.
+ */
+static int outcome(struct ec_carry *c, unsigned int i, const struct look *k)
+{
+	struct ec_links *l = c->links;
+	struct ec_flight *f = &c->flight[i];
+	u32 polls = READ_ONCE(l->access.polls);
+	int err = link_error(k, f->sides);
+
+	lockdep_assert_held(&c->lock);
+	if (err)
+		return err;
+	if ((s64)(k->now - ec_read64(&l->slots.slot[i].sent_ns)) <= (s64)limit_ns(l))
+		return 0;
+	if (ec_access_is_cyclic(&l->access) && polls == f->polls)
+		return 0;
+	f->polls = polls;
+	c->overdue = true;
+	return f->overdue++ ? -ETIMEDOUT : 0;
+}
+
+static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look *k)
+{
+	struct ec_slot *slot = &c->links->slots.slot[i];
+	bool settled = false, lost = false;
+	unsigned long flags;
+	LIST_HEAD(posts);
+	int err = 0;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	if (test_bit(i, c->flying) && atomic_read(&slot->state) == EC_SLOT_SENT)
+		err = outcome(c, i, k);
+	if (err) {
+		/* the copy of one link is a reply */
+		settled = ec_slot_settle(slot);
+		lost = !settled && ec_slot_cancel(slot, k->now);
+	}
+	if (lost)
+		ec_flight_end(c, slot, &posts);
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	if (settled)
+		ec_flight_landed(slot);
+	if (!lost)
+		return;
+	ec_links_count(c->links, c->flight[i].sides, lost);
+	ec_post_lost(c, &posts, err);
+}
+
+/* posts that have not left --------------------------------------------------*/
+
+/* Does the first post still fit beside the cycle? Not if it has waited for that so long. */
+static bool is_stuck(const struct ec_carry *c, const struct look *k)
+{
+	u64 limit = ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC * STUCK_CYCLES;
+	u32 late_per_s = READ_ONCE(c->share.late_per_s);	/* a takeover may change it */
+
+	lockdep_assert_held(&c->lock);
+	if (!c->stuck_ns || !ec_access_is_cyclic(&c->links->access))
+		return false;
+	limit = max(limit, (u64)STUCK_NS);
+	if (late_per_s)
+		limit += 2 * NSEC_PER_SEC / late_per_s;
+	return (s64)(k->now - c->stuck_ns) > (s64)limit;
+}
+
+/* Why a post will not leave; 0: it may. */
+static int refusal(struct ec_carry *c, const struct ec_post *post, const struct look *k)
+{
+	u64 since = max(post->since_ns, post->due_ns);
+	int err = link_error(k, post->sides);
+
+	lockdep_assert_held(&c->lock);
+	if (err)
+		return err;
+	if (post->due_ns > k->now)
+		return 0;
+	if (c->full_ns && (s64)(k->now - c->full_ns) > (s64)FULL_NS) {
+		ec_links_count(c->links, post->sides, tx_errors);
+		return -EBUSY;
+	}
+	return (s64)(k->now - since) > (s64)WAIT_NS ? -EBUSY : 0;
+}
+
+static void look_at_ready(struct ec_carry *c, const struct look *k)
+{
+	struct ec_post *post, *next;
+	unsigned long flags;
+	unsigned int class;
+	LIST_HEAD(posts);
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	for (class = 0; class < EC_POST_CLASSES; class++) {
+		bool stuck = class == c->stuck_class && is_stuck(c, k);
+
+		list_for_each_entry_safe(post, next, &c->ready[class], list) {
+			int err = refusal(c, post, k);
+
+			if (!err && stuck && post->due_ns <= k->now) {
+				err = -EAGAIN;
+				stuck = false;
+				c->stuck_ns = 0;
+			}
+			if (err)
+				ec_post_refuse(c, post, err, &posts);
+		}
+	}
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	ec_post_finish(c, &posts);
+}
+
+/* thread --------------------------------------------------------------------*/
+
+static void look_at_all(struct ec_carry *c)
+{
+	struct ec_links *l = c->links;
+	DECLARE_BITMAP(flying, EC_SLOTS);
+	unsigned long flags;
+	unsigned int i;
+	struct look k;
+
+	/* have they arrived unnoticed? Some devices know only by a look that their link is down */
+	if (c->overdue) {
+		for (i = 0; i < EC_MAX_LINKS; i++)
+			ec_link_look(&l->link[i]);
+		ec_access_poll(l);
+	}
+	/* the monitor may be one of those who wait */
+	if (ec_access_is_cyclic(&l->access) && ec_access_timed_out(l))
+		ec_access_timeout(l);
+	look_at_links(l, &k);
+	raw_spin_lock_irqsave(&c->lock, flags);
+	bitmap_copy(flying, c->flying, EC_SLOTS);
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	c->overdue = false;
+	for_each_set_bit(i, flying, EC_SLOTS)
+		look_at_frame(c, i, &k);
+	look_at_ready(c, &k);
+	if (!atomic_read(&c->waiting))
+		WRITE_ONCE(c->watched, false);
+}
+
+/* Until when a post that is ready need not be sent by the thread. */
+static u64 until_due(struct ec_carry *c, u64 now)
+{
+	struct ec_post *post;
+	unsigned int class;
+	u64 until = U64_MAX;
+
+	lockdep_assert_held(&c->lock);
+	if (ec_access_is_cyclic(&c->links->access))
+		return until;
+	for (class = 0; class < EC_POST_CLASSES; class++)
+		list_for_each_entry(post, &c->ready[class], list)
+			until = min(until, post->due_ns > now ? post->due_ns : now + RETRY_NS);
+	return until;
+}
+
+/* Until when nothing has to be done: ktime; U64_MAX: until it is kicked. */
+static u64 idle_until(struct ec_carry *c, u64 looked)
+{
+	struct ec_links *l = c->links;
+	u64 until = U64_MAX, limit = limit_ns(l), now = ktime_get_ns();
+	unsigned long flags;
+	unsigned int i;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	if (ec_carry_is_busy(c))
+		until = now + REST_NS;
+	for_each_set_bit(i, c->flying, EC_SLOTS)
+		until = min(until, ec_read64(&l->slots.slot[i].sent_ns) + limit + 1);
+	if (READ_ONCE(c->watched))
+		until = now;
+	until = max(until, looked + LOOK_NS);
+	/* what has no place is sent when a frame has landed */
+	if (!READ_ONCE(c->held))
+		until = min(until, until_due(c, now));
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	return until;
+}
+
+/* Runs where the thread does not: with a loop of a higher priority on its CPU, say. */
+static enum hrtimer_restart starved(struct hrtimer *t)
+{
+	struct ec_carry *c = container_of(t, struct ec_carry, starved);
+	struct task_struct *thread = READ_ONCE(c->thread);
+
+	if (thread)
+		ec_log_event(c->links->base, EC_LOG_ANY, 0, KERN_WARNING,
+			     "thread %s has not run for a second: a thread of higher priority keeps CPU %u; lost frames are not found meanwhile\n",
+			     thread->comm, task_cpu(thread));
+	return HRTIMER_NORESTART;
+}
+
+static void sleep_until(struct ec_carry *c, u64 until)
+{
+	u64 now = ktime_get_ns(), at = max(until, now + SLEEP_MIN_NS);
+	ktime_t limit = ns_to_ktime(at);
+
+	set_current_state(TASK_IDLE);
+	if (!kthread_should_stop() && !READ_ONCE(c->kicked)) {
+		if (until == U64_MAX) {
+			schedule();
+		} else {
+			ec_carry_expect(c, at - now);
+			schedule_hrtimeout(&limit, HRTIMER_MODE_ABS);
+		}
+		hrtimer_try_to_cancel(&c->starved);
+	}
+	__set_current_state(TASK_RUNNING);
+}
+
+/* Nothing to do for as long as it rests between looks: until it is kicked. */
+static void rest(struct ec_carry *c, u64 until)
+{
+	WRITE_ONCE(c->rests, until == U64_MAX);
+	smp_mb();	/* before who makes a post ready looks at it */
+	if (until != U64_MAX || !ec_carry_is_busy(c))
+		sleep_until(c, until);
+	WRITE_ONCE(c->rests, false);
+}
+
+static int run(void *data)
+{
+	struct ec_carry *c = data;
+	u64 looked = 0;
+
+	if (fifo)
+		sched_set_fifo_low(current);
+	while (!kthread_should_stop()) {
+		WRITE_ONCE(c->kicked, false);
+		smp_mb();	/* before what it stands for is read */
+		if (ec_carry_has_left(c) && !ec_direct_push_on(c))
+			usleep_range(RETRY_NS / 1000, RETRY_NS / 500);
+		if (ktime_get_ns() - looked >= LOOK_NS) {
+			looked = ktime_get_ns();
+			if (ec_carry_is_busy(c))
+				look_at_all(c);
+			else
+				WRITE_ONCE(c->watched, false);
+		}
+		rest(c, idle_until(c, looked));
+	}
+	return 0;
+}
+
+/**
+ * ec_loss_start() - start the thread of the posts
+ * @c: posts of a master
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -errno.
+ */
+int ec_loss_start(struct ec_carry *c)
+{
+	struct task_struct *t;
+
+	hrtimer_setup(&c->starved, starved, CLOCK_MONOTONIC, HRTIMER_MODE_REL_HARD);
+	t = kthread_run(run, c, "EtherCAT%u-post", c->links->base->index);
+	if (IS_ERR(t))
+		return PTR_ERR(t);
+	WRITE_ONCE(c->thread, t);
+	ec_carry_kick(c);
+	return 0;
+}
+
+/**
+ * ec_loss_stop() - end the thread
+ * @c: posts of a master
+ *
+ * Context: Process. May sleep.
+ */
+void ec_loss_stop(struct ec_carry *c)
+{
+	struct task_struct *t = c->thread;
+
+	WRITE_ONCE(c->thread, NULL);
+	if (!t)
+		return;
+	kthread_stop(t);
+	hrtimer_cancel(&c->starved);
+}
+
+/**
+ * ec_loss_end_all() - all posts end with -ENODEV
+ * @c: posts of a master, closed, without thread
+ *
+ * Context: Process. May sleep.
+ */
+void ec_loss_end_all(struct ec_carry *c)
+{
+	const struct look none = { .now = ktime_get_ns() };
+	unsigned int i;
+
+	for (i = 0; i < EC_SLOTS; i++)
+		look_at_frame(c, i, &none);
+	look_at_ready(c, &none);
+}

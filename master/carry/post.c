@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include "post_int.h"
+
+/**
+ * ec_post_init() - prepare a post
+ * @post: zeroed structure
+ * @l: links
+ * @done: as described in post.h, NULL: @post->wait is completed instead
+ *
+ * Context: Any.
+ */
+void ec_post_init(struct ec_post *post, struct ec_links *l, void (*done)(struct ec_post *post))
+{
+	post->links = l;
+	post->done = done;
+	INIT_LIST_HEAD(&post->list);
+}
+
+static void measure(struct ec_post *post)
+{
+	unsigned int i;
+
+	post->len = 0;
+	post->dgrams = 0;
+	for (i = 0; i < post->n; i++) {
+		if (post->dg[i].err != -EINPROGRESS)
+			continue;
+		post->len += EC_DGRAM_OVERHEAD + post->dg[i].len;
+		post->dgrams++;
+	}
+}
+
+static void make_ready(struct ec_carry *c, struct ec_post *post)
+{
+	lockdep_assert_held(&c->lock);
+	measure(post);
+	if (!c->n_ready) {
+		c->full_ns = 0;
+		c->stuck_ns = 0;
+	}
+	post->state = EC_POST_READY;
+	list_add_tail(&post->list, &c->ready[post->class]);
+	WRITE_ONCE(c->n_ready, c->n_ready + 1);
+}
+
+/**
+ * ec_post_send() - send a post
+ * @post: IDLE; its datagrams fit into one frame, and stay as they are until it has ended
+ * @due_ns: not before that time (ktime); 0: as soon as possible
+ *
+ * With direct access the thread of the posts sends it, unless the caller uses ec_direct_push().
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_post_send(struct ec_post *post, u64 due_ns)
+{
+	struct ec_carry *c = post->links->carry;
+	unsigned long flags;
+	unsigned int i;
+
+	for (i = 0; i < post->n; i++)
+		ec_dg_begin(&post->dg[i]);
+	post->due_ns = due_ns;
+	post->since_ns = ktime_get_ns();
+	post->tries = 0;
+	post->sides = post->sides ?: post->links->sides;
+	raw_spin_lock_irqsave(&c->lock, flags);
+	if (!c->closed)
+		make_ready(c, post);
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	if (post->done && (!ec_access_is_cyclic(&post->links->access) || READ_ONCE(c->rests)))
+		ec_carry_kick(c);
+}
+
+/* READY no more. */
+static void take_ready(struct ec_carry *c, struct ec_post *post)
+{
+	lockdep_assert_held(&c->lock);
+	list_del_init(&post->list);
+	WRITE_ONCE(c->n_ready, c->n_ready - 1);
+	post->state = EC_POST_IDLE;
+}
+
+/**
+ * ec_post_recall() - take a post back that was not sent so far
+ * @post: post in any state
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: it is IDLE, and @done is not called.
+ */
+bool ec_post_recall(struct ec_post *post)
+{
+	struct ec_carry *c = post->links->carry;
+	unsigned long flags;
+	bool ready;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	ready = post->state == EC_POST_READY;
+	if (ready)
+		take_ready(c, post);
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	return ready;
+}
+
+/* Leave its frame, if that has been built; the frame goes on. */
+static void leave(struct ec_carry *c, struct ec_post *post)
+{
+	lockdep_assert_held(&c->lock);
+	if (!c->flight[post->slot].built)
+		return;
+	list_del_init(&post->list);
+	post->state = EC_POST_IDLE;
+}
+
+/**
+ * ec_post_cancel() - wait until a post is IDLE and its end is not being told
+ * @post: post whose user sends it no more; not from its own @done
+ *
+ * Context: Process. May sleep, as long as @done takes.
+ */
+void ec_post_cancel(struct ec_post *post)
+{
+	struct ec_carry *c = post->links->carry;
+	unsigned long flags;
+	bool over;
+
+	for (;;) {
+		raw_spin_lock_irqsave(&c->lock, flags);
+		if (post->state == EC_POST_READY)
+			take_ready(c, post);
+		else if (post->state == EC_POST_FLYING)
+			leave(c, post);
+		over = post->state == EC_POST_IDLE && !post->running;
+		raw_spin_unlock_irqrestore(&c->lock, flags);
+		if (over)
+			return;
+		usleep_range(200, 500);
+	}
+}
+
+static void fail(struct ec_post *post, int err)
+{
+	unsigned int i;
+
+	for (i = 0; i < post->n; i++)
+		if (post->dg[i].err == -EINPROGRESS)
+			post->dg[i].err = err;
+}
+
+/**
+ * ec_post_give_up() - a caller that sleeps wants to wait no longer
+ * @post: its posts, with the same @wait
+ * @n: how many
+ * @err: result of the datagrams of those that were not sent
+ *
+ * What is on its way is awaited, but not repeated.
+ *
+ * Context: Process.
+ * Return: whether all have ended.
+ */
+bool ec_post_give_up(struct ec_post *post, unsigned int n, int err)
+{
+	struct ec_carry *c = post->links->carry;
+	struct ec_post_wait *wait = post->wait;
+	unsigned long flags;
+	bool over;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	for (; n; n--, post++) {
+		post->tries = EC_POST_TRIES;
+		if (post->state != EC_POST_READY)
+			continue;
+		take_ready(c, post);
+		fail(post, err);
+		wait->pending--;
+	}
+	over = !wait->pending;
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	return over;
+}
+
+/**
+ * ec_post_refuse() - a post that was not sent ends
+ * @c: posts of the master
+ * @post: READY
+ * @err: result of its datagrams
+ * @posts: list for ec_post_finish(), gets it
+ *
+ * Context: Any, with the lock of the posts held. RT-safe.
+ */
+void ec_post_refuse(struct ec_carry *c, struct ec_post *post, int err, struct list_head *posts)
+{
+	lockdep_assert_held(&c->lock);
+	take_ready(c, post);
+	fail(post, err);
+	post->running = true;
+	list_add_tail(&post->list, posts);
+}
+
+/* The last access to a post of a caller that sleeps: it may be gone then. */
+static void wake_caller(struct ec_post *post)
+{
+	struct ec_post_wait *wait = post->wait;
+
+	if (!post->done && !--wait->pending)
+		complete(&wait->done);
+}
+
+/**
+ * ec_post_finish() - tell the end of posts
+ * @c: posts of the master
+ * @posts: IDLE and @running, with all results; an empty list afterwards
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_post_finish(struct ec_carry *c, struct list_head *posts)
+{
+	struct ec_post *post, *next;
+	unsigned long flags;
+
+	list_for_each_entry_safe(post, next, posts, list) {
+		list_del_init(&post->list);
+		if (post->done)
+			post->done(post);
+		raw_spin_lock_irqsave(&c->lock, flags);
+		post->running = false;
+		wake_caller(post);
+		raw_spin_unlock_irqrestore(&c->lock, flags);
+	}
+}
+
+static bool may_repeat(struct ec_post *post, int err)
+{
+	bool again = false;
+	unsigned int i;
+
+	for (i = 0; i < post->n; i++) {
+		struct ec_dg *dg = &post->dg[i];
+
+		if (dg->err != -EINPROGRESS)
+			continue;
+		if (err == -ETIMEDOUT && dg->repeat && post->tries < EC_POST_TRIES - 1)
+			again = true;
+		else
+			dg->err = err;
+	}
+	return again;
+}
+
+/**
+ * ec_post_lost() - the frame of posts will not come back: they go again, or get an error
+ * @c: posts of the master
+ * @posts: IDLE and @running; an empty list afterwards
+ * @err: -ETIMEDOUT: datagrams that may be repeated are, see struct ec_dg; or another -errno
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_post_lost(struct ec_carry *c, struct list_head *posts, int err)
+{
+	struct ec_post *post, *next;
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&c->lock, flags);
+	list_for_each_entry_safe(post, next, posts, list) {
+		if (c->closed || !may_repeat(post, err))
+			continue;
+		list_del(&post->list);
+		post->running = false;
+		post->tries++;
+		make_ready(c, post);
+	}
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	list_for_each_entry(post, posts, list)
+		fail(post, err);
+	ec_post_finish(c, posts);
+}

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Callers that sleep until their datagrams are back: a window of posts, and a completion. */
+#include <linux/hrtimer.h>
+#include <linux/ktime.h>
+#include <linux/sched/signal.h>
+#include <linux/slab.h>
+#include <linux/swait.h>
+#include "direct.h"
+#include "post_int.h"
+#include "loss.h"
+#include "xfer.h"
+
+#define TRIES		4	/* of a post that was too long for its cycle, shorter each time */
+#define WATCH_US	1000	/* a wait that lasts longer is watched */
+#define FEW		4	/* posts without memory of their own */
+
+/*
+ * Half of the posts a batch has on their way. While one half is waited for, the other one keeps
+ * the wire busy.
+ */
+struct half {
+	struct ec_post_wait wait;
+	struct ec_post *post;
+	unsigned int n;
+};
+
+struct batch {
+	struct ec_carry *c;
+	struct ec_dg *dg;
+	unsigned int n;
+	enum ec_post_class class;
+	unsigned int most;	/* posts of a half */
+	struct half half[2];
+	int err;	/* there is no sense in sending the others */
+};
+
+/* The datagrams of a post from @first on: a frame that fits before the next cycle, at least one. */
+static unsigned int count(const struct batch *b, unsigned int first)
+{
+	const struct ec_links *l = b->c->links;
+	unsigned int most = l->max_datagrams, len = 0, i;
+	u16 room = EC_DGRAM_OVERHEAD + max(ec_access_room(l), b->dg[first].len);
+
+	/* clock frames are as long as their share, so that as many may leave as shall */
+	if (b->class == EC_POST_CLOCK) {
+		most = EC_CLOCK_DATAGRAMS;
+		room = clamp_t(u16, ec_share_clock_bytes(l), EC_DGRAM_OVERHEAD + b->dg[first].len,
+			       room);
+	}
+	room = min_t(u16, room, EC_FRAME_BODY_MAX);
+	for (i = first; i < b->n && i - first < most && b->dg[i].err == -EAGAIN; i++) {
+		len += EC_DGRAM_OVERHEAD + b->dg[i].len;
+		if (len > room)
+			break;
+	}
+	return i - first;
+}
+
+/* Send half a window of posts from datagram @first on; returns the first one that is left. */
+static unsigned int send_half(struct batch *b, struct half *h, unsigned int first)
+{
+	unsigned int i;
+
+	for (h->n = 0; h->n < b->most; h->n++) {
+		struct ec_post *post = &h->post[h->n];
+
+		while (first < b->n && b->dg[first].err != -EAGAIN)
+			first++;
+		if (first >= b->n)
+			break;
+		memset(post, 0, sizeof(*post));
+		ec_post_init(post, b->c->links, NULL);
+		post->wait = &h->wait;
+		post->class = b->class;
+		post->dg = &b->dg[first];
+		post->n = count(b, first);
+		first += post->n;
+	}
+	if (!h->n)
+		return first;
+	h->wait.pending = h->n;
+	init_completion(&h->wait.done);
+	for (i = 0; i < h->n; i++)
+		ec_post_send(&h->post[i], 0);
+	ec_direct_push(b->c);
+	return first;
+}
+
+/* Most are back before a timer is worth more than this one. */
+static bool wait_unwatched(struct completion *done)
+{
+	ktime_t limit = ns_to_ktime(WATCH_US * NSEC_PER_USEC);
+	DECLARE_SWAITQUEUE(wait);
+
+	prepare_to_swait_exclusive(&done->wait, &wait, TASK_UNINTERRUPTIBLE);
+	if (!completion_done(done))
+		schedule_hrtimeout(&limit, HRTIMER_MODE_REL);
+	finish_swait(&done->wait, &wait);
+	return try_wait_for_completion(done);
+}
+
+static void wait_half(struct batch *b, struct half *h)
+{
+	atomic_inc(&b->c->waiting);
+	if (READ_ONCE(b->c->watched) || !wait_unwatched(&h->wait.done)) {
+		ec_loss_watch(b->c);
+		if (wait_for_completion_killable(&h->wait.done) &&
+		    !ec_post_give_up(h->post, h->n, -EINTR))
+			wait_for_completion(&h->wait.done);
+	}
+	atomic_dec(&b->c->waiting);
+}
+
+/* Wait for the posts of a half. */
+static void finish_half(struct batch *b, struct half *h)
+{
+	unsigned int i;
+
+	wait_half(b, h);
+	for (i = 0; i < h->n && !b->err; i++) {
+		int err = h->post[i].dg[0].err;
+
+		if (err == -EINTR || err == -EBUSY || err == -ENODEV || err == -ENETDOWN)
+			b->err = err;
+	}
+	h->n = 0;
+}
+
+/* All datagrams that are to be sent, once. */
+static void exchange(struct batch *b)
+{
+	unsigned int i, first = 0, cur = 0;
+
+	for (;;) {
+		struct half *h = &b->half[cur];
+
+		if (h->n)
+			finish_half(b, h);
+		if (first < b->n && !b->err)
+			first = send_half(b, h, first);
+		if (!b->half[0].n && !b->half[1].n)
+			break;
+		if (b->half[1].post)
+			cur = !cur;
+	}
+	for (i = first; i < b->n; i++)
+		if (b->dg[i].err == -EAGAIN)
+			b->dg[i].err = b->err;
+}
+
+/* What did not fit beside the cycle any more goes again, in shorter frames. */
+static bool has_to_go_again(const struct batch *b)
+{
+	unsigned int i;
+
+	for (i = 0; i < b->n; i++)
+		if (b->dg[i].err == -EAGAIN)
+			return true;
+	return false;
+}
+
+static int result(struct batch *b)
+{
+	unsigned int i;
+	int ret = 0;
+
+	for (i = 0; i < b->n; i++) {
+		if (b->dg[i].err == -EAGAIN)
+			b->dg[i].err = -ETIMEDOUT;
+		ret = ret ?: b->dg[i].err;
+	}
+	return ret;
+}
+
+/* No wait for the turn of a frame that cannot leave. */
+static int link_error(const struct ec_links *l)
+{
+	if (!ec_links_attached(l))
+		return -ENODEV;
+	return ec_access_is_cyclic(&l->access) && !ec_links_is_up(l) ? -ENETDOWN : 0;
+}
+
+static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum ec_post_class class)
+{
+	struct batch b = {
+		.c = l->carry, .dg = dg, .n = n, .class = class, .err = link_error(l),
+	};
+	unsigned int i, try, window = class == EC_POST_CLOCK ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
+	struct ec_post few[FEW], *more = NULL;
+
+	/* tools must not hold up the monitor, which looks after the application and the link */
+	if (class == EC_POST_NORMAL && current == READ_ONCE(b.c->monitor))
+		b.class = EC_POST_URGENT;
+	for (i = 0; i < n; i++) {
+		if (dg[i].len > EC_DGRAM_DATA_MAX)
+			return -EMSGSIZE;
+		dg[i].err = -EAGAIN;
+	}
+	b.most = n;
+	b.half[0].post = few;
+	if (n > FEW) {
+		b.most = DIV_ROUND_UP(min(n, window), 2);
+		more = kmalloc_array(2 * b.most, sizeof(*more), GFP_KERNEL);
+		if (!more)
+			return -ENOMEM;
+		b.half[0].post = more;
+		b.half[1].post = more + b.most;
+	}
+	for (try = 0; try < TRIES && has_to_go_again(&b); try++)
+		exchange(&b);
+	kfree(more);
+	return result(&b);
+}
+
+/**
+ * ec_xfer() - exchange a batch of datagrams
+ * @l: links
+ * @dg: datagrams; results are in them
+ * @n: how many; they are packed into as few frames as fit
+ *
+ * Repeatable datagrams are sent again when their frame is lost, others never.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0 when every datagram came back (whatever its working counter), or
+ * the error of the first that did not; -EMSGSIZE when one fits no frame, then
+ * nothing was sent.
+ */
+int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n)
+{
+	return transfer(l, dg, n, EC_POST_NORMAL);
+}
+
+/**
+ * ec_xfer_all() - exchange datagrams in each of which one slave must take part
+ * @l: links
+ * @dg: datagrams; results are in them
+ * @n: how many
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0; -EIO when a working counter is not 1; or as ec_xfer().
+ */
+int ec_xfer_all(struct ec_links *l, struct ec_dg *dg, unsigned int n)
+{
+	int ret = ec_xfer(l, dg, n);
+	unsigned int i;
+
+	for (i = 0; i < n && !ret; i++)
+		if (dg[i].wkc != 1)
+			ret = -EIO;
+	return ret;
+}
+
+/**
+ * ec_xfer_urgent() - exchange a few datagrams before all others
+ * @l: links
+ * @dg: datagrams; results are in them
+ * @n: how many
+ *
+ * For the monitor: it must see the bus while many others are at work.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer().
+ */
+int ec_xfer_urgent(struct ec_links *l, struct ec_dg *dg, unsigned int n)
+{
+	return transfer(l, dg, n, EC_POST_URGENT);
+}
+
+/**
+ * ec_xfer_clock() - exchange datagrams that set or compensate clocks
+ * @l: links
+ * @dg: datagrams; results are in them
+ * @n: how many
+ *
+ * They may be many: a cyclic send carries fewer of them than of other frames, and
+ * others do not wait behind them.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer().
+ */
+int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n)
+{
+	return transfer(l, dg, n, EC_POST_CLOCK);
+}
+
+/**
+ * ec_xfer_one() - exchange one repeatable datagram
+ * @l: links
+ * @cmd: enum ec_cmd
+ * @adp: low half of the address
+ * @ado: high half of the address
+ * @data: data, sent or filled by @cmd
+ * @len: bytes
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: working counter, or -errno as in struct ec_dg.
+ */
+int ec_xfer_one(struct ec_links *l, u8 cmd, u16 adp, u16 ado, void *data, u16 len)
+{
+	struct ec_dg dg = EC_DG(cmd, adp, ado, len, data);
+	int ret = ec_xfer(l, &dg, 1);
+
+	return ret ? ret : dg.wkc;
+}
+
+/**
+ * ec_xfer_fprd() - read registers of one slave
+ * @l: links
+ * @station: station address
+ * @ado: register
+ * @data: result
+ * @len: bytes
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0, -EIO when the slave did not take part, or as ec_xfer().
+ */
+int ec_xfer_fprd(struct ec_links *l, u16 station, u16 ado, void *data, u16 len)
+{
+	int ret = ec_xfer_one(l, EC_CMD_FPRD, station, ado, data, len);
+
+	return ret < 0 ? ret : ret == 1 ? 0 : -EIO;
+}
+
+/**
+ * ec_xfer_fpwr() - write registers of one slave; may be executed twice
+ * @l: links
+ * @station: station address
+ * @ado: register
+ * @data: value
+ * @len: bytes
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: 0, -EIO when the slave did not take part, or as ec_xfer().
+ */
+int ec_xfer_fpwr(struct ec_links *l, u16 station, u16 ado, const void *data, u16 len)
+{
+	int ret = ec_xfer_one(l, EC_CMD_FPWR, station, ado, (void *)data, len);
+
+	return ret < 0 ? ret : ret == 1 ? 0 : -EIO;
+}
