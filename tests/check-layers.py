@@ -31,7 +31,8 @@ MOST_ROOMS_OF_NEW = 6
 
 top = os.path.abspath(os.path.join(os.path.dirname(__file__), ".."))
 INCLUDE = re.compile(r'^\s*#\s*include\s+"([^"]+)"', re.M)
-PROTOTYPE = re.compile(r"^(?!static|return|typedef)[a-z][\w \t*]*?\b(\w+)\([^;{]*\)[^;{]*;", re.M)
+PROTOTYPE = re.compile(
+    r"^(?!static|return|typedef)[a-z][\w \t*]*?\b(\w+)\([^;{]*\)[^;{]*;", re.M)
 
 
 def layer(path):
