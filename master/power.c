@@ -194,7 +194,7 @@ static void report_stays(struct ec_master *m, const char *what, unsigned int sta
 		ec_info(m, "%s: no slave in SAFEOP or OP, but some do not reply\n", what);
 }
 
-static void take_down(struct ec_master *m, const char *what)
+static void power_take_down(struct ec_master *m, const char *what)
 {
 	u64 t0 = ktime_get_ns();
 	unsigned int n = request_preop(m), states, position;
@@ -256,7 +256,7 @@ static void descend(struct work_struct *work)
 {
 	struct descent *d = container_of(work, struct descent, work);
 
-	take_down(READ_ONCE(d->m), READ_ONCE(d->what));
+	power_take_down(READ_ONCE(d->m), READ_ONCE(d->what));
 	await_files(d);
 	descent_ends();
 }

@@ -27,7 +27,7 @@ static void leave_to_work(struct ec_master *m)
  * Enter the links of an active session. On failure nothing is entered: -EINVAL not
  * active, -ENODEV, -EWOULDBLOCK the device needs a thread, -EBUSY, -EAGAIN.
  */
-static int enter(struct ec_master *m, struct ec_session **s)
+static int api_cycle_enter(struct ec_master *m, struct ec_session **s)
 {
 	struct ec_api *api;
 	int ret;
@@ -67,7 +67,8 @@ static int enter(struct ec_master *m, struct ec_session **s)
 }
 
 /* Receive or send when the kernel runs the cycle. */
-static int exchange(struct ec_master *m, int (*fn)(struct ec_master *m, const struct ec_status *st))
+static int api_cycle_exchange(struct ec_master *m,
+			      int (*fn)(struct ec_master *m, const struct ec_status *st))
 {
 	const struct ec_status *st;
 	int ret;
@@ -87,8 +88,8 @@ int ecrt_master_receive(ec_master_t *master)
 	int ret;
 
 	if (ec_run_by_kernel(master))
-		return exchange(master, ec_exchange_receive);
-	ret = enter(master, &s);
+		return api_cycle_exchange(master, ec_exchange_receive);
+	ret = api_cycle_enter(master, &s);
 	if (ret)
 		return ret;
 	if (ec_api_is_between(master->api)) {
@@ -109,8 +110,8 @@ int ecrt_master_send(ec_master_t *master)
 	int ret;
 
 	if (ec_run_by_kernel(master))
-		return exchange(master, ec_exchange_send);
-	ret = enter(master, &s);
+		return api_cycle_exchange(master, ec_exchange_send);
+	ret = api_cycle_enter(master, &s);
 	if (ret)
 		return ret;
 	next = &master->api->cycle.next;
@@ -127,7 +128,7 @@ EXPORT_SYMBOL_GPL(ecrt_master_send);
 int ecrt_master_send_ext(ec_master_t *master)
 {
 	struct ec_session *s;
-	int ret = enter(master, &s);
+	int ret = api_cycle_enter(master, &s);
 
 	if (ret)
 		return ret == -EBUSY ? -EAGAIN : ret;

@@ -148,7 +148,7 @@ static bool is_behind(const struct ec_event_reader *r)
 }
 
 /* Copy as many events as there are and fit; their bytes. */
-static ssize_t copy(struct ec_event_reader *r, char __user *to, size_t size)
+static ssize_t event_readers_copy(struct ec_event_reader *r, char __user *to, size_t size)
 {
 	struct ec_event e = { 0 };
 	size_t done = 0;
@@ -200,7 +200,7 @@ ssize_t ec_event_reader_read(struct ec_file *f, char __user *to, size_t size, bo
 	/* a read of more is a read of that: no length of the caller is added up */
 	size = min_t(size_t, size, EC_EVENTS_KEPT * sizeof(struct ec_event));
 	while (!n) {
-		n = copy(r, to, size);
+		n = event_readers_copy(r, to, size);
 		if (n)
 			break;
 		if (!wait)

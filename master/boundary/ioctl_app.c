@@ -120,7 +120,7 @@ static int config_failed(struct ec_call *call, const struct ec_ioc_slave_config 
 			 ERR_PTR(ret));
 }
 
-static int slave_config(struct ec_call *call, struct ec_ioc_slave_config *i)
+static int ioctl_app_slave_config(struct ec_call *call, struct ec_ioc_slave_config *i)
 {
 	struct ec_session *s = call->session;
 	struct ec_config *c;
@@ -155,7 +155,7 @@ int ec_ioc_slave_config(struct ec_call *call)
 		if (ret)
 			return ret;
 	}
-	ret = slave_config(call, call->arg);
+	ret = ioctl_app_slave_config(call, call->arg);
 	ec_sessions_unlock(&m->sessions);
 	return ret;
 }

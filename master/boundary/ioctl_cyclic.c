@@ -39,7 +39,7 @@ static __always_inline struct ec_cycle *enter(struct ec_file *f)
 	return ERR_PTR(ret);
 }
 
-static void leave(struct ec_file *f)
+static void ioctl_cyclic_leave(struct ec_file *f)
 {
 	mutex_unlock(&f->master->cycles.lock);
 }
@@ -53,7 +53,7 @@ int ec_ioc_app_time(struct ec_call *call)
 
 	if (!IS_ERR(c)) {
 		ec_cycle_app_time(c, &send);
-		leave(call->file);
+		ioctl_cyclic_leave(call->file);
 		return 0;
 	}
 	if (PTR_ERR(c) == -EBUSY)
@@ -68,7 +68,7 @@ int ec_ioc_app_time(struct ec_call *call)
 }
 
 /* Both without a call of their own: a cycle on the short way of ec_ioctl_advise() costs less. */
-static __always_inline int receive(struct ec_file *f)
+static __always_inline int ioctl_cyclic_receive(struct ec_file *f)
 {
 	struct ec_cycle *c = enter(f);
 	int ret;
@@ -76,11 +76,11 @@ static __always_inline int receive(struct ec_file *f)
 	if (IS_ERR(c))
 		return PTR_ERR(c);
 	ret = ec_cycle_receive(c);
-	leave(f);
+	ioctl_cyclic_leave(f);
 	return ret;
 }
 
-static __always_inline int send(struct ec_file *f, const struct ec_ioc_send *what)
+static __always_inline int ioctl_cyclic_send(struct ec_file *f, const struct ec_ioc_send *what)
 {
 	struct ec_cycle *c = enter(f);
 	int ret;
@@ -90,7 +90,7 @@ static __always_inline int send(struct ec_file *f, const struct ec_ioc_send *wha
 	if (what->flags & EC_SEND_FLAG_REQUESTS)
 		ec_requests_kick(ec_cycle_session(c));
 	ret = ec_cycle_take_request(c, what) ?: ec_cycle_send(c, what);
-	leave(f);
+	ioctl_cyclic_leave(f);
 	return ret;
 }
 
@@ -103,7 +103,7 @@ static __always_inline int send(struct ec_file *f, const struct ec_ioc_send *wha
  */
 int ec_ioc_receive(struct ec_file *f)
 {
-	return receive(f);
+	return ioctl_cyclic_receive(f);
 }
 
 /**
@@ -116,7 +116,7 @@ int ec_ioc_receive(struct ec_file *f)
  */
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
 {
-	return send(f, what);
+	return ioctl_cyclic_send(f, what);
 }
 
 /**
@@ -161,13 +161,13 @@ int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice)
 	struct ec_ioc_send what;
 
 	if (advice == EC_ADVICE_RECEIVE)
-		return receive(f);
+		return ioctl_cyclic_receive(f);
 	if ((advice & ~EC_SEND_FLAG_ALL) == EC_ADVICE_SEND) {
 		what = (struct ec_ioc_send){
 			.flags = advice & EC_SEND_FLAG_ALL, .queued = len,
 			.app_time = offset, .sync_time = offset,
 		};
-		return send(f, &what);
+		return ioctl_cyclic_send(f, &what);
 	}
 	return generic_fadvise(filp, offset, len, advice);
 }

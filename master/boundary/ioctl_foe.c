@@ -52,7 +52,7 @@ static void progress(void *ctx, u64 done)
 		return;
 }
 
-static int refused(struct ec_call *call, const struct ec_foe *f)
+static int ioctl_foe_refused(struct ec_call *call, const struct ec_foe *f)
 {
 	const char *meaning = ec_foe_error_text(f->error) ?: "unknown code";
 	const struct ec_ioc_foe *i = call->arg;
@@ -62,7 +62,7 @@ static int refused(struct ec_call *call, const struct ec_foe *f)
 			 f->text[0] ? "; text of the slave: " : "", f->text);
 }
 
-static int failed(struct ec_call *call, const struct ec_foe *f, int ret)
+static int ioctl_foe_failed(struct ec_call *call, const struct ec_foe *f, int ret)
 {
 	const struct ec_ioc_foe *i = call->arg;
 	char what[EC_FOE_NAME + 10];
@@ -70,7 +70,7 @@ static int failed(struct ec_call *call, const struct ec_foe *f, int ret)
 	scnprintf(what, sizeof(what), "file '%*pE'", (int)f->name_len, f->name);
 	switch (ret) {
 	case -EREMOTEIO:
-		return refused(call, f);
+		return ioctl_foe_refused(call, f);
 	case -EINPROGRESS:
 		return ec_refuse(call, -EBUSY,
 				 "another file of slave %u is transferred just now; try again later",
@@ -85,7 +85,7 @@ static int failed(struct ec_call *call, const struct ec_foe *f, int ret)
 	}
 }
 
-static int transfer(struct ec_call *call, bool write)
+static int ioctl_foe_transfer(struct ec_call *call, bool write)
 {
 	struct ec_ioc_foe *i = call->arg;
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
@@ -103,7 +103,7 @@ static int transfer(struct ec_call *call, bool write)
 		return ec_refuse(call, -EINVAL,
 				 "the name of the file on the slave must be 1 to %u printable characters",
 				 EC_FOE_NAME);
-	ret = failed(call, &f, ec_foe_transfer(&call->slave->mbox, &f, &file, &limit));
+	ret = ioctl_foe_failed(call, &f, ec_foe_transfer(&call->slave->mbox, &f, &file, &limit));
 	i->error_code = f.error;
 	if (!write)
 		i->size = ret ? 0 : f.size;
@@ -112,10 +112,10 @@ static int transfer(struct ec_call *call, bool write)
 
 int ec_ioc_foe_read(struct ec_call *call)
 {
-	return transfer(call, false);
+	return ioctl_foe_transfer(call, false);
 }
 
 int ec_ioc_foe_write(struct ec_call *call)
 {
-	return transfer(call, true);
+	return ioctl_foe_transfer(call, true);
 }

@@ -25,7 +25,7 @@ static void put_al(const struct group *g)
 		       g->pending.lowest < min(g->state, g->pending.from) ? g->pending.lowest : 0);
 }
 
-static void put_back(const struct group *g)
+static void pending_put_back(const struct group *g)
 {
 	ec_event_slave(g->bus->base, EC_EVENT_SLAVE_BACK, g->first, g->pending.back_ms, g->n);
 	if (g->n == 1)
@@ -119,7 +119,7 @@ static bool joins(struct group *all, const struct group *g, bool any, bool al)
 	if (all->n && al)
 		put_al(all);
 	else if (all->n)
-		put_back(all);
+		pending_put_back(all);
 	return false;
 }
 
