@@ -3,10 +3,9 @@
 """A layer of master/ uses itself and lower layers only: what its files include, and what
 its objects reference. MODDIR: folder where the modules have been built. See check-layers.sh.
 
-Within a layer the rooms are counted that nobody can enter alone. A room is a .c with its .h, or one
+Within a layer the rooms are counted that cannot be read alone. A room is a .c with its .h, or one
 of them. It uses another one that it includes, one whose symbol its object needs, and one of which
-its header declares a function: who reads the header needs that, too. Rooms that all use one another,
-if by way of others, are a circle.
+its header declares a function. Rooms that all use one another, if by way of others, are a circle.
 
 usage: check-layers.py MODDIR
 """

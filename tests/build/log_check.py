@@ -16,7 +16,7 @@ ALLOWED = {
     "master/link/link.c:ec_link_trace": "asks __ratelimit()",
     "master/base/base.h:ec_dbg_slave": "asks ec_log_debug()",
     "master/boundary/cdev.c:make_nodes": "insmod only",
-    "master/master.c:check_name": "insmod only",
+    "master/master.c:master_check_name": "insmod only",
     "master/master.c:check_names": "insmod only",
     "master/master.c:ec_masters_create": "insmod only",
     "devices/sim/sim_module.c:describe": "insmod only",
