@@ -310,6 +310,7 @@ void ec_flight_landed(struct ec_slot *slot)
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	list_for_each_entry(post, &posts, list)
 		take_results(slot, post);
+	ec_links_count(c->links, slot->sides & ~slot->back, lost);
 	ec_slot_put(slot);
 	/* the thread sends what found no place */
 	if (READ_ONCE(c->held))
