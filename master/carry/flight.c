@@ -226,6 +226,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 	struct ec_slot *slot = ec_slot_get(&l->slots, class == EC_POST_URGENT, now);
 	struct ec_flight *f;
 	struct ec_post *first;
+	struct ec_tx tx;
 	unsigned long flags;
 	u32 wire_ns;
 	u8 sides = 0, *frame;
@@ -243,7 +244,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 		ec_slot_put(slot);
 		return 0;
 	}
-	frame = ec_links_tx_get(l, sides) ?: slot->frame;
+	frame = ec_links_tx_get(l, sides, &tx) ?: slot->frame;
 	build(f, slot, frame);
 	if (class == EC_POST_CLOCK)
 		stamp(c, frame + EC_ETH_HDR, slot->eth_len - EC_ETH_HDR, sent_ns);
@@ -252,7 +253,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 	slot->done = ec_flight_landed;
 	slot->user = c;
 	take_off(c, f, slot, sides);
-	ret = ec_links_transmit(l, slot, frame, sides, sent_ns);
+	ret = ec_links_transmit(l, slot, frame, &tx, sent_ns);
 	if (ret == -EBUSY) {
 		put_back(c, slot);
 		return ret;

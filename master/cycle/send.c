@@ -113,6 +113,7 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_slot *slot = NULL;
+	struct ec_tx tx;
 	unsigned int count;
 	u8 *frame;
 	int ret;
@@ -125,11 +126,11 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		return c->n_dgrams;
 	}
 	/* one copy less than through the slot */
-	frame = ec_links_tx_get(c->links, c->links->sides) ?: slot->frame;
+	frame = ec_links_tx_get(c->links, c->links->sides, &tx) ?: slot->frame;
 	count = fill(c, slot, frame, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_links_transmit(c->links, slot, frame, c->links->sides, send->now);
+	ret = ec_links_transmit(c->links, slot, frame, &tx, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
 		ec_links_count(c->links, c->links->sides, tx_errors);

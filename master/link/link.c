@@ -135,6 +135,17 @@ void ec_link_poll(struct ec_link *link)
 	rcu_read_unlock();
 }
 
+static __always_inline void poll_cycle(struct ec_link *link)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+
+	if (!dev || !dev->ops->poll)
+		return;
+	WRITE_ONCE(link->keep, dev->ops->keeps);
+	dev->ops->poll(dev->priv);
+	WRITE_ONCE(link->keep, false);
+}
+
 /**
  * ec_links_poll_cycle() - the same for the cycle
  * @l: links
@@ -146,18 +157,15 @@ void ec_link_poll(struct ec_link *link)
  */
 void ec_links_poll_cycle(struct ec_links *l)
 {
-	unsigned long left;
+	struct ec_link *link;
 
-	for (left = l->sides; left; left &= left - 1) {
-		struct ec_link *link = &l->link[__ffs(left)];
-		struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
-
-		if (!dev || !dev->ops->poll)
-			continue;
-		WRITE_ONCE(link->keep, dev->ops->keeps);
-		dev->ops->poll(dev->priv);
-		WRITE_ONCE(link->keep, false);
+	if (likely(l->only)) {
+		poll_cycle(l->only);
+		return;
 	}
+	ec_links_for_each(l, link)
+		if (l->sides & BIT(link->side))
+			poll_cycle(link);
 }
 
 /**

@@ -98,6 +98,37 @@ bool ec_links_need_thread(const struct ec_links *l)
 }
 
 /**
+ * ec_links_one_attached() - is there a device at one of several links?
+ * @l: links
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether there is.
+ */
+bool ec_links_one_attached(const struct ec_links *l)
+{
+	const struct ec_link *link;
+
+	ec_links_for_each(l, link)
+		if (l->sides & BIT(link->side) && READ_ONCE(link->dev))
+			return true;
+	return false;
+}
+
+/**
+ * ec_links_count_at() - count a frame; see ec_links_count()
+ * @l: links
+ * @sides: mask of those that count it
+ * @counter: offset in struct ec_link_stats
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_links_count_at(struct ec_links *l, unsigned long sides, size_t counter)
+{
+	for (; sides; sides &= sides - 1)
+		atomic64_inc((atomic64_t *)((u8 *)&l->link[__ffs(sides)].stats + counter));
+}
+
+/**
  * ec_links_look() - read the physical state of the links; log changes
  * @l: links
  *

@@ -109,17 +109,12 @@ static inline bool ec_links_any_up(const struct ec_links *l)
 	return ec_links_seen_up(l) || ec_links_ring_end_up(l);
 }
 
+bool ec_links_one_attached(const struct ec_links *l);
+
 /* a device that sends frames is attached */
 static inline bool ec_links_attached(const struct ec_links *l)
 {
-	const struct ec_link *link;
-
-	if (likely(l->only))
-		return READ_ONCE(l->only->dev);
-	ec_links_for_each(l, link)
-		if (l->sides & BIT(link->side) && READ_ONCE(link->dev))
-			return true;
-	return false;
+	return likely(l->only) ? !!READ_ONCE(l->only->dev) : ec_links_one_attached(l);
 }
 
 static inline bool ec_links_any_device(const struct ec_links *l)
@@ -185,18 +180,23 @@ static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
 	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
 }
 
-/* The one link of a mask, NULL: several. */
-static inline struct ec_link *ec_links_only(struct ec_links *l, u8 sides)
-{
-	if (likely(l->only && sides == l->sides))
-		return l->only;
-	return is_power_of_2(sides) ? &l->link[__ffs(sides)] : NULL;
-}
+/**
+ * struct ec_tx - where a frame is built and leaves
+ * @link: its link, NULL: several
+ * @dev: device of @link; it stays in the RCU read section
+ * @sides: mask of the links
+ */
+struct ec_tx {
+	struct ec_link *link;
+	struct ecdev *dev;
+	u8 sides;
+};
 
 /**
  * ec_links_tx_get() - a transmit buffer in which a frame may be built
  * @l: links
  * @sides: mask of those on which it is to be sent
+ * @tx: result, for ec_links_transmit()
  *
  * The next frame that is sent has to be this one.
  *
@@ -204,21 +204,19 @@ static inline struct ec_link *ec_links_only(struct ec_links *l, u8 sides)
  * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
  * absent: the frame is built in its slot, and ec_links_transmit() finds out.
  */
-static inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides)
+static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct ec_tx *tx)
 {
-	const struct ec_link *link = ec_links_only(l, sides);
-	struct ecdev *dev;
-
-	return link ? ec_link_tx_get(link, &dev) : NULL;
+	tx->sides = sides;
+	tx->link = l->only;
+	if (unlikely(!tx->link || sides != l->sides))
+		tx->link = is_power_of_2(sides) ? &l->link[__ffs(sides)] : NULL;
+	return tx->link ? ec_link_tx_get(tx->link, &tx->dev) : NULL;
 }
 
 /* count a frame on the links of a mask: lost, late, or tx_errors */
-#define ec_links_count(l, sides, what) do { \
-	unsigned long __left = (sides); \
-\
-	for (; __left; __left &= __left - 1) \
-		atomic64_inc(&(l)->link[__ffs(__left)].stats.what); \
-} while (0)
+#define ec_links_count(l, sides, what) \
+	ec_links_count_at(l, sides, offsetof(struct ec_link_stats, what))
+void ec_links_count_at(struct ec_links *l, unsigned long sides, size_t counter);
 
 /* frames sent since the devices were attached */
 static inline u64 ec_links_sent(const struct ec_links *l)
@@ -302,30 +300,26 @@ static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *
  * @l: links
  * @slot: the slot is back in BUILD on failure
  * @frame: where it was built: in the slot, or in a buffer of ec_links_tx_get()
- * @sides: mask of the links, as there
+ * @tx: result of that
  * @now: time
  *
  * ec_links_flush() must follow.
  *
- * Context: The owner of the links, in an RCU read section. RT-safe.
+ * Context: The owner of the links, in the RCU read section of ec_links_tx_get(). RT-safe.
  * Return: as ec_links_send().
  */
-static inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame, u8 sides,
-				    u64 now)
+static __always_inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame,
+					     const struct ec_tx *tx, u64 now)
 {
-	struct ec_link *link;
-	struct ecdev *dev;
 	int ret;
 
-	if (frame == slot->frame)
-		return ec_links_send(l, slot, sides, now);
-	ec_slot_arm(&l->slots, slot, frame, sides, now);
-	link = ec_links_only(l, sides);
-	dev = READ_ONCE(link->dev);	/* withdrawn at the most */
-	frame[7] |= link->side;
-	ret = dev ? ec_link_send_buf(link, dev, frame, ec_slot_padded(slot)) : -ENODEV;
+	if (unlikely(frame == slot->frame))
+		return ec_links_send(l, slot, tx->sides, now);
+	ec_slot_arm(&l->slots, slot, frame, tx->sides, now);
+	frame[7] |= tx->link->side;
+	ret = ec_link_send_buf(tx->link, tx->dev, frame, ec_slot_padded(slot));
 	/* a reply that came nevertheless makes it a frame as if it was sent */
-	return ret && ec_slot_disarm(slot, sides) ? ret : 0;
+	return unlikely(ret) && ec_slot_disarm(slot, tx->sides) ? ret : 0;
 }
 
 /**

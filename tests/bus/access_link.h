@@ -147,6 +147,12 @@ static inline unsigned int bus_acyclic(const struct bus *b)
 	return READ_ONCE(bus_carry(b)->n_flying);
 }
 
+/* how often the thread of the posts has slept */
+static inline unsigned long bus_post_slept(const struct bus *b)
+{
+	return READ_ONCE(bus_carry(b)->thread->nvcsw);
+}
+
 /* posts that have not left, and frames on their way */
 static inline u32 bus_posts(const struct bus *b)
 {

@@ -5,6 +5,7 @@
  */
 #include <linux/kthread.h>
 #include "master/carry/direct.h"
+#include "cyc.h"
 #include "posts.h"
 
 #define ALL	(BIT(POSTS) - 1)
@@ -417,7 +418,30 @@ static void post_beside_link_that_is_down(struct kunit *test)
 	rig_expect(r, BIT(0), 3, 0);
 }
 
+/* Beside a cycle that nothing happens to, and on a bus without one, its thread sleeps. */
+static void post_thread_rests(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\nslave d drive in=8 out=8\n", 2);
+	unsigned long before, idle, beside;
+	struct cyc *c;
+
+	bus_idle(b);
+	before = bus_post_slept(b);
+	msleep(10000);
+	idle = bus_post_slept(b) - before;
+	c = cyc_in_op(b, 0, 2);
+	cyc_run(c, 2000);
+	before = bus_post_slept(b);
+	cyc_run(c, 10000);
+	beside = bus_post_slept(b) - before;
+	bus_figure("thread of the posts in 10 s: %lu times without cycle, %lu times beside one", idle,
+		   beside);
+	KUNIT_EXPECT_LT(test, idle, 100ul);
+	KUNIT_EXPECT_LT(test, beside, 100ul);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(post_thread_rests),
 	KUNIT_CASE(post_shares_frame),
 	KUNIT_CASE(post_changed_frame_refused),
 	KUNIT_CASE(post_truncated_frame_refused),

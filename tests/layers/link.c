@@ -76,6 +76,7 @@ static void slot_done(struct ec_slot *slot)
 static int send(struct bench *b, struct ec_slot **slot)
 {
 	struct ec_slot *s = ec_slot_get(&b->links.slots, false, ktime_get_ns());
+	const struct ec_tx tx = { .sides = b->links.sides };
 	struct ec_frame_buf fb;
 	int ret;
 
@@ -86,7 +87,7 @@ static int send(struct bench *b, struct ec_slot **slot)
 	s->user = b;
 	b->done = NULL;
 	rcu_read_lock();
-	ret = ec_links_transmit(&b->links, s, s->frame, b->links.sides, ktime_get_ns());
+	ret = ec_links_transmit(&b->links, s, s->frame, &tx, ktime_get_ns());
 	ec_links_flush(&b->links);
 	rcu_read_unlock();
 	*slot = s;
