@@ -7,22 +7,19 @@
 
 #include "ecrt/ecrt_int.h"
 
-/*
- * Structures may grow without harm, so any version from 1 on will do; programs of 32 bits
- * need @sequence of struct ec_status.
- */
-#define VERSION_MIN	(sizeof(long) == 8 ? 1 : 2)
-
+/* The module knows which programs it can serve; one before version 3 does not know this request. */
 static int check_version(struct ec_master *m, const char *path)
 {
-	struct ec_ioc_version version = { 0 };
+	struct ec_ioc_version version = { .abi = EC_UAPI_VERSION };
 	int ret = ec_command(m, EC_IOC_VERSION, &version);
 
-	if (!ret && version.abi >= VERSION_MIN)
+	if (ret == -EPROTO)
+		return ec_complain(m, NULL, ret, true, "use %s", path);
+	if (!ret && version.abi >= EC_UAPI_FIRST)
 		return 0;
 	return ec_fail(NULL, -EPROTO,
-		       "use %s: not a device file of this master, or interface version %u below %u",
-		       path, version.abi, (unsigned int)VERSION_MIN);
+		       "use %s: not a device file of this master, or the module is older than interface version %u: update the module",
+		       path, EC_UAPI_FIRST);
 }
 
 ec_master_t *ecrt_open_master(unsigned int master_index)

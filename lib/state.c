@@ -2,11 +2,6 @@
 /* States of master, links and slaves: from the mapped status while active. */
 #include "ecrt/ecrt_int.h"
 
-static unsigned int devices(const struct ec_ioc_master *info)
-{
-	return info->device_count < EC_UAPI_DEVICES ? info->device_count : EC_UAPI_DEVICES;
-}
-
 int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 {
 	struct ec_ioc_master info = { 0 };
@@ -18,7 +13,7 @@ int ecrt_master(ec_master_t *master, ec_master_info_t *master_info)
 	if (ret)
 		return ret;
 	master_info->slave_count = info.slave_count;
-	master_info->link_up = !!info.devices[0].link_up;
+	master_info->link_up = info.links_up & 1;
 	master_info->scan_busy = info.scan_busy;
 	master_info->app_time = info.app_time;
 	return 0;
@@ -43,7 +38,6 @@ int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
 {
 	struct ec_ioc_master info = { 0 };
 	const struct ec_status *st;
-	unsigned int i, up = 0;
 	int ret;
 
 	if (!master || !state)
@@ -58,23 +52,16 @@ int ecrt_master_state(const ec_master_t *master, ec_master_state_t *state)
 	ret = ec_command(master, EC_IOC_MASTER, &info);
 	if (ret)
 		return ret;
-	for (i = 0; i < devices(&info); i++)
-		up |= info.devices[i].link_up;
 	state->slaves_responding = info.slaves_responding;
 	state->al_states = info.al_states & 0xf;
-	state->link_up = !!up;
+	state->link_up = !!info.links_up;
 	return 0;
 }
 
-/*
- * The kernel has AL states for all links together only: with two links, one
- * without replies reports none, and the other one reports the sum.
- */
 int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 			   ec_master_link_state_t *state)
 {
-	struct ec_ioc_master info = { 0 };
-	const struct ec_ioc_device *dev;
+	struct ec_ioc_device dev = { .index = dev_idx };
 	int ret;
 
 	if (!master || !state)
@@ -88,15 +75,11 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 		state->link_up = !!ec_status_read(link->link_up);
 		return 0;
 	}
-	ret = ec_do(master, EC_IOC_MASTER, &info, "get state of link %u", dev_idx);
+	ret = ec_do(master, EC_IOC_DEVICE, &dev, "get state of link %u", dev_idx);
 	if (ret)
 		return ret;
-	if (dev_idx >= devices(&info))
-		return ec_fail(NULL, -EINVAL, "get state of link %u of %u", dev_idx,
-			       devices(&info));
-	dev = &info.devices[dev_idx];
-	state->slaves_responding = dev->slaves;
-	state->al_states = dev->slaves ? info.al_states & 0xf : 0;
-	state->link_up = !!dev->link_up;
+	state->slaves_responding = dev.slaves;
+	state->al_states = dev.al_states & 0xf;
+	state->link_up = !!dev.link_up;
 	return 0;
 }

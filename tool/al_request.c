@@ -8,7 +8,7 @@
 #define POLL_MS		10
 
 /* why a slave is not where it should be: ": text" parts, "" when all is well */
-void al_reason(const struct ec_ioc_slave *s, char *buf, size_t size)
+void al_reason(const struct slave *s, char *buf, size_t size)
 {
 	char code[8];
 	int n = 0;
@@ -21,18 +21,18 @@ void al_reason(const struct ec_ioc_slave *s, char *buf, size_t size)
 		snprintf(buf + n, size - (size_t)n, "%s%s", n ? ": " : "", s->why);
 }
 
-int al_request(struct dev *d, u16 position, u8 state, u32 timeout_ms)
+int al_request(struct dev *d, const struct slave *s, u8 state, u32 timeout_ms)
 {
 	struct ec_ioc_state req = {
-		.position = position, .state = state, .timeout_ms = timeout_ms,
+		.slave = s->slave, .state = state, .timeout_ms = timeout_ms,
 	};
 	int err = dev_ioctl(d, EC_IOC_STATE, &req);
 
-	return err ? dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master, position,
-			      ec_al_state_name(state)) : 0;
+	return err ? dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master,
+			      s->position, ec_al_state_name(state)) : 0;
 }
 
-static int failed(const struct dev *d, const struct ec_ioc_slave *s, u8 wanted, const char *what)
+static int failed(const struct dev *d, const struct slave *s, u8 wanted, const char *what)
 {
 	char state[16], why[400];
 
@@ -46,13 +46,13 @@ static int failed(const struct dev *d, const struct ec_ioc_slave *s, u8 wanted, 
  * The master clears its error flag when it takes the request. The slave's own
  * error bit counts once it is new or its code differs from before.
  */
-int al_wait(struct dev *d, const struct ec_ioc_slave *before, u8 wanted, double end)
+int al_wait(struct dev *d, const struct slave *before, u8 wanted, double end)
 {
-	struct ec_ioc_slave s;
+	struct slave s;
 	double start = now_s();
 
 	for (;;) {
-		if (dev_slave(d, before->position, &s))
+		if (dev_slave_again(d, before, &s))
 			return 1;
 		if ((s.al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == wanted)
 			return 0;

@@ -23,7 +23,7 @@ static int order(const void *a, const void *b)
 
 static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list, size_t *n)
 {
-	struct ec_ioc_master m;
+	struct master m;
 	struct ec_ioc_config *c;
 
 	*n = 0;

@@ -4,21 +4,21 @@
 #include "crc_table.h"
 #include "out.h"
 
-static int row(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s)
+static int row(const struct tool *t, struct dev *d, const struct slave *s)
 {
 	u8 regs[EC_ERRORS_SIZE];
 
-	if (errors_read(d, s->position, regs))
+	if (errors_read(d, s, regs))
 		return 1;
 	crc_table_row(t, s, regs);
 	return 0;
 }
 
-static int clear(struct dev *d, const struct ec_ioc_slave *s)
+static int clear(struct dev *d, const struct slave *s)
 {
 	static const u8 zero[EC_ERRORS_SIZE];
 
-	return reg_write(d, s->position, EC_REG_ERRORS, zero, sizeof(zero), false);
+	return reg_write(d, s, EC_REG_ERRORS, zero, sizeof(zero));
 }
 
 static int all(const struct tool *t, struct dev *d, bool reset)

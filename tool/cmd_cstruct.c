@@ -93,7 +93,7 @@ static void syncs(unsigned int pos, const struct layout *l)
 	out_text("    {0xff}\n};\n\n");
 }
 
-static void json(const struct ec_ioc_slave *s, const struct layout *l)
+static void json(const struct slave *s, const struct layout *l)
 {
 	out_u("position", s->position, NULL);
 	out_str("order_number", s->order, NULL);
@@ -133,7 +133,7 @@ static void json(const struct ec_ioc_slave *s, const struct layout *l)
 	out_end();
 }
 
-static void text(const struct dev *d, const struct ec_ioc_slave *s, const struct layout *l)
+static void text(const struct dev *d, const struct slave *s, const struct layout *l)
 {
 	out_text("/* Master %u, Slave %u", d->master, s->position);
 	if (s->order[0]) {
@@ -150,7 +150,7 @@ static void text(const struct dev *d, const struct ec_ioc_slave *s, const struct
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct ec_ioc_slave *s, bool several)
+		 const struct slave *s, bool several)
 {
 	struct layout l;
 

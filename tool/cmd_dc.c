@@ -25,7 +25,7 @@ enum { POSITION, CLOCK, DELAY, OFFSET, DIFFERENCE, SYNC0, SYNC1, STATE, CELLS };
  * @cell: text of the columns
  */
 struct clock {
-	const struct ec_ioc_slave *s;
+	const struct slave *s;
 	bool reference;
 	bool configured;
 	u16 assign;
@@ -51,7 +51,7 @@ static bool outside(s32 diff)
 
 static const char *state_text(const struct clock *c)
 {
-	const struct ec_ioc_slave *s = c->s;
+	const struct slave *s = c->s;
 
 	if (!s->dc_supported || s->dc_delay_only)
 		return "-";
@@ -64,7 +64,7 @@ static const char *state_text(const struct clock *c)
 	return outside(s->dc_diff) ? "outside window" : "synchronized";
 }
 
-static const char *clock_text(const struct ec_ioc_slave *s)
+static const char *clock_text(const struct slave *s)
 {
 	return s->dc_delay_only ? "delay only" : !s->dc_supported ? "none" :
 		s->dc_supported == 1 ? "32 bit" : "64 bit";
@@ -91,7 +91,7 @@ static int configured(struct dev *d, struct clock *c)
 	return 0;
 }
 
-static int fill(struct dev *d, struct clock *c, const struct ec_ioc_slave *s, s32 reference)
+static int fill(struct dev *d, struct clock *c, const struct slave *s, s32 reference)
 {
 	*c = (struct clock){ .s = s, .reference = reference == s->position };
 	if (configured(d, c))
@@ -116,7 +116,7 @@ static int fill(struct dev *d, struct clock *c, const struct ec_ioc_slave *s, s3
 
 static void json(const struct clock *c)
 {
-	const struct ec_ioc_slave *s = c->s;
+	const struct slave *s = c->s;
 	char name[EC_UAPI_STRING];
 
 	slave_name(s, name, sizeof(name));
@@ -151,13 +151,12 @@ static void json(const struct clock *c)
 static int registers(struct dev *d, const struct clock *c)
 {
 	u8 diff[4], sync[8], cycle[8];
-	u16 p = c->s->position;
 
 	if (!c->s->dc_supported || c->s->dc_delay_only)
 		return 0;
-	if (reg_read(d, p, EC_REG_DC_DIFF, diff, sizeof(diff)) ||
-	    reg_read(d, p, EC_REG_DC_CUC, sync, sizeof(sync)) ||
-	    reg_read(d, p, EC_REG_DC_CYCLE0, cycle, sizeof(cycle)))
+	if (reg_read(d, c->s, EC_REG_DC_DIFF, diff, sizeof(diff)) ||
+	    reg_read(d, c->s, EC_REG_DC_CUC, sync, sizeof(sync)) ||
+	    reg_read(d, c->s, EC_REG_DC_CYCLE0, cycle, sizeof(cycle)))
 		return 1;
 	out_object("registers");
 	out_i("difference_ns", ec_dc_diff(get_unaligned_le32(diff)),
@@ -174,7 +173,7 @@ static int registers(struct dev *d, const struct clock *c)
 	return 0;
 }
 
-static void header(struct dev *d, const struct ec_ioc_master *m, const struct clock *c, size_t n)
+static void header(struct dev *d, const struct master *m, const struct clock *c, size_t n)
 {
 	const struct clock *worst = NULL;
 
@@ -240,7 +239,7 @@ static int rows(const struct tool *t, struct dev *d, struct clock *c, size_t n)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_master m;
+	struct master m;
 	struct slaves sel;
 	struct clock *c;
 	int ret = 0;

@@ -22,7 +22,7 @@ static int each(const struct tool *t, struct dev *d)
 
 static int show(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_master m;
+	struct master m;
 
 	(void)t;
 	if (dev_master(d, &m))

@@ -16,7 +16,7 @@
 struct history {
 	const struct esi_texts *texts;
 	struct dev *d;
-	u16 position;
+	const struct slave *s;
 	unsigned int max;
 	unsigned int newest;
 	unsigned int ack;
@@ -34,7 +34,7 @@ struct seen {
 static int read_sub(struct history *h, u8 sub, size_t *size, u32 *abort)
 {
 	struct ec_ioc_sdo s = {
-		.position = h->position, .index = EC_DIAG_INDEX, .subindex = sub, .size = ROOM,
+		.slave = h->s->slave, .index = EC_DIAG_INDEX, .subindex = sub, .size = ROOM,
 		.data = (uintptr_t)h->buf,
 	};
 	int err = dev_ioctl(h->d, EC_IOC_SDO_UPLOAD, &s);
@@ -48,9 +48,9 @@ static int failed(struct history *h, int err, u32 abort, u8 sub)
 {
 	if (abort)
 		return fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:%02x",
-				 h->d->master, h->position, EC_DIAG_INDEX, sub);
+				 h->d->master, h->s->position, EC_DIAG_INDEX, sub);
 	return dev_fail(h->d, err, "Master%u slave %u: SDO upload 0x%04x:%02x", h->d->master,
-			h->position, EC_DIAG_INDEX, sub);
+			h->s->position, EC_DIAG_INDEX, sub);
 }
 
 /* a number; @optional: 0 where the slave has none */
@@ -89,7 +89,7 @@ static int read_head(struct history *h)
 	if (h->newest && (h->newest < EC_DIAG_FIRST_SUB ||
 			  h->newest >= EC_DIAG_FIRST_SUB + h->max))
 		return fail("Master%u slave %u: newest diagnosis message 0x%04x:%02x is inconsistent with a history of %u message(s)",
-			    h->d->master, h->position, EC_DIAG_INDEX, h->newest, h->max);
+			    h->d->master, h->s->position, EC_DIAG_INDEX, h->newest, h->max);
 	return 0;
 }
 
@@ -158,7 +158,8 @@ static void message(struct history *h, unsigned int k, size_t size)
 	char when[48], *text;
 
 	out_object(NULL);
-	out_u("subindex", h->subs[k], "%4u  0x%04x:%02x", h->position, EC_DIAG_INDEX, h->subs[k]);
+	out_u("subindex", h->subs[k], "%4u  0x%04x:%02x", h->s->position, EC_DIAG_INDEX,
+	      h->subs[k]);
 	out_bool("new", is_new(h, k), is_new(h, k) ? " *  " : "    ");
 	if (ec_diag_msg_decode(h->buf, size, &m)) {
 		out_bool("invalid", true, "invalid message of %zu byte(s), expected at least %u\n",
@@ -209,11 +210,11 @@ static int finish(const struct tool *t, struct history *h)
 
 	if (!h->newest || !(t->reset || t->acknowledge))
 		return 0;
-	return sdo_download(h->d, h->position, &a, 0, &value, 1);
+	return sdo_download(h->d, h->s, &a, 0, &value, 1);
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct ec_ioc_slave *s, bool several)
+		 const struct slave *s, bool several)
 {
 	struct seen *seen = w->ctx;
 	struct history *h = calloc(1, sizeof(*h));
@@ -224,7 +225,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 		return fail("out of memory");
 	h->texts = &seen->texts;
 	h->d = d;
-	h->position = s->position;
+	h->s = s;
 	ret = read_head(h);
 	if (ret == 2) {
 		free(h);
@@ -254,7 +255,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 	return ret;
 }
 
-static bool has_coe(const struct ec_ioc_slave *s)
+static bool has_coe(const struct slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
 }

@@ -8,7 +8,7 @@
 static int download(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		    const struct ec_type *type, const char *text)
 {
-	struct ec_ioc_slave s;
+	struct slave s;
 	u32 abort = 0;
 	size_t size;
 	u8 *data;
@@ -26,7 +26,7 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 				   a->text);
 	if (io_value(type, text, &data, &size))
 		return 1;
-	ret = sdo_download(d, s.position, a, t->timeout_ms, data, size);
+	ret = sdo_download(d, &s, a, t->timeout_ms, data, size);
 	free(data);
 	if (ret)
 		return ret;

@@ -34,17 +34,20 @@ static void entry(u16 position, const struct ec_emergency *e, u32 profile)
 	out_end();
 }
 
-static bool has_coe(const struct ec_ioc_slave *s)
+static bool has_coe(const struct slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct ec_ioc_slave *s, bool several)
+		 const struct slave *s, bool several)
 {
-	struct ec_ioc_emergencies i = { .position = s->position };
+	struct ec_emergency last[EC_EMERGENCIES];
+	struct ec_ioc_emergencies i = {
+		.slave = s->slave, .size = sizeof(last), .data = (uintptr_t)last,
+	};
 	int err = dev_ioctl(d, EC_IOC_EMERGENCIES, &i);
-	unsigned int n = min(i.count, (u16)EC_EMERGENCIES);
+	unsigned int n = (unsigned int)(min((size_t)i.size, sizeof(last)) / sizeof(last[0]));
 	struct found *found = w->ctx;
 
 	(void)t, (void)several;
@@ -58,7 +61,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 		out_text("%4u  the last %u of %u\n", s->position, n, i.total);
 	out_array("emergencies");
 	for (unsigned int k = 0; k < n; k++)
-		entry(s->position, &i.entry[k], i.profile);
+		entry(s->position, &last[k], i.profile);
 	out_end();
 	out_end();
 	found->any |= n;

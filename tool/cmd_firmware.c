@@ -10,7 +10,7 @@
 #include "out.h"
 
 /* Can this slave be updated, now? */
-static int check(const struct tool *t, const struct dev *d, const struct ec_ioc_slave *s)
+static int check(const struct tool *t, const struct dev *d, const struct slave *s)
 {
 	u8 state = s->al_status & EC_AL_STATE_MASK;
 
@@ -26,28 +26,16 @@ static int check(const struct tool *t, const struct dev *d, const struct ec_ioc_
 	return 0;
 }
 
-/* The slave there now; a restart may have moved positions. */
-static int same_slave(struct dev *d, const struct ec_ioc_slave *of, struct ec_ioc_slave *s)
-{
-	if (dev_slave(d, of->position, s))
-		return 1;
-	if (s->vendor_id == of->vendor_id && s->product_code == of->product_code &&
-	    s->serial_number == of->serial_number && s->station == of->station)
-		return 0;
-	return fail("Master%u slave %u: there is another slave at this position now",
-		    d->master, of->position);
-}
-
-static int to_state(const struct tool *t, struct dev *d, const struct ec_ioc_slave *of, u8 state)
+static int to_state(const struct tool *t, struct dev *d, const struct slave *of, u8 state)
 {
 	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S);
-	struct ec_ioc_slave s;
+	struct slave s;
 
-	return same_slave(d, of, &s) || al_request(d, of->position, state, 0) ||
+	return dev_slave_again(d, of, &s) || al_request(d, of, state, 0) ||
 	       al_wait(d, &s, state, end);
 }
 
-static int to_boot(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s)
+static int to_boot(const struct tool *t, struct dev *d, const struct slave *s)
 {
 	if ((s->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_BOOT)
 		return 0;
@@ -57,7 +45,7 @@ static int to_boot(const struct tool *t, struct dev *d, const struct ec_ioc_slav
 
 static int update(const struct tool *t, struct dev *d, struct foe *f)
 {
-	struct ec_ioc_slave s, now;
+	struct slave s, now;
 	u8 back;
 
 	if (dev_select_single(d, t, &s) || check(t, d, &s))
@@ -71,9 +59,9 @@ static int update(const struct tool *t, struct dev *d, struct foe *f)
 			     s.position, ec_al_state_name(back));
 		return 1;
 	}
-	if (same_slave(d, &s, &now))
+	if (dev_slave_again(d, &s, &now))
 		return 1;
-	if (foe_transfer(d, t, f)) {
+	if (foe_transfer(d, t, &s, f)) {
 		note("Master%u slave %u stays in BOOT; repeat the command", d->master, s.position);
 		return 1;
 	}

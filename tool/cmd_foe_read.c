@@ -21,12 +21,14 @@ static int save(const char *path, const u8 *data, size_t size)
 
 static int foe_read(const struct tool *t, struct foe *f)
 {
+	struct slave s;
 	struct dev d;
 	int ret;
 
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = foe_transfer(&d, t, f);
+	ret = foe_check_name(f->name) || dev_select_single(&d, t, &s) ||
+	      foe_transfer(&d, t, &s, f);
 	dev_close(&d);
 	if (ret)
 		return ret;

@@ -18,7 +18,7 @@ static void quoted(const char *s)
 		out_text(*s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
 }
 
-static void node(const struct ec_ioc_slave *s, enum info info)
+static void node(const struct slave *s, enum info info)
 {
 	out_object(NULL);
 	out_u("position", s->position, "\n\tslave%u [", s->position);
@@ -45,7 +45,7 @@ static void node(const struct ec_ioc_slave *s, enum info info)
 }
 
 /* @regs: NULL: not read */
-static void label(const char *attribute, const struct ec_ioc_slave *s, unsigned int port,
+static void label(const char *attribute, const struct slave *s, unsigned int port,
 		  enum info info, const u8 *regs)
 {
 	out_text(", %s=\"%u", attribute, port);
@@ -62,10 +62,10 @@ static void medium(unsigned int type)
 		port_type_text(type), type == TYPE_EBUS ? 5u : 1u);
 }
 
-static void edge(const struct slaves *all, const struct ec_ioc_slave *s, unsigned int port,
+static void edge(const struct slaves *all, const struct slave *s, unsigned int port,
 		 enum info info, const u8 *const *regs)
 {
-	const struct ec_ioc_slave *to = &all->v[s->ports[port].next_slave];
+	const struct slave *to = &all->v[s->ports[port].next_slave];
 	unsigned int back;
 
 	for (back = 0; back < EC_UAPI_PORTS && to->ports[back].next_slave != s->position; back++)
@@ -148,7 +148,7 @@ static int show(struct dev *d, enum info info, bool tree)
 		goto out;
 	}
 	for (size_t i = 0; i < all.n && info == CRC; i++) {
-		if (errors_read(d, all.v[i].position, regs[i]))
+		if (errors_read(d, &all.v[i], regs[i]))
 			ret = 1;
 		else
 			counters[i] = regs[i];

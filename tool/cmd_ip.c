@@ -6,12 +6,12 @@
 static int ip(const struct tool *t, struct dev *d, struct ec_ip_params *p)
 {
 	struct ec_ioc_ip i = { .params = *p };
-	struct ec_ioc_slave s;
+	struct slave s;
 	int err;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	i.position = s.position;
+	i.slave = s.slave;
 	err = dev_ioctl(d, p->which ? EC_IOC_IP_SET : EC_IOC_IP_GET, &i);
 	if (err)
 		return dev_fail(d, err, "Master%u slave %u: cannot %s IP parameters", d->master,

@@ -20,16 +20,16 @@ struct latches {
 	u8 times[INPUTS][16];	/* 0x09B0: rising, falling */
 };
 
-static int read_all(struct dev *d, u16 position, struct latches *l)
+static int read_all(struct dev *d, const struct slave *s, struct latches *l)
 {
-	if (reg_read(d, position, EC_REG_DC_CUC, &l->owner, 1) ||
-	    reg_read(d, position, EC_REG_DC_LATCH0_CTRL, l->control, INPUTS) ||
-	    reg_read(d, position, EC_REG_DC_LATCH0_STATUS, l->status, INPUTS))
+	if (reg_read(d, s, EC_REG_DC_CUC, &l->owner, 1) ||
+	    reg_read(d, s, EC_REG_DC_LATCH0_CTRL, l->control, INPUTS) ||
+	    reg_read(d, s, EC_REG_DC_LATCH0_STATUS, l->status, INPUTS))
 		return 1;
 	/* reading a time makes room for the next edge, so only where there is one */
 	for (u16 i = 0; i < INPUTS; i++)
 		if (l->status[i] & BOTH &&
-		    reg_read(d, position, (u16)(EC_REG_DC_LATCH0_POS + 16 * i), l->times[i], 16))
+		    reg_read(d, s, (u16)(EC_REG_DC_LATCH0_POS + 16 * i), l->times[i], 16))
 			return 1;
 	return 0;
 }
@@ -68,24 +68,23 @@ static void input(const struct latches *l, unsigned int i)
 }
 
 /* The mode of an input that the slave's own CPU has is not ours to change. */
-static int set_mode(struct dev *d, u16 position, const char *mode)
+static int set_mode(struct dev *d, const struct slave *s, const char *mode)
 {
 	const u8 v = !strcmp(mode, "single") ? BOTH : 0;
 	u8 owner;
 	int ret = 0;
 
-	if (reg_read(d, position, EC_REG_DC_CUC, &owner, 1))
+	if (reg_read(d, s, EC_REG_DC_CUC, &owner, 1))
 		return 1;
 	if (slave_owns(owner, 0) && slave_owns(owner, 1))
 		return fail("slave %u controls both latch inputs itself; use its objects",
-			    position);
+			    s->position);
 	for (unsigned int i = 0; i < INPUTS && !ret; i++) {
 		if (slave_owns(owner, i))
 			note("slave %u: latch %u is controlled by the slave; mode unchanged",
-			     position, i);
+			     s->position, i);
 		else
-			ret = reg_write(d, position, (u16)(EC_REG_DC_LATCH0_CTRL + i), &v, 1,
-					false);
+			ret = reg_write(d, s, (u16)(EC_REG_DC_LATCH0_CTRL + i), &v, 1);
 	}
 	return ret;
 }
@@ -93,15 +92,15 @@ static int set_mode(struct dev *d, u16 position, const char *mode)
 static int show(const struct tool *t, struct dev *d, const char *mode)
 {
 	struct latches l = { 0 };
-	struct ec_ioc_slave s;
+	struct slave s;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
 	if (!slave_has_dc(&s))
 		return fail("slave %u has no distributed clock, so no latch inputs", s.position);
 	if (mode)
-		return set_mode(d, s.position, mode);
-	if (read_all(d, s.position, &l))
+		return set_mode(d, &s, mode);
+	if (read_all(d, &s, &l))
 		return 1;
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);

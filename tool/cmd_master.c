@@ -97,7 +97,7 @@ static void sum(struct ec_ioc_device *c, const struct ec_ioc_device *d)
 	}
 }
 
-static void common(const struct ec_ioc_master *m)
+static void common(const struct master *m)
 {
 	struct ec_ioc_device c = { 0 };
 	double loss[EC_UAPI_RATES];
@@ -117,7 +117,7 @@ static void common(const struct ec_ioc_master *m)
 }
 
 /* a cycle of the kernel that is synchronized to the reference clock */
-static void lock(const struct ec_ioc_master *m)
+static void lock(const struct master *m)
 {
 	static const char *const text[] = { "", "seeking", "locked", "holdover" };
 	const char *key = cycle_lock_key(m->cycle_lock);
@@ -133,7 +133,7 @@ static void lock(const struct ec_ioc_master *m)
 	out_u("lock_losses", m->lock_losses, "lock losses %u\n", m->lock_losses);
 }
 
-static void clocks(const struct ec_ioc_master *m)
+static void clocks(const struct master *m)
 {
 	time_t s = (time_t)(m->app_time / 1000000000) + EPOCH_2000;
 	char text[32];
@@ -155,7 +155,7 @@ static void clocks(const struct ec_ioc_master *m)
 }
 
 /* Frames of the active application, and how long they occupy the wire. */
-static void cycle(const struct tool *t, const struct ec_ioc_master *m)
+static void cycle(const struct tool *t, const struct master *m)
 {
 	out_object("cycle");
 	out_u("interval_us", m->cycle_interval_us, NULL);
@@ -194,7 +194,7 @@ static int show(const struct tool *t, struct dev *d)
 {
 	static const char *const phase_key[] = { "waiting", "idle", "operation" };
 	static const char *const session_key[] = { "none", "reserved", "active", "detached" };
-	struct ec_ioc_master m;
+	struct master m;
 
 	if (dev_master(d, &m))
 		return 1;

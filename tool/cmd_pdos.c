@@ -88,7 +88,7 @@ static void matlab_sm(const struct layout_sm *s)
 	out_text("        }}, ...\n");
 }
 
-static void matlab(const struct dev *d, const struct ec_ioc_slave *s, const struct layout *l)
+static void matlab(const struct dev *d, const struct slave *s, const struct layout *l)
 {
 	out_text("%%\n%% Master %u, Slave %u", d->master, s->position);
 	if (*s->order)
@@ -109,7 +109,7 @@ static void matlab(const struct dev *d, const struct ec_ioc_slave *s, const stru
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct ec_ioc_slave *s, bool several)
+		 const struct slave *s, bool several)
 {
 	bool etherlab = t->skin && !strcmp(t->skin, "etherlab") && !out_is_json();
 	struct layout l;

@@ -8,13 +8,13 @@
 static int exchange(const struct tool *t, u16 address, const struct ec_type *type, u8 *data,
 		    size_t size)
 {
-	struct ec_ioc_slave s;
+	struct slave s;
 	struct dev d;
 	int ret;
 
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = dev_select_single(&d, t, &s) || reg_rdwr(&d, s.position, address, data, size);
+	ret = dev_select_single(&d, t, &s) || reg_rdwr(&d, &s, address, data, size);
 	if (!ret) {
 		out_u("master", d.master, NULL);
 		out_u("slave", s.position, NULL);

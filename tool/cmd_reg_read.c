@@ -8,7 +8,7 @@
 static int show(const struct tool *t, struct dev *d, u16 address, size_t size,
 		const struct ec_type *type)
 {
-	struct ec_ioc_slave s;
+	struct slave s;
 	u8 *data;
 	int ret;
 
@@ -17,7 +17,7 @@ static int show(const struct tool *t, struct dev *d, u16 address, size_t size,
 	data = calloc(1, size);
 	if (!data)
 		return fail("out of memory");
-	ret = reg_read(d, s.position, address, data, size);
+	ret = reg_read(d, &s, address, data, size);
 	if (!ret) {
 		out_u("master", d->master, NULL);
 		out_u("slave", s.position, NULL);

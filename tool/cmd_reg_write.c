@@ -8,27 +8,23 @@
 #include "out.h"
 #include "reg.h"
 
-static int position(const struct tool *t, struct dev *d, u16 *pos)
+/* the slave in @s; with --emergency only its position */
+static int find(const struct tool *t, struct dev *d, struct slave *s)
 {
-	struct ec_ioc_slave s;
 	unsigned int v;
 
-	if (t->emergency) {
-		if (!list_single(&t->positions, &v) || v > 0xffff || t->aliases.given)
-			return usage_error("--emergency needs one ring position with -p and no -a");
-		*pos = (u16)v;
-		return 0;
-	}
-	if (dev_select_single(d, t, &s))
-		return 1;
-	*pos = s.position;
+	if (!t->emergency)
+		return dev_select_single(d, t, s);
+	if (!list_single(&t->positions, &v) || v > 0xffff || t->aliases.given)
+		return usage_error("--emergency needs one ring position with -p and no -a");
+	s->position = (u16)v;
 	return 0;
 }
 
 static int put(const struct tool *t, u16 address, const u8 *data, size_t size)
 {
 	struct dev d;
-	u16 pos = 0;
+	struct slave s;
 	int ret;
 
 	if (address + size > REG_SPACE)
@@ -36,14 +32,17 @@ static int put(const struct tool *t, u16 address, const u8 *data, size_t size)
 				   size, address);
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = position(t, &d, &pos) || reg_write(&d, pos, address, data, size, t->emergency);
+	ret = find(t, &d, &s) ||
+	      (t->emergency ? reg_write_emergency(&d, s.position, address, data, size) :
+			      reg_write(&d, &s, address, data, size));
 	if (!ret) {
 		out_u("master", d.master, NULL);
-		out_u("slave", pos, NULL);
+		out_u("slave", s.position, NULL);
 		out_u("address", address, NULL);
 		out_u("size_bytes", size, NULL);
 		if (t->verbosity > 0)
-			note("%zu byte(s) written to 0x%04x of slave %u", size, address, pos);
+			note("%zu byte(s) written to 0x%04x of slave %u", size, address,
+			     s.position);
 	}
 	dev_close(&d);
 	return ret;

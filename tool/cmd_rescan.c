@@ -8,7 +8,7 @@
 static int wait_scan(const struct tool *t, struct dev *d, u32 before)
 {
 	double limit = t->wait_s >= 0 ? t->wait_s : WAIT_S, end = now_s() + limit;
-	struct ec_ioc_master m;
+	struct master m;
 
 	for (;;) {
 		if (dev_master(d, &m))
@@ -24,7 +24,7 @@ static int wait_scan(const struct tool *t, struct dev *d, u32 before)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_master m;
+	struct master m;
 	char why[160];
 	int err;
 

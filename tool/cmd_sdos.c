@@ -95,7 +95,7 @@ static void object_end(const struct dict_reader *r)
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct ec_ioc_slave *s, bool several)
+		 const struct slave *s, bool several)
 {
 	const struct dict_reader r = {
 		.entries = t->verbosity >= 0, .values = t->verbosity > 0,
@@ -110,7 +110,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 	if (several)
 		out_text("=== Master %u, Slave %u ===\n", d->master, s->position);
 	out_array("objects");
-	ret = dict_read(t, d, s->position, &r);
+	ret = dict_read(t, d, s, &r);
 	out_end();
 	out_end();
 	return ret;

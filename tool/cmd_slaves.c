@@ -17,7 +17,7 @@ static int digits(unsigned int v)
 	return snprintf(NULL, 0, "%u", v);
 }
 
-static void row(const struct ec_ioc_slave *s, const char *indent, const int *w)
+static void row(const struct slave *s, const char *indent, const int *w)
 {
 	char state[16], name[EC_UAPI_STRING];
 
@@ -28,7 +28,7 @@ static void row(const struct ec_ioc_slave *s, const char *indent, const int *w)
 }
 
 /* ring order, each slave once; the link to the next one may be cut */
-static void table(const struct ec_ioc_slave *s, size_t n, const char *indent)
+static void table(const struct slave *s, size_t n, const char *indent)
 {
 	int w[4] = { 0 };
 	char state[16];
@@ -49,7 +49,7 @@ static void table(const struct ec_ioc_slave *s, size_t n, const char *indent)
 
 static int by_position(const void *a, const void *b)
 {
-	const struct ec_ioc_slave *x = a, *y = b;
+	const struct slave *x = a, *y = b;
 
 	return (x->position > y->position) - (x->position < y->position);
 }
@@ -66,7 +66,7 @@ static size_t sort_once(struct slaves *s)
 }
 
 /* on stderr: what makes the list another one than the bus */
-static void remark(const struct dev *d, const struct ec_ioc_master *m)
+static void remark(const struct dev *d, const struct master *m)
 {
 	char why[160] = "";
 
@@ -110,7 +110,7 @@ static void missing(struct dev *d, unsigned int configs)
 static int wait_first(struct dev *d)
 {
 	double end = now_s() + FIRST_S;
-	struct ec_ioc_master m;
+	struct master m;
 	char why[160];
 
 	if (out_is_json() || !isatty(STDOUT_FILENO))
@@ -127,7 +127,7 @@ static int wait_first(struct dev *d)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_master m;
+	struct master m;
 	struct slaves sel;
 
 	if (!t->wait && wait_first(d))
@@ -187,7 +187,7 @@ const struct cmd cmd_slaves = {
 		"--verbose shows all data of the slaves. --wait waits until no bus scan is running\n"
 		"(default at most 60 s); without it, on a terminal, at most 2 s for the first scan.\n",
 	.json = "masters[]: master, scan_busy, list_held, slaves_responding,\n"
-		"slaves[] (position, alias, relative_position, device,\n"
+		"slaves[] (position, device_number, alias, relative_position, device,\n"
 		"state, al_error, flag_error, cause, warning, differs,\n"
 		"not_in_op (or null), name, vendor_id, product_code, revision_number,\n"
 		"serial_number, own_alias, station_address, al_status, al_status_code,\n"

@@ -11,16 +11,16 @@ static int soe_read(const struct tool *t, struct dev *d, const struct soe_addr *
 		.idn = a->idn, .drive = a->drive, .size = sizeof(data), .data = (uintptr_t)data,
 		.timeout_ms = t->timeout_ms,
 	};
-	struct ec_ioc_slave s;
+	struct slave s;
 	const u8 *from = data;
 	int err;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	soe.position = s.position;
+	soe.slave = s.slave;
 	err = dev_ioctl(d, EC_IOC_SOE_READ, &soe);
 	if (err)
-		return soe_failed(d, err, &soe, a, "read");
+		return soe_failed(d, err, &s, soe.error_code, a, "read");
 	soe.size = min(soe.size, (u32)sizeof(data));
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);

@@ -32,15 +32,15 @@ static int soe_write(const struct tool *t, struct dev *d, const struct soe_addr 
 		.idn = a->idn, .drive = a->drive, .size = (u32)size, .data = (uintptr_t)data,
 		.timeout_ms = t->timeout_ms,
 	};
-	struct ec_ioc_slave s;
+	struct slave s;
 	int err;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	soe.position = s.position;
+	soe.slave = s.slave;
 	err = dev_ioctl(d, EC_IOC_SOE_WRITE, &soe);
 	if (err)
-		return soe_failed(d, err, &soe, a, "write");
+		return soe_failed(d, err, &s, soe.error_code, a, "write");
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
 	soe_addr_out(a);

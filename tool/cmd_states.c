@@ -34,7 +34,7 @@ static void measure(const struct slaves *s, int *w)
 	}
 }
 
-static void show_slave(const struct ec_ioc_slave *s, const char *indent, const int *w)
+static void show_slave(const struct slave *s, const char *indent, const int *w)
 {
 	char state[16], why[400];
 
@@ -73,13 +73,13 @@ static int each(const struct tool *t, struct dev *d)
 		out_text("Master%u\n", d->master);
 	out_array("slaves");
 	for (size_t i = 0; i < sel.n && wanted; i++)
-		ret |= al_request(d, sel.v[i].position, wanted, t->timeout_ms);
+		ret |= al_request(d, &sel.v[i], wanted, t->timeout_ms);
 	for (size_t i = 0; i < sel.n && wanted && t->wait; i++)
 		ret |= al_wait(d, &sel.v[i], wanted, end);
 	measure(&sel, w);
 	for (size_t i = 0; i < sel.n; i++)
 		if (!wanted || (t->wait && out_is_json() &&
-				!dev_slave(d, sel.v[i].position, &sel.v[i])))
+				!dev_slave_again(d, &sel.v[i], &sel.v[i])))
 			show_slave(&sel.v[i], d->selected > 1 ? "  " : "", w);
 	out_end();
 	out_end();

@@ -29,7 +29,7 @@ static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
 }
 
 /* NULL where the dictionary contradicts the data */
-static const struct ec_type *described(struct dev *d, const struct ec_ioc_slave *s,
+static const struct ec_type *described(struct dev *d, const struct slave *s,
 				       const struct sdo_addr *a, u32 timeout_ms, size_t size)
 {
 	u32 abort;
@@ -41,13 +41,13 @@ static const struct ec_type *described(struct dev *d, const struct ec_ioc_slave 
 static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		  const struct ec_type *type)
 {
-	struct ec_ioc_slave s;
+	struct slave s;
 	size_t size;
 	u8 *data;
 	int ret;
 
 	if (dev_select_single(d, t, &s) ||
-	    sdo_upload(d, s.position, a, t->timeout_ms, &data, &size))
+	    sdo_upload(d, &s, a, t->timeout_ms, &data, &size))
 		return 1;
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);

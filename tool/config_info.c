@@ -292,9 +292,11 @@ static void reason(struct dev *d, const struct ec_ioc_config *c, const char *in)
 /* What is not certain of the process data, also in OP. */
 static void warning(struct dev *d, const struct ec_ioc_config *c, const char *in)
 {
-	struct ec_ioc_slave s = { .position = (__u16)c->slave_position };
+	struct ec_ioc_slave_why s = {
+		.slave = { .kind = EC_ADDRESS_DEVICE, .device = c->device },
+	};
 
-	if (c->slave_position < 0 || dev_ioctl(d, EC_IOC_SLAVE, &s))
+	if (!c->device || dev_ioctl(d, EC_IOC_SLAVE_WHY, &s))
 		s.warning[0] = '\0';
 	string_clean(s.warning, sizeof(s.warning));
 	if (s.warning[0])

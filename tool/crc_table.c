@@ -6,7 +6,7 @@
 
 #include "out.h"
 
-static void cell(const struct ec_ioc_slave *s, const u8 *regs, unsigned int i)
+static void cell(const struct slave *s, const u8 *regs, unsigned int i)
 {
 	const struct ec_ioc_port *p = &s->ports[i];
 	char next[8] = "   ";
@@ -54,7 +54,7 @@ void crc_table_head(void)
  * @s: slave
  * @regs: its registers EC_REG_ERRORS
  */
-void crc_table_row(const struct tool *t, const struct ec_ioc_slave *s, const u8 *regs)
+void crc_table_row(const struct tool *t, const struct slave *s, const u8 *regs)
 {
 	char name[EC_UAPI_STRING];
 

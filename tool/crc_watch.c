@@ -211,7 +211,7 @@ static int read_all(struct dev *d, struct span *w, u8 (*regs)[EC_ERRORS_SIZE])
 	bool any = false;
 
 	for (size_t i = 0; i < w->all.n; i++) {
-		if (!w->mute[i] && errors_read(d, w->all.v[i].position, regs[i])) {
+		if (!w->mute[i] && errors_read(d, &w->all.v[i], regs[i])) {
 			w->mute[i] = true;
 			w->shown[i] = false;
 		}
@@ -253,7 +253,7 @@ static int unchanged(struct dev *d, const struct slaves *before)
 		ret = fail("Master%u: %zu slave(s) before, %zu after; repeat the command",
 			   d->master, before->n, now.n);
 	for (size_t i = 0; i < now.n && !ret; i++) {
-		const struct ec_ioc_slave *a = &before->v[i], *b = &now.v[i];
+		const struct slave *a = &before->v[i], *b = &now.v[i];
 
 		if (a->station != b->station || a->vendor_id != b->vendor_id ||
 		    a->product_code != b->product_code || a->serial_number != b->serial_number)
@@ -264,7 +264,7 @@ static int unchanged(struct dev *d, const struct slaves *before)
 	return ret;
 }
 
-static u64 sent(const struct ec_ioc_master *m)
+static u64 sent(const struct master *m)
 {
 	u64 n = 0;
 
@@ -276,7 +276,7 @@ static u64 sent(const struct ec_ioc_master *m)
 /* until the time is over or the user ends it */
 static int pass(struct dev *d, double seconds, struct span *w)
 {
-	struct ec_ioc_master before, after;
+	struct master before, after;
 	double from = now_s();
 
 	if (dev_master(d, &before))

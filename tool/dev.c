@@ -12,9 +12,6 @@
 #include "../master/wire/al.h"
 #include "out.h"
 #include "sys.h"
-#include "text.h"
-
-#define SCAN_RETRIES	3
 
 double now_s(void)
 {
@@ -61,11 +58,12 @@ int dev_open(struct dev *d, unsigned int master, bool write)
 	d->fd = sys_open(d->path, write ? O_RDWR : O_RDONLY);
 	if (d->fd < 0)
 		return open_error(d, errno);
+	d->version.abi = EC_UAPI_VERSION;
 	if (!sys_ioctl(d->fd, EC_IOC_VERSION, &d->version))
 		return 0;
 	if (errno == ENOTTY || errno == EINVAL)
-		fail("%s: not a device of this EtherCAT master (interface version %u)", d->path,
-		     EC_UAPI_VERSION);
+		fail("%s: not a device of this EtherCAT master (interface version %u), or of an older module: update it",
+		     d->path, EC_UAPI_VERSION);
 	else
 		dev_fail(d, errno, "%s: cannot read the version of the module", d->path);
 	dev_close(d);
@@ -177,99 +175,6 @@ int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, s
 	return each_master(t, write, fn, NULL);
 }
 
-int dev_master(struct dev *d, struct ec_ioc_master *m)
-{
-	int err;
-
-	*m = (struct ec_ioc_master){ 0 };
-	err = dev_ioctl(d, EC_IOC_MASTER, m);
-	if (err)
-		return dev_fail(d, err, "Master%u: cannot read master state", d->master);
-	for (int i = 0; i < EC_UAPI_DEVICES; i++)
-		string_clean(m->devices[i].name, sizeof(m->devices[i].name));
-	m->device_count = min(m->device_count, (u32)EC_UAPI_DEVICES);
-	return 0;
-}
-
-static int get_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
-{
-	int err;
-
-	*s = (struct ec_ioc_slave){ .position = (__u16)position };
-	err = dev_ioctl(d, EC_IOC_SLAVE, s);
-	if (err)
-		return err;
-	string_clean(s->group, sizeof(s->group));
-	string_clean(s->image, sizeof(s->image));
-	string_clean(s->order, sizeof(s->order));
-	string_clean(s->name, sizeof(s->name));
-	string_clean(s->why, sizeof(s->why));
-	string_clean(s->warning, sizeof(s->warning));
-	return 0;
-}
-
-int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s)
-{
-	int err = get_slave(d, position, s);
-
-	return err ? dev_fail(d, err, "Master%u slave %u: cannot read slave state", d->master,
-			position) : 0;
-}
-
-void dev_config_why(struct dev *d, unsigned int config, char *buf, size_t size)
-{
-	struct ec_ioc_config_why w = { .index = config };
-
-	if (dev_ioctl(d, EC_IOC_CONFIG_WHY, &w))
-		w.text[0] = '\0';
-	string_clean(w.text, sizeof(w.text));
-	snprintf(buf, size, "%s", w.text);
-}
-
-void slaves_free(struct slaves *s)
-{
-	free(s->v);
-	*s = (struct slaves){ 0 };
-}
-
-/*
- * The bus may change while it is read: when a scan took place meanwhile the
- * list is read again, and a slave that is gone by then ends it.
- */
-int dev_slaves(struct dev *d, struct slaves *all)
-{
-	*all = (struct slaves){ 0 };
-	for (int i = 0;; i++) {
-		struct ec_ioc_master before, after;
-		int err = 0;
-
-		if (dev_master(d, &before))
-			return 1;
-		slaves_free(all);
-		all->v = calloc(before.slave_count + 1, sizeof(*all->v));
-		if (!all->v)
-			return fail("out of memory");
-		while (all->n < before.slave_count) {
-			err = get_slave(d, (unsigned int)all->n, &all->v[all->n]);
-			if (err)
-				break;
-			all->n++;
-		}
-		if (dev_master(d, &after)) {
-			slaves_free(all);
-			return 1;
-		}
-		if (before.scan_count != after.scan_count && i < SCAN_RETRIES)
-			continue;
-		if (err && before.scan_count == after.scan_count && !after.scan_busy) {
-			slaves_free(all);
-			return dev_fail(d, err, "Master%u slave %zu: cannot read slave state",
-					d->master, all->n);
-		}
-		return 0;
-	}
-}
-
 /* Single positions that the ring does not have, beside others that it has. */
 static void name_absent(const struct dev *d, const struct tool *t, size_t selected, size_t count)
 {
@@ -352,15 +257,14 @@ int dev_each_slave(const struct tool *t, const struct slave_walk *w)
 	return ret;
 }
 
-void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size)
+void dev_why_empty(const struct master *m, char *buf, size_t size)
 {
 	const struct ec_ioc_device *i = &m->devices[0];
-	bool up = i->link_up || (m->device_count > 1 && m->devices[1].link_up);
 
 	*buf = 0;
 	if (m->phase == EC_PHASE_WAITING)
 		snprintf(buf, size, "no network interface yet, waiting for %s", i->name);
-	else if (!up)
+	else if (!m->links_up)
 		snprintf(buf, size, "%s has no link, check the cable", i->name);
 	else if (m->scan_busy)
 		snprintf(buf, size, "a bus scan is running");
@@ -398,7 +302,7 @@ int dev_nothing_selected(void)
 /* the failure of a command that has no slave to work on */
 int dev_none_present(struct dev *d)
 {
-	struct ec_ioc_master m;
+	struct master m;
 	char why[160];
 
 	if (dev_master(d, &m))
@@ -407,7 +311,7 @@ int dev_none_present(struct dev *d)
 	return fail("Master%u: no slaves%s%s", d->master, *why ? ": " : "", why);
 }
 
-int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s)
+int dev_select_single(struct dev *d, const struct tool *t, struct slave *s)
 {
 	struct slaves sel;
 	size_t all;
@@ -431,7 +335,7 @@ int dev_wait_scan(struct dev *d, double timeout_s)
 	double end = now_s() + timeout_s;
 
 	for (;;) {
-		struct ec_ioc_master m;
+		struct master m;
 
 		if (dev_master(d, &m))
 			return 1;
@@ -445,7 +349,7 @@ int dev_wait_scan(struct dev *d, double timeout_s)
 	}
 }
 
-void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size)
+void slave_name(const struct slave *s, char *buf, size_t size)
 {
 	if (s->name[0])
 		snprintf(buf, size, "%s", s->name);
@@ -468,7 +372,7 @@ void al_state_text(unsigned int al_status, char *buf, size_t size)
 }
 
 /* second number of "alias:relative" */
-unsigned int slave_alias_pos(const struct ec_ioc_slave *s)
+unsigned int slave_alias_pos(const struct slave *s)
 {
 	return s->alias_group ? s->alias_pos : s->position;
 }

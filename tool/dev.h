@@ -13,9 +13,31 @@ struct dev {
 	unsigned int selected;		/* masters that -m leaves */
 };
 
+/* state of a master, with its network devices */
+struct master {
+	struct ec_ioc_master;
+	struct ec_ioc_device devices[EC_UAPI_DEVICES];
+};
+
+/*
+ * A slave as it was found, with its texts and ports. @slave of the anonymous member names the
+ * device: further commands reach this one or fail, whatever slave has its position by now.
+ */
+struct slave {
+	struct ec_ioc_slave;
+	struct ec_ioc_port ports[EC_UAPI_PORTS];
+	char group[EC_UAPI_STRING];
+	char image[EC_UAPI_STRING];
+	char order[EC_UAPI_STRING];
+	char name[EC_UAPI_STRING];
+	char why[EC_UAPI_REASON];
+	char warning[EC_UAPI_WARNING];
+	struct ec_cause cause;
+};
+
 struct slaves {
 	size_t n;
-	struct ec_ioc_slave *v;
+	struct slave *v;
 };
 
 int dev_open(struct dev *d, unsigned int master, bool write);
@@ -43,17 +65,20 @@ int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, s
 struct slave_walk {
 	bool write;
 	bool title;
-	bool (*takes)(const struct ec_ioc_slave *s);
+	bool (*takes)(const struct slave *s);
 	int (*slave)(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		     const struct ec_ioc_slave *s, bool several);
+		     const struct slave *s, bool several);
 	int (*end)(const struct slave_walk *w, struct dev *d, size_t taken, size_t selected);
 	void *ctx;
 };
 
 int dev_each_slave(const struct tool *t, const struct slave_walk *w);
 
-int dev_master(struct dev *d, struct ec_ioc_master *m);
-int dev_slave(struct dev *d, unsigned int position, struct ec_ioc_slave *s);
+int master_read(int fd, struct master *m);
+int dev_master(struct dev *d, struct master *m);
+int dev_slave(struct dev *d, unsigned int position, struct slave *s);
+/* the same device again, wherever it is now; @s may be @of */
+int dev_slave_again(struct dev *d, const struct slave *of, struct slave *s);
 int dev_slaves(struct dev *d, struct slaves *all);
 void slaves_free(struct slaves *s);
 
@@ -67,16 +92,16 @@ void dev_selected(const char *what, bool given, size_t n);
 int dev_nothing_selected(void);
 int dev_none_present(struct dev *d);
 /* exactly one */
-int dev_select_single(struct dev *d, const struct tool *t, struct ec_ioc_slave *s);
+int dev_select_single(struct dev *d, const struct tool *t, struct slave *s);
 
 /* why nobody is on the bus, as far as the master knows; "" when it does not */
-void dev_why_empty(const struct ec_ioc_master *m, char *buf, size_t size);
+void dev_why_empty(const struct master *m, char *buf, size_t size);
 int dev_wait_scan(struct dev *d, double timeout_s);
 
-void slave_name(const struct ec_ioc_slave *s, char *buf, size_t size);
+void slave_name(const struct slave *s, char *buf, size_t size);
 const char *cycle_lock_key(u32 lock);
 void al_state_text(unsigned int al_status, char *buf, size_t size);
-unsigned int slave_alias_pos(const struct ec_ioc_slave *s);
+unsigned int slave_alias_pos(const struct slave *s);
 double now_s(void);
 void sleep_ms(unsigned int ms);
 

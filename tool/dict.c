@@ -19,7 +19,7 @@
 struct dict {
 	const struct dict_reader *r;
 	struct dev *d;
-	u16 position;
+	const struct slave *s;
 	struct progress progress;
 	size_t done;	/* objects */
 	size_t all;
@@ -28,7 +28,7 @@ struct dict {
 };
 
 /* Does the slave describe its objects, as far as its EEPROM says? */
-bool dict_described(const struct ec_ioc_slave *s)
+bool dict_described(const struct slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE &&
 	       (!s->coe_details || s->coe_details & EC_SII_COE_SDO_INFO);
@@ -38,7 +38,7 @@ bool dict_described(const struct ec_ioc_slave *s)
 static int ask(struct dict *x, u8 what, u16 index, u8 sub, size_t *size, bool quiet)
 {
 	struct ec_ioc_sdo_info i = {
-		.position = x->position, .index = index, .subindex = sub, .what = what,
+		.slave = x->s->slave, .index = index, .subindex = sub, .what = what,
 		.size = ROOM, .data = (uintptr_t)x->buf,
 	};
 	int err = dev_ioctl(x->d, EC_IOC_SDO_INFO, &i);
@@ -51,10 +51,10 @@ static int ask(struct dict *x, u8 what, u16 index, u8 sub, size_t *size, bool qu
 	if (i.abort_code)
 		fail_full(err, NULL, i.abort_code,
 			  "Master%u slave %u: cannot read the object dictionary", x->d->master,
-			  x->position);
+			  x->s->position);
 	else
 		dev_fail(x->d, err, "Master%u slave %u: cannot read the object dictionary",
-			 x->d->master, x->position);
+			 x->d->master, x->s->position);
 	return err;
 }
 
@@ -62,7 +62,7 @@ static void progress(struct dict *x)
 {
 	char what[32];
 
-	snprintf(what, sizeof(what), "slave %u", x->position);
+	snprintf(what, sizeof(what), "slave %u", x->s->position);
 	progress_step(&x->progress, what, x->done, x->all, "objects");
 }
 
@@ -76,7 +76,7 @@ static void name_of(char to[DICT_NAME], const char *name, size_t len)
 static void read_limits(struct dict *x, struct dict_entry *e, size_t plain)
 {
 	struct ec_ioc_sdo_info i = {
-		.position = x->position, .index = e->index, .subindex = e->sub,
+		.slave = x->s->slave, .index = e->index, .subindex = e->sub,
 		.what = EC_SDO_INFO_ENTRY, .value_info = EC_SDO_VALUE_ALL,
 		.size = ROOM, .data = (uintptr_t)x->limits,
 	};
@@ -89,7 +89,7 @@ static void read_limits(struct dict *x, struct dict_entry *e, size_t plain)
 static void read_value(struct dict *x, struct dict_entry *e)
 {
 	struct ec_ioc_sdo s = {
-		.position = x->position, .index = e->index, .subindex = e->sub, .size = ROOM,
+		.slave = x->s->slave, .index = e->index, .subindex = e->sub, .size = ROOM,
 		.data = (uintptr_t)x->buf,
 	};
 	int err = dev_ioctl(x->d, EC_IOC_SDO_UPLOAD, &s);
@@ -188,17 +188,18 @@ static int dictionary(struct dict *x)
  * dict_read() - read the object dictionary of a slave
  * @t: command line
  * @d: its master, open for writing
- * @position: of the slave
+ * @s: slave
  * @r: what is done with it
  *
  * Objects and entries that the slave refuses to describe are left out.
  *
  * Return: 0, or 1 after printing why it ended.
  */
-int dict_read(const struct tool *t, struct dev *d, u16 position, const struct dict_reader *r)
+int dict_read(const struct tool *t, struct dev *d, const struct slave *s,
+	      const struct dict_reader *r)
 {
 	struct dict x = {
-		.r = r, .d = d, .position = position, .buf = malloc(ROOM + 1),
+		.r = r, .d = d, .s = s, .buf = malloc(ROOM + 1),
 		.limits = malloc(ROOM),
 	};
 	int ret;

@@ -74,8 +74,9 @@ struct dict_reader {
 	void *ctx;
 };
 
-bool dict_described(const struct ec_ioc_slave *s);
-int dict_read(const struct tool *t, struct dev *d, u16 position, const struct dict_reader *r);
+bool dict_described(const struct slave *s);
+int dict_read(const struct tool *t, struct dev *d, const struct slave *s,
+	      const struct dict_reader *r);
 
 void dict_access_text(u16 access, char to[7]);
 void dict_type_text(u16 type, char *to, size_t size);

@@ -126,7 +126,7 @@ static int no_answer(const struct dict_image *i, const char *name)
 	return fail("%s: %zu value(s) could not be transferred; read again", name, i->failures);
 }
 
-static int with_file(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s)
+static int with_file(const struct tool *t, struct dev *d, const struct slave *s)
 {
 	struct comparison c = { .right = t->compare };
 	struct dict_image a = { 0 }, b = { 0 };
@@ -142,12 +142,12 @@ static int with_file(const struct tool *t, struct dev *d, const struct ec_ioc_sl
 	return ret;
 }
 
-static int with_slave(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s)
+static int with_slave(const struct tool *t, struct dev *d, const struct slave *s)
 {
 	struct dict_image a = { 0 }, b = { 0 };
 	char left[32], right[32];
 	struct comparison c = { .left = left, .right = right };
-	struct ec_ioc_slave other;
+	struct slave other;
 	int ret;
 
 	if (dev_slave(d, (unsigned int)t->compare_slave, &other))
@@ -161,7 +161,7 @@ static int with_slave(const struct tool *t, struct dev *d, const struct ec_ioc_s
 	return ret;
 }
 
-static int save(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s)
+static int save(const struct tool *t, struct dev *d, const struct slave *s)
 {
 	struct dict_image i = { 0 };
 	size_t refused = 0, values = 0;
@@ -187,9 +187,9 @@ static int save(const struct tool *t, struct dev *d, const struct ec_ioc_slave *
 }
 
 static int single(const struct tool *t,
-		  int (*fn)(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s))
+		  int (*fn)(const struct tool *t, struct dev *d, const struct slave *s))
 {
-	struct ec_ioc_slave s;
+	struct slave s;
 	struct dev d;
 	int ret;
 

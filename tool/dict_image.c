@@ -75,7 +75,7 @@ static void entry(const struct dict_reader *r, const struct dict_entry *e)
  *
  * Return: 0, or 1 after printing what failed.
  */
-int dict_image_read(const struct tool *t, struct dev *d, const struct ec_ioc_slave *s,
+int dict_image_read(const struct tool *t, struct dev *d, const struct slave *s,
 		    struct dict_image *i)
 {
 	const struct dict_reader r = {
@@ -89,7 +89,7 @@ int dict_image_read(const struct tool *t, struct dev *d, const struct ec_ioc_sla
 	if (!dict_described(s))
 		return fail("Master%u slave %u: no object dictionary that can be read (CoE with SDO information)",
 			    d->master, s->position);
-	if (dict_read(t, d, s->position, &r))
+	if (dict_read(t, d, s, &r))
 		return 1;
 	return i->no_memory ? fail("out of memory") : 0;
 }

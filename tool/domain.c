@@ -7,7 +7,7 @@
 int domain_each(struct dev *d, const struct tool *t,
 		int (*fn)(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom))
 {
-	struct ec_ioc_master m;
+	struct master m;
 	struct numbers sel;
 	int ret = 0;
 

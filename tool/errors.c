@@ -8,17 +8,17 @@
 /**
  * errors_try() - read the error counters of a slave
  * @d: master, open for writing
- * @position: of the slave
+ * @s: slave
  * @regs: result, EC_ERRORS_SIZE bytes
  *
  * They are of use where frames are lost: the read is repeated then, as it changes nothing.
  *
  * Return: 0 or the errno.
  */
-int errors_try(struct dev *d, u16 position, u8 *regs)
+int errors_try(struct dev *d, const struct slave *s, u8 *regs)
 {
 	struct ec_ioc_reg r = {
-		.position = position, .address = EC_REG_ERRORS, .size = EC_ERRORS_SIZE,
+		.slave = s->slave, .address = EC_REG_ERRORS, .size = EC_ERRORS_SIZE,
 		.data = (uintptr_t)regs,
 	};
 	int err = ETIMEDOUT;
@@ -29,10 +29,10 @@ int errors_try(struct dev *d, u16 position, u8 *regs)
 }
 
 /* the same; 0, or 1 after printing the error */
-int errors_read(struct dev *d, u16 position, u8 *regs)
+int errors_read(struct dev *d, const struct slave *s, u8 *regs)
 {
-	int err = errors_try(d, position, regs);
+	int err = errors_try(d, s, regs);
 
 	return err ? dev_fail(d, err, "Master%u slave %u: cannot read register 0x%04x", d->master,
-			      position, EC_REG_ERRORS) : 0;
+			      s->position, EC_REG_ERRORS) : 0;
 }

@@ -6,8 +6,8 @@
 #include "../master/wire/regs.h"
 #include "reg.h"
 
-int errors_try(struct dev *d, u16 position, u8 *regs);
-int errors_read(struct dev *d, u16 position, u8 *regs);
+int errors_try(struct dev *d, const struct slave *s, u8 *regs);
+int errors_read(struct dev *d, const struct slave *s, u8 *regs);
 
 static inline u8 err_rx(const u8 *regs, unsigned int port)
 {

@@ -96,7 +96,8 @@ int foe_password(int argc, char **argv, struct foe *f)
 	return 0;
 }
 
-static int failed(struct dev *d, int err, const struct ec_ioc_foe *i, bool write)
+static int failed(struct dev *d, int err, const struct slave *s, const struct ec_ioc_foe *i,
+		  bool write)
 {
 	const char *text = ec_foe_error_text(i->error_code) ?: "unknown code", *own;
 	char name[EC_FOE_NAME + 1] = "", reason[EC_UAPI_REASON];
@@ -106,14 +107,14 @@ static int failed(struct dev *d, int err, const struct ec_ioc_foe *i, bool write
 	string_clean(name, sizeof(name));
 	if (!i->error_code)
 		return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s'", d->master,
-				i->position, verb, name);
+				s->position, verb, name);
 	dev_reason(d, err, reason, sizeof(reason));
 	own = strstr(reason, "; text of the slave: ");
 	if (own && !strcasecmp(strchr(own, ':') + 2, text))
 		own = NULL;
 	return fail_cause(err, reason, own ? own + 2 : NULL,
 			  "Master%u slave %u: cannot %s file '%s': 0x%08x: %s", d->master,
-			  i->position, verb, name, i->error_code, text);
+			  s->position, verb, name, i->error_code, text);
 }
 
 int foe_check_name(const char *name)
@@ -130,37 +131,31 @@ int foe_check_name(const char *name)
 }
 
 /* A read sets @f->size to what has come. */
-int foe_transfer(struct dev *d, const struct tool *t, struct foe *f)
+int foe_transfer(struct dev *d, const struct tool *t, const struct slave *s, struct foe *f)
 {
 	struct watch w = { .f = f };
 	struct ec_ioc_foe i = {
 		.password = f->password, .size = f->size, .data = (uintptr_t)f->data,
-		.done = (uintptr_t)&w.done,
+		.done = (uintptr_t)&w.done, .slave = s->slave,
 	};
-	struct ec_ioc_slave s;
 	pthread_t thread;
 	double begin;
 	bool watched;
 	int err;
 
-	if (foe_check_name(f->name))
-		return 1;
-	if (dev_select_single(d, t, &s))
-		return 1;
 	memcpy(i.name, f->name, strlen(f->name));
-	i.position = s.position;
 	begin = now_s();
 	watched = watch_begin(&w, t, &thread);
 	err = dev_ioctl(d, f->write ? EC_IOC_FOE_WRITE : EC_IOC_FOE_READ, &i);
 	if (watched)
 		watch_end(&w, thread);
 	if (err)
-		return failed(d, err, &i, f->write);
+		return failed(d, err, s, &i, f->write);
 	f->size = min(i.size, f->size);
 	if (t->verbosity > 0)
 		fprintf(stderr, "%u bytes in %.2f s\n", f->size, now_s() - begin);
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("slave", s->position, NULL);
 	out_str("name", f->name, NULL);
 	out_u("size_bytes", f->size, NULL);
 	return 0;

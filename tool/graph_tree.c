@@ -55,7 +55,7 @@ static struct widths measure(const struct topo *t, const struct slaves *all)
 }
 
 /* "0 1 - -": a number is an open port, x one that is closed despite its link */
-static void ports(const struct ec_ioc_slave *s)
+static void ports(const struct slave *s)
 {
 	out_text("  ports");
 	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++) {
@@ -91,7 +91,7 @@ static void errors_text(const u8 *regs)
 	}
 }
 
-static void ports_json(const struct ec_ioc_slave *s, const u8 *regs)
+static void ports_json(const struct slave *s, const u8 *regs)
 {
 	out_array("ports");
 	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++) {
@@ -127,7 +127,7 @@ static void upstream(const struct topo_node *n)
 	out_u("port", n->port, NULL);
 }
 
-static void row(const struct topo *t, const struct ec_ioc_slave *s, struct widths w, const u8 *regs)
+static void row(const struct topo *t, const struct slave *s, struct widths w, const u8 *regs)
 {
 	const struct topo_node *n = &t->node[s->position];
 	const char *medium = port_type_text(s->ports[n->port].type);
@@ -157,7 +157,7 @@ static void row(const struct topo *t, const struct ec_ioc_slave *s, struct width
 	out_end();
 }
 
-static void heading(struct dev *d, const struct ec_ioc_master *m, bool backup)
+static void heading(struct dev *d, const struct master *m, bool backup)
 {
 	const struct ec_ioc_device *dev = &m->devices[backup];
 
@@ -175,7 +175,7 @@ static void heading(struct dev *d, const struct ec_ioc_master *m, bool backup)
  */
 int graph_tree(struct dev *d, const struct slaves *all, const u8 *const *errors)
 {
-	struct ec_ioc_master m;
+	struct master m;
 	struct widths w;
 	struct topo t;
 	int ret = 0;

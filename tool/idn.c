@@ -62,14 +62,14 @@ void soe_addr_out(const struct soe_addr *a)
 }
 
 /* Return: 1 */
-int soe_failed(struct dev *d, int err, const struct ec_ioc_soe *s, const struct soe_addr *a,
-	       const char *verb)
+int soe_failed(struct dev *d, int err, const struct slave *s, u32 error,
+	       const struct soe_addr *a, const char *verb)
 {
-	const char *text = ec_soe_error_text((u16)s->error_code);
+	const char *text = ec_soe_error_text((u16)error);
 
-	if (s->error_code)
+	if (error)
 		return fail("Master%u slave %u: cannot %s %s of drive %u: 0x%04x: %s", d->master,
-			    s->position, verb, a->text, a->drive, s->error_code,
+			    s->position, verb, a->text, a->drive, error,
 			    text ? text : "unknown code");
 	return dev_fail(d, err, "Master%u slave %u: cannot %s %s of drive %u", d->master,
 			s->position, verb, a->text, a->drive);

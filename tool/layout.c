@@ -22,7 +22,7 @@ static int read_entries(struct dev *d, struct layout_pdo *p)
 		struct ec_ioc_pdo_entry *e = &p->entries[i];
 		int err;
 
-		e->position = p->pdo.position;
+		e->slave = p->pdo.slave;
 		e->sm = p->pdo.sm;
 		e->pdo_pos = p->pdo.pdo_pos;
 		e->entry_pos = (__u16)i;
@@ -43,7 +43,7 @@ static int read_pdos(struct dev *d, struct layout_sm *sm)
 		struct layout_pdo *p = &sm->pdos[i];
 		int err;
 
-		p->pdo.position = sm->sm.position;
+		p->pdo.slave = sm->sm.slave;
 		p->pdo.sm = sm->sm.sm;
 		p->pdo.pdo_pos = (__u16)i;
 		err = dev_ioctl(d, EC_IOC_PDO, &p->pdo);
@@ -65,7 +65,7 @@ static int read_pdos(struct dev *d, struct layout_sm *sm)
  *
  * Return: 0, or 1 after printing the error.
  */
-int layout_read(struct dev *d, const struct ec_ioc_slave *s, struct layout *l)
+int layout_read(struct dev *d, const struct slave *s, struct layout *l)
 {
 	int err = 0;
 
@@ -75,7 +75,7 @@ int layout_read(struct dev *d, const struct ec_ioc_slave *s, struct layout *l)
 	for (unsigned int i = 0; i < s->sm_count && !err; i++) {
 		struct layout_sm *sm = &l->sms[i];
 
-		sm->sm.position = s->position;
+		sm->sm.slave = s->slave;
 		sm->sm.sm = (__u8)i;
 		err = dev_ioctl(d, EC_IOC_SM, &sm->sm);
 		if (!err) {

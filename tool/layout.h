@@ -20,7 +20,7 @@ struct layout {
 	struct layout_sm *sms;
 };
 
-int layout_read(struct dev *d, const struct ec_ioc_slave *s, struct layout *l);
+int layout_read(struct dev *d, const struct slave *s, struct layout *l);
 void layout_free(struct layout *l);
 /* written by the master: an RxPDO of the slave */
 bool layout_is_output(const struct layout_sm *sm);

@@ -215,7 +215,7 @@ static void claim(struct nics *all, unsigned int master, unsigned int side,
 /* what the masters have; without the module none has anything */
 static void ask_masters(struct nics *all)
 {
-	struct ec_ioc_master m;
+	struct master m;
 
 	for (unsigned int i = 0; i < MASTERS; i++) {
 		char path[32];
@@ -225,8 +225,7 @@ static void ask_masters(struct nics *all)
 		fd = sys_open(path, O_RDONLY);
 		if (fd < 0)
 			break;
-		memset(&m, 0, sizeof(m));
-		if (!sys_ioctl(fd, EC_IOC_MASTER, &m))
+		if (!master_read(fd, &m))
 			for (unsigned int side = 0; side < m.device_count; side++)
 				claim(all, i, side, &m.devices[side]);
 		sys_close(fd);

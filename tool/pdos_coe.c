@@ -27,7 +27,7 @@ struct live_pdo {
 /* one slave */
 struct reading {
 	struct dev *d;
-	u16 position;
+	const struct slave *s;
 	u8 *img;
 	size_t size;
 	bool quiet;
@@ -43,7 +43,7 @@ const char *pdo_entry_text(u16 index, const char *name)
 	return index || *name ? name : "Gap";
 }
 
-bool pdos_coe_has(const struct ec_ioc_slave *s)
+bool pdos_coe_has(const struct slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
 }
@@ -53,7 +53,7 @@ static int upload(struct reading *r, u16 index, u8 sub, u32 *v, u32 *abort)
 {
 	u8 data[4] = { 0 };
 	struct ec_ioc_sdo s = {
-		.position = r->position, .index = index, .subindex = sub, .size = sizeof(data),
+		.slave = r->s->slave, .index = index, .subindex = sub, .size = sizeof(data),
 		.data = (uintptr_t)data,
 	};
 	int err = dev_ioctl(r->d, EC_IOC_SDO_UPLOAD, &s);
@@ -65,10 +65,10 @@ static int upload(struct reading *r, u16 index, u8 sub, u32 *v, u32 *abort)
 		*abort = s.abort_code;
 	else if (s.abort_code)
 		fail_full(err, NULL, s.abort_code, "Master%u slave %u: SDO upload 0x%04x:%02x",
-			  r->d->master, r->position, index, sub);
+			  r->d->master, r->s->position, index, sub);
 	else
 		dev_fail(r->d, err, "Master%u slave %u: SDO upload 0x%04x:%02x", r->d->master,
-			 r->position, index, sub);
+			 r->s->position, index, sub);
 	return err;
 }
 
@@ -82,7 +82,7 @@ static int count(struct reading *r, u16 index, unsigned int *n, u32 *abort)
 	if (err || v <= 255)
 		return err;
 	fail("Master%u slave %u: 0x%04x:00 is %u, expected at most 255", r->d->master,
-	     r->position, index, v);
+	     r->s->position, index, v);
 	return 1;
 }
 
@@ -99,7 +99,7 @@ static int read_pdo(struct reading *r, u16 index)
 		err = 0;
 	if (err && abort)
 		fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:00",
-			  r->d->master, r->position, index);
+			  r->d->master, r->s->position, index);
 	r->pdo.n = (u8)n;
 	for (unsigned int i = 0; i < n && !err; i++)
 		err = upload(r, index, (u8)(i + 1), &r->pdo.map[i], NULL);
@@ -243,7 +243,7 @@ static int sync_manager(struct reading *r)
 		return 0;
 	if (err && abort)
 		return fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:00",
-				 r->d->master, r->position, object);
+				 r->d->master, r->s->position, object);
 	for (unsigned int k = 0; k < r->n && !err; k++) {
 		err = upload(r, object, (u8)(k + 1), &v, NULL);
 		r->assigned[k] = (u16)v;
@@ -263,12 +263,12 @@ static int sync_manager(struct reading *r)
 	return err;
 }
 
-static int sync_managers(struct reading *r, const struct ec_ioc_slave *s)
+static int sync_managers(struct reading *r, const struct slave *s)
 {
 	int err = 0;
 
 	for (unsigned int i = FIRST_SM; i < s->sm_count && !err; i++) {
-		struct ec_ioc_sm sm = { .position = s->position, .sm = (u8)i };
+		struct ec_ioc_sm sm = { .slave = s->slave, .sm = (u8)i };
 
 		err = dev_ioctl(r->d, EC_IOC_SM, &sm);
 		if (err)
@@ -292,7 +292,7 @@ static int sync_managers(struct reading *r, const struct ec_ioc_slave *s)
  * Return: 0, or 1 after printing what failed.
  */
 int pdos_coe(const struct slave_walk *w, const struct tool *t, struct dev *d,
-	     const struct ec_ioc_slave *s, bool several)
+	     const struct slave *s, bool several)
 {
 	struct reading *r = calloc(1, sizeof(*r));
 	int ret;
@@ -301,7 +301,7 @@ int pdos_coe(const struct slave_walk *w, const struct tool *t, struct dev *d,
 	if (!r)
 		return fail("out of memory");
 	r->d = d;
-	r->position = s->position;
+	r->s = s;
 	r->quiet = t->verbosity < 0;
 	ret = sii_load(d, s, &r->img, &r->size);
 	if (!ret) {

@@ -3,13 +3,13 @@
 
 #define CHUNK	1024
 
-static int transfer(struct dev *d, unsigned long request, u32 flags, u16 position, u16 address,
-		    u8 *data, size_t size)
+static int transfer(struct dev *d, unsigned long request, u32 flags, unsigned int position,
+		    struct ec_ioc_address slave, u16 address, u8 *data, size_t size)
 {
 	for (size_t done = 0; done < size; done += CHUNK) {
 		struct ec_ioc_reg r = {
 			.flags = flags,
-			.position = position,
+			.slave = slave,
 			.address = (u16)(address + done),
 			.size = (u32)min(size - done, (size_t)CHUNK),
 			.data = (uintptr_t)(data + done),
@@ -26,23 +26,30 @@ static int transfer(struct dev *d, unsigned long request, u32 flags, u16 positio
 	return 0;
 }
 
-int reg_read(struct dev *d, u16 position, u16 address, u8 *data, size_t size)
+int reg_read(struct dev *d, const struct slave *s, u16 address, u8 *data, size_t size)
 {
-	return transfer(d, EC_IOC_REG_READ, 0, position, address, data, size);
+	return transfer(d, EC_IOC_REG_READ, 0, s->position, s->slave, address, data, size);
 }
 
-int reg_write(struct dev *d, u16 position, u16 address, const u8 *data, size_t size,
-	      bool emergency)
+int reg_write(struct dev *d, const struct slave *s, u16 address, const u8 *data, size_t size)
 {
-	return transfer(d, EC_IOC_REG_WRITE, emergency ? EC_REG_FLAG_EMERGENCY : 0, position,
-			address, (u8 *)(uintptr_t)data, size);
+	return transfer(d, EC_IOC_REG_WRITE, 0, s->position, s->slave, address,
+			(u8 *)(uintptr_t)data, size);
+}
+
+/* by ring position, also while the bus is not scanned */
+int reg_write_emergency(struct dev *d, u16 position, u16 address, const u8 *data, size_t size)
+{
+	return transfer(d, EC_IOC_REG_WRITE, EC_REG_FLAG_EMERGENCY, position,
+			(struct ec_ioc_address){ .position = position }, address,
+			(u8 *)(uintptr_t)data, size);
 }
 
 /* one datagram: @data is written, and what was there before is in it afterwards */
-int reg_rdwr(struct dev *d, u16 position, u16 address, u8 *data, size_t size)
+int reg_rdwr(struct dev *d, const struct slave *s, u16 address, u8 *data, size_t size)
 {
 	if (size > CHUNK)
 		return usage_error("invalid size %zu: one datagram takes 1 to %u bytes", size,
 				   CHUNK);
-	return transfer(d, EC_IOC_REG_RDWR, 0, position, address, data, size);
+	return transfer(d, EC_IOC_REG_RDWR, 0, s->position, s->slave, address, data, size);
 }

@@ -65,18 +65,18 @@ int sdo_timeout_check(const struct tool *t)
 	return 0;
 }
 
-static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const struct sdo_addr *a,
-		  const char *verb)
+static int failed(struct dev *d, int err, unsigned int position, u32 abort,
+		  const struct sdo_addr *a, const char *verb)
 {
 	char hint[48] = "";
 
-	if (s->abort_code == SDO_NO_OBJECT && *a->meant)
+	if (abort == SDO_NO_OBJECT && *a->meant)
 		snprintf(hint, sizeof(hint), ", in decimal %u (did you mean %s?)", a->index,
 			 a->meant);
-	if (s->abort_code)
-		return fail_full(err, NULL, s->abort_code, "Master%u slave %u: SDO %s %s%s",
-				 d->master, s->position, verb, a->text, hint);
-	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, s->position, verb,
+	if (abort)
+		return fail_full(err, NULL, abort, "Master%u slave %u: SDO %s %s%s",
+				 d->master, position, verb, a->text, hint);
+	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, position, verb,
 			a->text);
 }
 
@@ -93,12 +93,12 @@ static int failed(struct dev *d, int err, const struct ec_ioc_sdo *s, const stru
  * Return: type, or NULL without an error message: complete access, or the slave or this command
  * has no type for it.
  */
-const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slave *s,
+const struct ec_type *sdo_described_type(struct dev *d, const struct slave *s,
 					 const struct sdo_addr *a, u32 timeout_ms, u32 *abort)
 {
 	u8 *buf = malloc(ROOM);
 	struct ec_ioc_sdo_info i = {
-		.position = s->position, .index = a->index, .subindex = a->sub,
+		.slave = s->slave, .index = a->index, .subindex = a->sub,
 		.what = EC_SDO_INFO_ENTRY, .size = ROOM, .data = (uintptr_t)buf,
 		.timeout_ms = timeout_ms ?: DESCRIBE_MS,
 	};
@@ -115,13 +115,13 @@ const struct ec_type *sdo_described_type(struct dev *d, const struct ec_ioc_slav
 }
 
 /* @data is to be freed */
-int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u32 timeout_ms, u8 **data,
-	       size_t *size)
+int sdo_upload(struct dev *d, const struct slave *s, const struct sdo_addr *a, u32 timeout_ms,
+	       u8 **data, size_t *size)
 {
 	u8 *buf = malloc(ROOM);
-	struct ec_ioc_sdo s = {
+	struct ec_ioc_sdo i = {
 		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
-		.position = position,
+		.slave = s->slave,
 		.index = a->index,
 		.subindex = a->sub,
 		.size = ROOM,
@@ -132,29 +132,29 @@ int sdo_upload(struct dev *d, u16 position, const struct sdo_addr *a, u32 timeou
 
 	if (!buf)
 		return fail("out of memory");
-	err = dev_ioctl(d, EC_IOC_SDO_UPLOAD, &s);
+	err = dev_ioctl(d, EC_IOC_SDO_UPLOAD, &i);
 	if (err) {
 		free(buf);
-		return failed(d, err, &s, a, "upload");
+		return failed(d, err, s->position, i.abort_code, a, "upload");
 	}
 	*data = buf;
-	*size = min(s.size, (u32)ROOM);
+	*size = min(i.size, (u32)ROOM);
 	return 0;
 }
 
-int sdo_download(struct dev *d, u16 position, const struct sdo_addr *a, u32 timeout_ms, u8 *data,
-		 size_t size)
+int sdo_download(struct dev *d, const struct slave *s, const struct sdo_addr *a, u32 timeout_ms,
+		 u8 *data, size_t size)
 {
-	struct ec_ioc_sdo s = {
+	struct ec_ioc_sdo i = {
 		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
-		.position = position,
+		.slave = s->slave,
 		.index = a->index,
 		.subindex = a->sub,
 		.size = (u32)size,
 		.timeout_ms = timeout_ms,
 		.data = (uintptr_t)data,
 	};
-	int err = dev_ioctl(d, EC_IOC_SDO_DOWNLOAD, &s);
+	int err = dev_ioctl(d, EC_IOC_SDO_DOWNLOAD, &i);
 
-	return err ? failed(d, err, &s, a, "download") : 0;
+	return err ? failed(d, err, s->position, i.abort_code, a, "download") : 0;
 }

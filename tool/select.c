@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../master/wire/env.h"
+#include "dev.h"
 
 /* decimal only; values beyond any bus are clamped, they select nothing */
 static bool number(const char **p, unsigned int *value)
@@ -172,7 +173,7 @@ bool list_single(const struct list *l, unsigned int *value)
 	return true;
 }
 
-static int select_group(const struct list *positions, const struct ec_ioc_slave *slaves,
+static int select_group(const struct list *positions, const struct slave *slaves,
 			size_t count, size_t first, struct numbers *out)
 {
 	struct numbers k;
@@ -189,7 +190,7 @@ static int select_group(const struct list *positions, const struct ec_ioc_slave 
 }
 
 /* by alias: 1 + position of the first slave with it, 0: nobody; to be freed */
-static u32 *first_with(const struct ec_ioc_slave *slaves, size_t count)
+static u32 *first_with(const struct slave *slaves, size_t count)
 {
 	u32 *first = calloc(0x10000, sizeof(*first));
 
@@ -214,7 +215,7 @@ static u32 *first_with(const struct ec_ioc_slave *slaves, size_t count)
  * Return: 0, or -ENOMEM.
  */
 int select_slaves(const struct list *aliases, const struct list *positions,
-		  const struct ec_ioc_slave *slaves, size_t count, struct numbers *out)
+		  const struct slave *slaves, size_t count, struct numbers *out)
 {
 	struct numbers a;
 	u32 *first;

@@ -8,6 +8,8 @@
 
 #include "../include/uapi/ethercat.h"
 
+struct slave;
+
 #define LIST_OPEN	0xffffffffU	/* "up to the highest present" */
 #define LIST_ITEMS	1024
 
@@ -43,7 +45,7 @@ bool list_single(const struct list *l, unsigned int *value);
 void numbers_free(struct numbers *n);
 
 int select_slaves(const struct list *aliases, const struct list *positions,
-		  const struct ec_ioc_slave *slaves, size_t count, struct numbers *out);
+		  const struct slave *slaves, size_t count, struct numbers *out);
 bool select_config(const struct list *aliases, const struct list *positions,
 		   const struct ec_ioc_config *config);
 

@@ -14,7 +14,7 @@
  *
  * Return: 0, or 1 after printing what failed.
  */
-int sii_load(struct dev *d, const struct ec_ioc_slave *s, u8 **img, size_t *size)
+int sii_load(struct dev *d, const struct slave *s, u8 **img, size_t *size)
 {
 	size_t want = 2 * (size_t)s->sii_words;
 	u8 *buf = calloc(1, want + 1);
@@ -24,7 +24,7 @@ int sii_load(struct dev *d, const struct ec_ioc_slave *s, u8 **img, size_t *size
 		return fail("out of memory");
 	while (*size < want) {
 		struct ec_ioc_sii a = {
-			.position = s->position,
+			.slave = s->slave,
 			.offset = (u32)*size,
 			.size = (u32)(want - *size),
 			.data = (uintptr_t)(buf + *size),

@@ -13,7 +13,7 @@ static const char *yes(bool v)
 	return v ? "yes" : "no";
 }
 
-bool slave_has_dc(const struct ec_ioc_slave *s)
+bool slave_has_dc(const struct slave *s)
 {
 	return s->dc_supported || s->dc_delay_only;
 }
@@ -25,7 +25,7 @@ const char *port_type_text(unsigned int type)
 	return text[type & 3];
 }
 
-static void identity(const struct ec_ioc_slave *s)
+static void identity(const struct slave *s)
 {
 	out_text("Identity:\n");
 	out_u("vendor_id", s->vendor_id, "  Vendor Id:       0x%08x\n", s->vendor_id);
@@ -35,7 +35,7 @@ static void identity(const struct ec_ioc_slave *s)
 	out_u("serial_number", s->serial_number, "  Serial number:   0x%08x\n", s->serial_number);
 }
 
-static void data_link(const struct ec_ioc_slave *s)
+static void data_link(const struct slave *s)
 {
 	static const char *const key[] = { "none", "32 bit", "64 bit", "delay measurement only" };
 	static const char *const text[] = { "no", "yes, 32 bit", "yes, 64 bit",
@@ -70,7 +70,7 @@ static void data_link(const struct ec_ioc_slave *s)
 }
 
 /* usually port 0; what a closed one has latched is old */
-static const struct ec_ioc_port *first_open(const struct ec_ioc_slave *s)
+static const struct ec_ioc_port *first_open(const struct slave *s)
 {
 	unsigned int i;
 
@@ -79,7 +79,7 @@ static const struct ec_ioc_port *first_open(const struct ec_ioc_slave *s)
 	return &s->ports[i];
 }
 
-static void port(const struct ec_ioc_slave *s, unsigned int i)
+static void port(const struct slave *s, unsigned int i)
 {
 	const struct ec_ioc_port *p = &s->ports[i];
 	s32 diff = (s32)(p->receive_time - first_open(s)->receive_time);
@@ -105,7 +105,7 @@ static void port(const struct ec_ioc_slave *s, unsigned int i)
 	out_end();
 }
 
-static void ports(const struct ec_ioc_slave *s)
+static void ports(const struct slave *s)
 {
 	out_text("Port  Type  Link  Loop    Signal  NextSlave%s\n",
 		 slave_has_dc(s) ? "  RxTime [ns]  Diff [ns]   NextDc [ns]" : "");
@@ -115,7 +115,7 @@ static void ports(const struct ec_ioc_slave *s)
 	out_end();
 }
 
-static void mailboxes(const struct ec_ioc_slave *s)
+static void mailboxes(const struct slave *s)
 {
 	static const char *const name[] = { "AoE", "EoE", "CoE", "FoE", "SoE", "VoE" };
 	const char *sep = "";
@@ -169,7 +169,7 @@ static void coe_details(unsigned int bits)
 	out_end();
 }
 
-static void general(const struct ec_ioc_slave *s)
+static void general(const struct slave *s)
 {
 	bool safeop = s->general_flags & EC_SII_FLAG_SAFEOP;
 	bool no_lrw = s->general_flags & EC_SII_FLAG_NO_LRW;
@@ -194,7 +194,7 @@ static void general(const struct ec_ioc_slave *s)
 }
 
 /* lines the historic output does not have, behind all of those it has */
-static void diagnosis(const struct ec_ioc_slave *s)
+static void diagnosis(const struct slave *s)
 {
 	out_text("Diagnosis:\n");
 	out_u("station_address", s->station, "  Station address: 0x%04x\n", s->station);
@@ -217,13 +217,13 @@ static void diagnosis(const struct ec_ioc_slave *s)
 	out_str("warning", s->warning, NULL);
 }
 
-char slave_flag(const struct ec_ioc_slave *s)
+char slave_flag(const struct slave *s)
 {
 	return s->error ? 'E' : s->differs ? '!' : '+';
 }
 
 /* The text of config -v. */
-static void reason(struct dev *d, const struct ec_ioc_slave *s)
+static void reason(struct dev *d, const struct slave *s)
 {
 	char text[EC_UAPI_REASON] = "";
 
@@ -236,13 +236,13 @@ static void reason(struct dev *d, const struct ec_ioc_slave *s)
 		out_null("not_in_op", NULL);
 }
 
-static bool is_lost(const struct ec_ioc_slave *s)
+static bool is_lost(const struct slave *s)
 {
 	return s->cause.kind == EC_CAUSE_SILENT;
 }
 
 /* a slave that was lost has no AL state */
-void slave_state_text(const struct ec_ioc_slave *s, char *buf, size_t size)
+void slave_state_text(const struct slave *s, char *buf, size_t size)
 {
 	if (is_lost(s))
 		snprintf(buf, size, "LOST");
@@ -250,7 +250,7 @@ void slave_state_text(const struct ec_ioc_slave *s, char *buf, size_t size)
 		al_state_text(s->al_status, buf, size);
 }
 
-void slave_info(struct dev *d, const struct ec_ioc_slave *s)
+void slave_info(struct dev *d, const struct slave *s)
 {
 	char state[16], name[EC_UAPI_STRING];
 
@@ -258,6 +258,7 @@ void slave_info(struct dev *d, const struct ec_ioc_slave *s)
 	slave_name(s, name, sizeof(name));
 	out_object(NULL);
 	out_u("position", s->position, "=== Master %u, Slave %u ===\n", d->master, s->position);
+	out_u("device_number", s->device, NULL);
 	out_u("alias", s->alias_group, NULL);
 	out_u("relative_position", slave_alias_pos(s), NULL);
 	out_str("name", name, NULL);

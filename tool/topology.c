@@ -48,7 +48,7 @@ bool topo_peer(const struct slaves *all, unsigned int slave, unsigned int port, 
 }
 
 /* the first open port without a slave; otherwise 0 */
-static u8 entry_port(const struct ec_ioc_slave *s)
+static u8 entry_port(const struct slave *s)
 {
 	for (u8 p = 0; p < EC_UAPI_PORTS; p++)
 		if (s->ports[p].signal && !s->ports[p].loop_closed &&

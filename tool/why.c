@@ -129,7 +129,7 @@ bool why_in_op(const struct why_config *c)
 /* order number or name of a slave, for a text */
 const char *why_slave_name(const struct why *w, unsigned int position, char *buf, size_t size)
 {
-	const struct ec_ioc_slave *s = position < w->bus.n ? &w->bus.v[position] : NULL;
+	const struct slave *s = position < w->bus.n ? &w->bus.v[position] : NULL;
 
 	if (s && s->order[0])
 		snprintf(buf, size, "slave %u (%s)", position, s->order);

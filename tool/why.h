@@ -71,7 +71,7 @@ struct why_finding {
  */
 struct why {
 	struct dev *d;
-	struct ec_ioc_master m;
+	struct master m;
 	struct slaves bus;
 	struct why_config *configs;
 	size_t n_configs;

@@ -9,7 +9,7 @@ static bool absent(const struct why_config *c)
 	return c->c.slave_position < 0 && !c->finding;
 }
 
-static bool same_device(const struct why_config *c, const struct ec_ioc_slave *s)
+static bool same_device(const struct why_config *c, const struct slave *s)
 {
 	return s->vendor_id == c->c.vendor_id && s->product_code == c->c.product_code;
 }
@@ -23,7 +23,7 @@ static bool at_position(const struct why_config *c)
 /* Slaves that were lost together have the same place; one cable explains all of them. */
 static void lost_at(struct why *w, unsigned int position, unsigned int port, const char *text)
 {
-	const struct ec_ioc_slave *s = position < w->bus.n ? &w->bus.v[position] : NULL;
+	const struct slave *s = position < w->bus.n ? &w->bus.v[position] : NULL;
 	bool up = s && s->ports[port & 3].link_up;
 	struct why_finding *f;
 	char name[96];
@@ -150,7 +150,7 @@ static bool shifted(const struct why *w, unsigned int from, unsigned int gap)
 /* The only port without link of the slave before @position, where the next one should be. */
 static int open_end(const struct why *w, unsigned int position)
 {
-	const struct ec_ioc_slave *s = position ? &w->bus.v[position - 1] : NULL;
+	const struct slave *s = position ? &w->bus.v[position - 1] : NULL;
 	int port = WHY_NONE;
 
 	for (int p = 0; s && p < EC_UAPI_PORTS; p++) {
@@ -164,7 +164,7 @@ static int open_end(const struct why *w, unsigned int position)
 }
 
 /* a slave of that identity that no configuration has, or NULL */
-static const struct ec_ioc_slave *elsewhere(const struct why *w, const struct why_config *c)
+static const struct slave *elsewhere(const struct why *w, const struct why_config *c)
 {
 	for (size_t i = 0; i < w->bus.n; i++)
 		if (same_device(c, &w->bus.v[i]) &&
@@ -210,7 +210,7 @@ static void missing(struct why *w)
 static void identity(const struct why *w, u32 vendor, u32 product, char *buf, size_t size)
 {
 	for (size_t i = 0; i < w->bus.n; i++) {
-		const struct ec_ioc_slave *s = &w->bus.v[i];
+		const struct slave *s = &w->bus.v[i];
 
 		if (s->vendor_id == vendor && s->product_code == product && s->order[0]) {
 			snprintf(buf, size, "%s, 0x%08x/0x%08x", s->order, vendor, product);
@@ -223,7 +223,7 @@ static void identity(const struct why *w, u32 vendor, u32 product, char *buf, si
 /* what is at the position of a configuration, and what is configured */
 static void both(const struct why *w, const struct why_config *c, char *buf, size_t size)
 {
-	const struct ec_ioc_slave *s = c->cause.position < w->bus.n ?
+	const struct slave *s = c->cause.position < w->bus.n ?
 				       &w->bus.v[c->cause.position] : NULL;
 	char is[96], shall[96];
 
@@ -239,7 +239,7 @@ static void both(const struct why *w, const struct why_config *c, char *buf, siz
 static void different(struct why *w, struct why_config *c)
 {
 	char text[256];
-	const struct ec_ioc_slave *s = elsewhere(w, c);
+	const struct slave *s = elsewhere(w, c);
 	struct why_finding *f;
 
 	both(w, c, text, sizeof(text));
@@ -259,13 +259,13 @@ static void different(struct why *w, struct why_config *c)
 }
 
 /* a slave of that device whose alias is the configured one but for a typing error */
-static const struct ec_ioc_slave *meant(const struct why *w, const struct why_config *c)
+static const struct slave *meant(const struct why *w, const struct why_config *c)
 {
 	char wanted[8], alias[8];
 
 	snprintf(wanted, sizeof(wanted), "%u", c->c.alias);
 	for (size_t i = 0; i < w->bus.n; i++) {
-		const struct ec_ioc_slave *s = &w->bus.v[i];
+		const struct slave *s = &w->bus.v[i];
 
 		snprintf(alias, sizeof(alias), "%u", s->alias);
 		if (same_device(c, s) && s->alias && (!s->config || s->differs) &&
@@ -277,7 +277,7 @@ static const struct ec_ioc_slave *meant(const struct why *w, const struct why_co
 
 static void no_alias(struct why *w, struct why_config *c)
 {
-	const struct ec_ioc_slave *s = meant(w, c);
+	const struct slave *s = meant(w, c);
 	struct why_finding *f;
 	char name[80];
 

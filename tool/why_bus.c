@@ -14,7 +14,7 @@ static void explain_all(struct why *w)
 			why_explain(w, &w->configs[i]);
 }
 
-static bool link_up(const struct ec_ioc_master *m)
+static bool link_up(const struct master *m)
 {
 	for (u32 i = 0; i < m->device_count; i++)
 		if (m->devices[i].link_up)
@@ -30,7 +30,7 @@ static bool link_up(const struct ec_ioc_master *m)
  */
 struct why_finding *why_scan(struct why *w)
 {
-	const struct ec_ioc_master *m = &w->m;
+	const struct master *m = &w->m;
 	struct why_finding *f;
 
 	for (size_t i = 0; i < w->n; i++)
@@ -66,7 +66,7 @@ static bool tries_again(const struct why *w)
  */
 bool why_bus(struct why *w)
 {
-	const struct ec_ioc_master *m = &w->m;
+	const struct master *m = &w->m;
 
 	if (m->phase == EC_PHASE_WAITING)
 		why_add(w, "no_device", no_device_remedy(m->devices[0].name),
@@ -111,7 +111,7 @@ static void no_cycle(struct why *w)
 /* Then cycles are skipped in any case. */
 static bool too_short(struct why *w)
 {
-	const struct ec_ioc_master *m = &w->m;
+	const struct master *m = &w->m;
 	bool yes = m->cycle_interval_us && m->cycle_wire_ns > m->cycle_interval_us * 1000ull;
 
 	if (yes)

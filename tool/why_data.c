@@ -12,7 +12,7 @@
 
 #define COUNTERS	"%u invalid frame(s), %u receive error(s), link lost %u time(s)"
 
-static void clock_of(struct why *w, const struct why_config *c, const struct ec_ioc_slave *s)
+static void clock_of(struct why *w, const struct why_config *c, const struct slave *s)
 {
 	struct why_finding *f;
 
@@ -133,7 +133,7 @@ static int read_errors(struct why *w, struct dev *d, u8 (*regs)[EC_ERRORS_SIZE])
 		return fail("out of memory");
 	/* one that does not reply for long has its own finding */
 	for (size_t i = 0; i < w->bus.n; i++)
-		w->silent += !!errors_try(d, w->bus.v[i].position, regs[i]);
+		w->silent += !!errors_try(d, &w->bus.v[i], regs[i]);
 	return 0;
 }
 

@@ -8,7 +8,7 @@
 
 #define LATE_MS		500	/* in which frames must have been late to be so still */
 
-static u64 late_of(const struct ec_ioc_master *m)
+static u64 late_of(const struct master *m)
 {
 	u64 sum = 0;
 
@@ -52,7 +52,7 @@ static bool any(const struct why *w, const char *cause)
  */
 void why_late_frames(struct why *w)
 {
-	struct ec_ioc_master now;
+	struct master now;
 	struct why_finding *f;
 	u64 n;
 

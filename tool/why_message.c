@@ -7,19 +7,23 @@
 #include "../master/wire/sii.h"
 #include "why.h"
 
-static void emergency(struct why *w, const struct ec_ioc_slave *s)
+static void emergency(struct why *w, const struct slave *s)
 {
-	struct ec_ioc_emergencies i = { .position = s->position };
+	struct ec_emergency last[EC_EMERGENCIES];
+	struct ec_ioc_emergencies i = {
+		.slave = s->slave, .size = sizeof(last), .data = (uintptr_t)last,
+	};
 	const struct ec_emergency *e;
 	struct why_finding *f;
 	char when[32] = "?";
 	struct tm tm;
 	time_t t;
 
-	/* a slave that has left, or an older module */
-	if (dev_ioctl(w->d, EC_IOC_EMERGENCIES, &i) || !i.count || i.count > EC_EMERGENCIES)
+	/* a slave that has left */
+	if (dev_ioctl(w->d, EC_IOC_EMERGENCIES, &i) || i.size < sizeof(*e) ||
+	    i.size > sizeof(last))
 		return;
-	e = &i.entry[i.count - 1];
+	e = &last[i.size / sizeof(*e) - 1];
 	if (!(e->code & 0xff00))
 		return;		/* the error is over */
 	t = (time_t)(e->time_ns / 1000000000);

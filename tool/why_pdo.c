@@ -63,22 +63,25 @@ static void wanted(struct why *w, const struct why_config *c, unsigned int sm, s
 	}
 }
 
-static void offered(struct why *w, u16 position, unsigned int sm, struct line *l)
+static void offered(struct why *w, const struct why_config *c, unsigned int sm, struct line *l)
 {
-	struct ec_ioc_sm s = { .position = position, .sm = (__u8)sm };
+	const struct ec_ioc_address slave = {
+		.kind = EC_ADDRESS_DEVICE, .device = c->c.device,
+	};
+	struct ec_ioc_sm s = { .slave = slave, .sm = (__u8)sm };
 
 	if (dev_ioctl(w->d, EC_IOC_SM, &s))
 		return;
 	put(l, "%s", s.pdo_count ? "" : " none");
 	for (u16 p = 0; p < s.pdo_count && !l->full; p++) {
-		struct ec_ioc_pdo pdo = { .position = position, .sm = (__u8)sm, .pdo_pos = p };
+		struct ec_ioc_pdo pdo = { .slave = slave, .sm = (__u8)sm, .pdo_pos = p };
 
 		if (dev_ioctl(w->d, EC_IOC_PDO, &pdo))
 			return;
 		put(l, " 0x%04x", pdo.index);
 		for (u16 e = 0; e < pdo.entry_count && !l->full; e++) {
 			struct ec_ioc_pdo_entry entry = {
-				.position = position, .sm = (__u8)sm, .pdo_pos = p, .entry_pos = e,
+				.slave = slave, .sm = (__u8)sm, .pdo_pos = p, .entry_pos = e,
 			};
 
 			if (dev_ioctl(w->d, EC_IOC_PDO_ENTRY, &entry))
@@ -107,5 +110,5 @@ void why_pdo_lists(struct why *w, const struct why_config *c, unsigned int sm, c
 	wanted(w, c, sm, &want);
 	have = (struct line){ .buf = buf + want.len, .size = size - want.len };
 	put(&have, "; SM%u of the slave:", sm);
-	offered(w, (u16)c->c.slave_position, sm, &have);
+	offered(w, c, sm, &have);
 }

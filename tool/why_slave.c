@@ -150,7 +150,9 @@ static int against(struct why *w, const struct why_config *c, bool *output)
 {
 	for (__u8 sm = 0; sm < EC_MAX_SM; sm++) {
 		struct ec_ioc_config_sm want = { .index = c->c.index, .sm = sm };
-		struct ec_ioc_sm have = { .position = (__u16)c->c.slave_position, .sm = sm };
+		struct ec_ioc_sm have = {
+			.slave = { .kind = EC_ADDRESS_DEVICE, .device = c->c.device }, .sm = sm,
+		};
 
 		if (dev_ioctl(w->d, EC_IOC_SM, &have))
 			continue;
@@ -232,7 +234,7 @@ static void add(struct why *w, int position, struct why_config *c, const struct 
 }
 
 /* Somebody loads firmware into it, or has forgotten it there. */
-static bool in_boot(struct why *w, const struct ec_ioc_slave *s, struct why_config *c)
+static bool in_boot(struct why *w, const struct slave *s, struct why_config *c)
 {
 	struct why_finding *f;
 
@@ -253,7 +255,7 @@ static bool in_boot(struct why *w, const struct ec_ioc_slave *s, struct why_conf
 }
 
 /* A slave without configuration has to reach what was requested, PREOP as a rule. */
-static void unconfigured(struct why *w, const struct ec_ioc_slave *s)
+static void unconfigured(struct why *w, const struct slave *s)
 {
 	struct ec_cause cause = s->cause;
 	char text[EC_UAPI_REASON];
@@ -295,7 +297,7 @@ static void configured(struct why *w, struct why_config *c)
 }
 
 /* Used all the same, but not as it should be. */
-static void warnings(struct why *w, const struct ec_ioc_slave *s)
+static void warnings(struct why *w, const struct slave *s)
 {
 	struct why_finding *f;
 
@@ -326,7 +328,7 @@ static void warnings(struct why *w, const struct ec_ioc_slave *s)
 }
 
 /* told as that of its configuration, or of one that expects another slave in its place */
-static bool told(const struct why *w, const struct ec_ioc_slave *s)
+static bool told(const struct why *w, const struct slave *s)
 {
 	for (size_t i = 0; i < w->n; i++)
 		if (w->f[i].slave == s->position && w->f[i].port == WHY_NONE &&
@@ -345,7 +347,7 @@ void why_slaves(struct why *w)
 		if (!why_in_op(&w->configs[i]))
 			configured(w, &w->configs[i]);
 	for (size_t i = 0; i < w->bus.n; i++) {
-		const struct ec_ioc_slave *s = &w->bus.v[i];
+		const struct slave *s = &w->bus.v[i];
 		bool active = w->m.active && s->config && !s->differs;
 
 		if (!active && !told(w, s))

@@ -84,7 +84,7 @@ static bool takes_part(struct why *w, struct dev *d, const struct ec_ioc_domain 
 {
 	u8 pages[EC_MAX_FMMU * EC_FMMU_PAGE];
 	struct ec_ioc_reg r = {
-		.position = w->bus.v[slave].position, .address = EC_REG_FMMU(0),
+		.slave = w->bus.v[slave].slave, .address = EC_REG_FMMU(0),
 		.size = sizeof(pages), .data = (uintptr_t)pages,
 	};
 

@@ -7,7 +7,8 @@
  * whose unknown bits are refused (-EOPNOTSUPP). It may grow at its end: the kernel takes the size
  * from the command number, zero-fills fields that an older program does not have, and refuses
  * (-E2BIG) an unknown tail that is not zero. Reserved fields are zero, otherwise -EOPNOTSUPP. A
- * structure shorter than its first version is refused (-EINVAL). Numbers are never reused.
+ * structure shorter than its first version is refused (-EINVAL). Numbers are never reused. No
+ * structure contains an array of structures: a command of its own has their index, or a buffer.
  *
  * After a failure EC_IOC_REASON on the same open file returns a line with cause and remedy.
  */
@@ -16,12 +17,18 @@
 
 #include <linux/ioctl.h>
 #include <linux/types.h>
+#include "ethercat_address.h"
 #include "ethercat_cause.h"
 #include "ethercat_event.h"
 #include "ethercat_map.h"
 #include "ethercat_mbox.h"
 
-#define EC_UAPI_VERSION		2	/* 2: struct ec_status has @sequence */
+/*
+ * From EC_UAPI_FIRST on no number and no member changes: such programs run on each later module.
+ * EC_IOC_VERSION refuses older ones (-EPROTO).
+ */
+#define EC_UAPI_VERSION		3
+#define EC_UAPI_FIRST		3
 #define EC_UAPI_STRING		64
 #define EC_UAPI_REASON		256
 #define EC_UAPI_WARNING		192
@@ -40,9 +47,10 @@
 #define EC_FEATURE_FOE		(1ULL << 5)
 #define EC_FEATURE_EVENTS	(1ULL << 6)
 
+/* the first command of a program */
 struct ec_ioc_version {
 	__u32 flags;
-	__u32 abi;		/* EC_UAPI_VERSION of the module */
+	__u32 abi;		/* EC_UAPI_VERSION; in: of the program, out: of the module */
 	__u64 features;
 	__u32 master_count;
 	__u32 ecrt;		/* ECRT_VERSION_MAGIC of the module */
@@ -60,6 +68,8 @@ struct ec_ioc_reason {
 #define EC_DEVICE_ATTACHED	1
 
 struct ec_ioc_device {
+	__u32 flags;
+	__u32 index;		/* in: 0 main, 1 backup; < struct ec_ioc_master.device_count */
 	__u8 address[6];
 	__u8 state;
 	__u8 link_up;
@@ -113,7 +123,6 @@ struct ec_ioc_master {
 	__s32 ref_clock;	/* ring position, -1 none */
 	__u32 scan_us;		/* duration of the last scan */
 	__u64 scan_frames;	/* frames of the last scan */
-	struct ec_ioc_device devices[EC_UAPI_DEVICES];
 	__u32 scan_count;	/* bus scans finished so far */
 	__u32 session;		/* EC_SESSION_* */
 	__u32 cycle_lock;	/* EC_CYCLE_LOCK_*, of struct ec_status_cycle */
@@ -138,18 +147,24 @@ struct ec_ioc_master {
 	__u64 sii_bytes;	/* of all slaves */
 	__u32 no_cycle;		/* active, but the application sends no cyclic frames */
 	__u32 held;		/* the list of slaves is held, see ecrt_master_reserve() */
+	__u32 links_up;		/* bit n: device n has a link */
+	__u32 reserved;
 	char owner[EC_UAPI_STRING];	/* application that has reserved the master, or empty */
 };
 
+/* a port of a slave */
 struct ec_ioc_port {
+	__u32 flags;
+	__u32 port;		/* in, < EC_UAPI_PORTS */
+	struct ec_ioc_address slave;	/* in */
+	__u32 receive_time;
+	__u32 delay_to_next_dc;
 	__u8 type;		/* 0 none, 1 not configured, 2 EBUS, 3 MII */
 	__u8 link_up;
 	__u8 loop_closed;
 	__u8 signal;
-	__u32 receive_time;
 	__u16 next_slave;	/* EC_UAPI_NONE16: none */
 	__u16 reserved;
-	__u32 delay_to_next_dc;
 };
 
 /* struct ec_ioc_slave.coe_details: bits as in SII general byte 5 */
@@ -160,7 +175,10 @@ struct ec_ioc_port {
 
 struct ec_ioc_slave {
 	__u32 flags;
-	__u16 position;		/* in */
+	__u32 config;		/* attached or different configuration: index + 1; 0: none */
+	struct ec_ioc_address slave;	/* in */
+	__u64 device;		/* device number */
+	__u16 position;
 	__u16 station;
 	__u16 alias;
 	__u16 alias_pos;	/* number of slaves after the slave with the alias */
@@ -194,80 +212,94 @@ struct ec_ioc_slave {
 	__u8 fmmu_count;
 	__u8 device_index;	/* 0 main, 1 backup */
 	__u16 dl_status;
-	__u16 sdo_count;	/* always 0: the dictionary is read on request only */
 	__u16 features;		/* register 0x0008 */
+	__u16 reserved;
 	__u32 transmission_delay;
 	__u32 sii_words;
-	struct ec_ioc_port ports[EC_UAPI_PORTS];
-	char group[EC_UAPI_STRING];
-	char image[EC_UAPI_STRING];
-	char order[EC_UAPI_STRING];
-	char name[EC_UAPI_STRING];
-	char why[EC_UAPI_REASON];	/* cause of @error */
+	__u32 differs;		/* identity differs from @config */
 	__u64 dc_offset;	/* register 0x0920, ns */
 	__s32 dc_diff;		/* difference to the reference clock at the last read, ns */
 	__u16 dc_set;		/* synchronized for the active application */
 	__u16 dc_odd;		/* delay unreliable: receive times contradict the topology */
-	__u32 config;		/* attached or different configuration: index + 1; 0: none */
-	__u32 differs;		/* identity differs from @config */
+};
+
+/* what the EEPROM of a slave calls it */
+struct ec_ioc_slave_names {
+	__u32 flags;
+	__u32 reserved;
+	struct ec_ioc_address slave;	/* in */
+	char group[EC_UAPI_STRING];
+	char image[EC_UAPI_STRING];
+	char order[EC_UAPI_STRING];
+	char name[EC_UAPI_STRING];
+};
+
+/* what is wrong with a slave */
+struct ec_ioc_slave_why {
+	__u32 flags;
+	__u32 reserved;
+	struct ec_ioc_address slave;	/* in */
+	char why[EC_UAPI_REASON];	/* cause of struct ec_ioc_slave.error */
 	char warning[EC_UAPI_WARNING];	/* uncertain process data, wrong EEPROM or revision */
-	struct ec_cause cause;	/* of @error; without one of @warning */
+	struct ec_cause cause;	/* of @why; without one of @warning */
 };
 
 struct ec_ioc_sm {
 	__u32 flags;
-	__u16 position;		/* in */
 	__u8 sm;		/* in */
 	__u8 control;
-	__u16 start;
-	__u16 default_size;
 	__u8 enable;
 	__u8 type;
+	struct ec_ioc_address slave;	/* in */
+	__u16 start;
+	__u16 default_size;
 	__u16 pdo_count;
-	__u32 reserved;
+	__u16 reserved;
 };
 
 struct ec_ioc_pdo {
 	__u32 flags;
-	__u16 position;		/* in */
 	__u8 sm;		/* in */
 	__u8 reserved;
 	__u16 pdo_pos;		/* in */
+	struct ec_ioc_address slave;	/* in */
 	__u16 index;
 	__u16 entry_count;
-	__u16 reserved2;
+	__u32 reserved2;
 	char name[EC_UAPI_STRING];
 };
 
 struct ec_ioc_pdo_entry {
 	__u32 flags;
-	__u16 position;		/* in */
 	__u8 sm;		/* in */
-	__u8 subindex;
+	__u8 reserved;
 	__u16 pdo_pos;		/* in */
+	struct ec_ioc_address slave;	/* in */
 	__u16 entry_pos;	/* in */
 	__u16 index;
+	__u8 subindex;
 	__u8 bits;
-	__u8 reserved;
+	__u16 reserved2;
 	char name[EC_UAPI_STRING];
 };
 
 /* the EEPROM image as read by the last scan; no bus traffic */
 struct ec_ioc_sii {
 	__u32 flags;
-	__u16 position;		/* in */
-	__u16 reserved;
 	__u32 offset;		/* in, bytes */
+	struct ec_ioc_address slave;	/* in */
 	__u32 size;		/* in: buffer size; out: bytes copied */
+	__u32 reserved;
 	__u64 data;
 };
 
 struct ec_ioc_reg {
 	__u32 flags;
-	__u16 position;		/* in */
 	__u16 address;		/* in */
+	__u16 reserved;
+	struct ec_ioc_address slave;	/* in */
 	__u32 size;		/* in, bytes, 1..1024 */
-	__u32 reserved;
+	__u32 reserved2;
 	__u64 data;
 };
 
@@ -275,10 +307,10 @@ struct ec_ioc_reg {
 
 struct ec_ioc_state {
 	__u32 flags;
-	__u16 position;		/* in */
-	__u8 state;		/* in: 1, 2, 3, 4, 8 */
-	__u8 reserved;
 	__u32 timeout_ms;	/* in: of each transition on the way to it, 0: the usual limits */
+	struct ec_ioc_address slave;	/* in */
+	__u8 state;		/* in: 1, 2, 3, 4, 8 */
+	__u8 reserved[7];
 };
 
 struct ec_ioc_debug {
@@ -312,6 +344,8 @@ struct ec_ioc_config {
 	__u32 sdo_count;
 	__u32 state;		/* EC_STATUS_SC_*, as in struct ec_status */
 	__u32 flag_count;
+	__u32 reserved;
+	__u64 device;		/* number of the attached device, 0: none */
 };
 
 struct ec_ioc_config_sm {
@@ -717,7 +751,7 @@ struct ec_ioc_wait {
 #define EC_IOC_N(nr)		_IO(EC_IOC_TYPE, nr)
 
 /* any open file, no bus traffic */
-#define EC_IOC_VERSION		EC_IOC_R(0x00, struct ec_ioc_version)
+#define EC_IOC_VERSION		EC_IOC_RW(0x00, struct ec_ioc_version)
 #define EC_IOC_REASON		EC_IOC_R(0x01, struct ec_ioc_reason)
 #define EC_IOC_MASTER		EC_IOC_R(0x02, struct ec_ioc_master)
 #define EC_IOC_SLAVE		EC_IOC_RW(0x03, struct ec_ioc_slave)
@@ -740,6 +774,10 @@ struct ec_ioc_wait {
 #define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
 #define EC_IOC_EMERGENCIES	EC_IOC_RW(0x1a, struct ec_ioc_emergencies)
 #define EC_IOC_EVENTS		EC_IOC_RW(0x1b, struct ec_ioc_events)
+#define EC_IOC_DEVICE		EC_IOC_RW(0x1c, struct ec_ioc_device)
+#define EC_IOC_PORT		EC_IOC_RW(0x1d, struct ec_ioc_port)
+#define EC_IOC_SLAVE_NAMES	EC_IOC_RW(0x1e, struct ec_ioc_slave_names)
+#define EC_IOC_SLAVE_WHY	EC_IOC_RW(0x1f, struct ec_ioc_slave_why)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)

@@ -4,19 +4,21 @@
 #define EC_UAPI_ETHERCAT_MBOX_H
 
 #include <linux/types.h>
+#include "ethercat_address.h"
 
 #define EC_IP_NAME		32
 #define EC_FOE_NAME		64
 
 struct ec_ioc_sdo {
 	__u32 flags;		/* EC_SDO_FLAG_* */
-	__u16 position;		/* in */
 	__u16 index;		/* in */
 	__u8 subindex;		/* in */
-	__u8 reserved[3];
+	__u8 reserved;
+	struct ec_ioc_address slave;	/* in */
 	__u32 abort_code;	/* out */
 	__u32 size;		/* download: bytes; upload: buffer size, then result */
 	__u32 timeout_ms;	/* in; 0: default */
+	__u32 reserved2;
 	__u64 data;
 };
 
@@ -42,12 +44,12 @@ struct ec_ioc_sdo {
  */
 struct ec_ioc_sdo_info {
 	__u32 flags;
-	__u16 position;		/* in */
 	__u16 index;		/* in; of a list its type, 0..5 */
 	__u8 subindex;		/* in; 0 unless it is an entry */
 	__u8 what;		/* in: EC_SDO_INFO_* */
+	struct ec_ioc_address slave;	/* in */
 	__u8 value_info;	/* in, of an entry: EC_SDO_VALUE_*; what the slave sends it says */
-	__u8 reserved;
+	__u8 reserved[3];
 	__u32 abort_code;	/* out: of the slave, after -EIO */
 	__u32 size;		/* in: buffer size; out: bytes */
 	__u32 timeout_ms;	/* in; 0: default */
@@ -67,35 +69,36 @@ struct ec_emergency {
 /* the last emergencies of a slave, the oldest first */
 struct ec_ioc_emergencies {
 	__u32 flags;
-	__u16 position;		/* in */
-	__u16 count;		/* out: entries */
+	__u32 size;		/* in: buffer size, bytes; out: bytes copied */
+	struct ec_ioc_address slave;	/* in */
 	__u32 total;		/* out: of this slave since it was found */
 	__u32 profile;		/* out: of the slave, 402: a drive; 0: not known */
-	struct ec_emergency entry[EC_EMERGENCIES];
+	__u64 data;		/* of struct ec_emergency, at most EC_EMERGENCIES */
 };
 
 /* value of an IDN of a servo drive */
 struct ec_ioc_soe {
 	__u32 flags;
-	__u16 position;		/* in */
 	__u16 idn;		/* in */
 	__u8 drive;		/* in: 0..7 */
-	__u8 reserved[3];
+	__u8 reserved;
+	struct ec_ioc_address slave;	/* in */
 	__u32 error_code;	/* out: of the slave, after -EIO */
 	__u32 size;		/* write: bytes; read: buffer size, then result */
 	__u32 timeout_ms;	/* in; 0: default */
+	__u32 reserved2;
 	__u64 data;
 };
 
 /* file of a slave (FoE) */
 struct ec_ioc_foe {
 	__u32 flags;
-	__u16 position;		/* in */
-	__u16 reserved;
 	__u32 password;		/* in; 0: none */
+	struct ec_ioc_address slave;	/* in */
 	__u32 error_code;	/* out: of the slave, after -EIO */
 	__u32 size;		/* write: bytes; read: buffer size, then result */
 	__u32 timeout_ms;	/* in, per message; 0: default */
+	__u32 reserved;
 	__u64 data;
 	__u64 done;		/* where the bytes so far are kept as __u64, 0: nowhere */
 	char name[EC_FOE_NAME];	/* in: of the file on the slave; all bytes, or up to a zero */
@@ -124,9 +127,10 @@ struct ec_ip_params {
 
 struct ec_ioc_ip {
 	__u32 flags;
-	__u16 position;		/* in */
-	__u16 result;		/* out: EoE result code, with -EIO; 0: no reply */
+	__u32 result;		/* out: EoE result code, with -EIO; 0: no reply */
+	struct ec_ioc_address slave;	/* in */
 	struct ec_ip_params params;
+	__u32 reserved;
 };
 
 struct ec_ioc_config_sdo {

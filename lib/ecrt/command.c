@@ -20,6 +20,7 @@ int ec_give(const ec_master_t *m, unsigned int cmd, void *arg)
 	switch (cmd) {
 	case EC_IOC_SLAVE:
 		return EC_NO_SLAVE;
+	case EC_IOC_DEVICE:
 	case EC_IOC_SM:
 	case EC_IOC_PDO:
 	case EC_IOC_PDO_ENTRY:

@@ -68,10 +68,10 @@ static int ask(ec_master_t *master, struct ec_ioc_sdo_info *i, uint32_t *abort_c
 
 	if (i->what == EC_SDO_INFO_LIST)
 		ret = ec_do(master, EC_IOC_SDO_INFO, i, "read list %u of objects of slave %u",
-			    i->index, i->position);
+			    i->index, i->slave.position);
 	else
 		ret = ec_do(master, EC_IOC_SDO_INFO, i, "read the description of 0x%04x:%02x of slave %u",
-			    i->index, i->subindex, i->position);
+			    i->index, i->subindex, i->slave.position);
 	if (ret == -EIO && abort_code)
 		*abort_code = i->abort_code;
 	return ret;
@@ -82,7 +82,7 @@ int ecrt_master_sdo_info_list(ec_master_t *master, uint16_t slave_position, uint
 			      uint32_t *abort_code)
 {
 	struct ec_ioc_sdo_info i = {
-		.position = slave_position, .what = EC_SDO_INFO_LIST, .index = list_type,
+		.slave.position = slave_position, .what = EC_SDO_INFO_LIST, .index = list_type,
 		.size = 2 * (target_count < LIST_MOST ? (__u32)target_count : LIST_MOST),
 		.data = (uintptr_t)target,
 	};
@@ -121,7 +121,7 @@ static int describe(ec_master_t *master, struct ec_ioc_sdo_info *i, void *info,
 	if (!info)
 		return ec_fail(master, -EINVAL,
 			       "read the description of 0x%04x:%02x of slave %u to nowhere",
-			       i->index, i->subindex, i->position);
+			       i->index, i->subindex, i->slave.position);
 	b = ec_zalloc(ANSWER_BYTES);
 	if (!b)
 		return -ENOMEM;
@@ -140,7 +140,7 @@ int ecrt_master_sdo_info_object(ec_master_t *master, uint16_t slave_position, ui
 				ec_sdo_object_info_t *info, uint32_t *abort_code)
 {
 	struct ec_ioc_sdo_info i = {
-		.position = slave_position, .what = EC_SDO_INFO_OBJECT, .index = index,
+		.slave.position = slave_position, .what = EC_SDO_INFO_OBJECT, .index = index,
 	};
 
 	return describe(master, &i, info, abort_code);
@@ -151,7 +151,7 @@ int ecrt_master_sdo_info_entry(ec_master_t *master, uint16_t slave_position, uin
 			       uint8_t subindex, ec_sdo_entry_info_t *info, uint32_t *abort_code)
 {
 	struct ec_ioc_sdo_info i = {
-		.position = slave_position, .what = EC_SDO_INFO_ENTRY, .index = index,
+		.slave.position = slave_position, .what = EC_SDO_INFO_ENTRY, .index = index,
 		.subindex = subindex,
 	};
 
@@ -161,7 +161,7 @@ EXPORT_SYMBOL_GPL(ecrt_master_sdo_info_entry);
 
 int ecrt_master_sdo_info_forget(ec_master_t *master, uint16_t slave_position)
 {
-	struct ec_ioc_sdo_info i = { .position = slave_position, .what = EC_SDO_INFO_FORGET };
+	struct ec_ioc_sdo_info i = { .slave.position = slave_position, .what = EC_SDO_INFO_FORGET };
 
 	return ec_do(master, EC_IOC_SDO_INFO, &i, "forget the object dictionary of slave %u",
 		     slave_position);

@@ -29,9 +29,9 @@ static int transfer(ec_master_t *master, unsigned int cmd, const char *name,
 	if (!len)
 		return ec_fail(master, -EINVAL,
 			       "%s a file %s slave %u without a name of 1 to %d printable characters",
-			       verb, way, i->position, EC_FOE_NAME);
+			       verb, way, i->slave.position, EC_FOE_NAME);
 	memcpy(i->name, name, len);
-	ret = ec_do(master, cmd, i, "%s file '%s' %s slave %u", verb, name, way, i->position);
+	ret = ec_do(master, cmd, i, "%s file '%s' %s slave %u", verb, name, way, i->slave.position);
 	if (ret == -EIO && error_code)
 		*error_code = i->error_code;
 	return ret;
@@ -42,7 +42,7 @@ int ecrt_master_foe_read(ec_master_t *master, uint16_t slave_position, const cha
 			 size_t *result_size, uint32_t *error_code, uint32_t timeout)
 {
 	struct ec_ioc_foe i = {
-		.position = slave_position, .password = password, .size = ec_u32(target_size),
+		.slave.position = slave_position, .password = password, .size = ec_u32(target_size),
 		.timeout_ms = timeout, .data = (uintptr_t)target,
 	};
 	int ret;
@@ -68,7 +68,7 @@ int ecrt_master_foe_write(ec_master_t *master, uint16_t slave_position, const ch
 			  uint32_t *error_code, uint32_t timeout)
 {
 	struct ec_ioc_foe i = {
-		.position = slave_position, .password = password, .size = ec_u32(data_size),
+		.slave.position = slave_position, .password = password, .size = ec_u32(data_size),
 		.timeout_ms = timeout, .data = (uintptr_t)data,
 	};
 

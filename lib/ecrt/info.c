@@ -13,54 +13,77 @@ EXPORT_SYMBOL_GPL(ecrt_version_magic);
 
 /* slaves -------------------------------------------------------------------*/
 
-static void fill_ports(ec_slave_info_t *info, const struct ec_ioc_slave *s)
+/* Each apart, as two of these arguments do not fit into one stack frame of the kernel. */
+static noinline int fill_slave(const ec_master_t *m, uint16_t position,
+			       struct ec_ioc_address *device, ec_slave_info_t *info)
 {
-	unsigned int i;
+	struct ec_ioc_slave s = { .slave.position = position };
+	int ret = ec_give(m, EC_IOC_SLAVE, &s);
 
-	for (i = 0; i < EC_MAX_PORTS; i++) {
-		const struct ec_ioc_port *port = &s->ports[i];
-
-		info->ports[i].desc = (ec_slave_port_desc_t)(port->type & 3);
-		info->ports[i].link.link_up = port->link_up;
-		info->ports[i].link.loop_closed = port->loop_closed;
-		info->ports[i].link.signal_detected = port->signal;
-		info->ports[i].receive_time = port->receive_time;
-		info->ports[i].next_slave = port->next_slave;
-		info->ports[i].delay_to_next_dc = port->delay_to_next_dc;
-	}
+	if (ret)
+		return ret;
+	memset(info, 0, sizeof(*info));
+	info->position = s.position;
+	info->vendor_id = s.vendor_id;
+	info->product_code = s.product_code;
+	info->revision_number = s.revision_number;
+	info->serial_number = s.serial_number;
+	info->alias = s.alias;
+	info->current_on_ebus = s.current_ma;
+	info->al_state = s.al_status & 0xff;
+	info->error_flag = s.error != EC_SLAVE_OK;
+	info->sync_count = s.sm_count;
+	device->kind = EC_ADDRESS_DEVICE;
+	device->device = s.device;
+	return 0;
 }
 
-static void fill_slave(ec_slave_info_t *info, const struct ec_ioc_slave *s)
+static noinline int fill_name(const ec_master_t *m, const struct ec_ioc_address *device,
+			      ec_slave_info_t *info)
 {
-	memset(info, 0, sizeof(*info));
-	info->position = s->position;
-	info->vendor_id = s->vendor_id;
-	info->product_code = s->product_code;
-	info->revision_number = s->revision_number;
-	info->serial_number = s->serial_number;
-	info->alias = s->alias;
-	info->current_on_ebus = s->current_ma;
-	fill_ports(info, s);
-	info->al_state = s->al_status & 0xff;
-	info->error_flag = s->error != EC_SLAVE_OK;
-	info->sync_count = s->sm_count;
-	info->sdo_count = s->sdo_count;
-	memcpy(info->name, s->name, sizeof(info->name) - 1);
+	struct ec_ioc_slave_names n = { .slave = *device };
+	int ret = ec_give(m, EC_IOC_SLAVE_NAMES, &n);
+
+	memcpy(info->name, n.name, sizeof(info->name) - 1);
+	return ret;
+}
+
+static noinline int fill_port(const ec_master_t *m, const struct ec_ioc_address *device,
+			      ec_slave_info_t *info, unsigned int i)
+{
+	struct ec_ioc_port port = { .slave = *device, .port = i };
+	int ret = ec_give(m, EC_IOC_PORT, &port);
+
+	info->ports[i].desc = (ec_slave_port_desc_t)(port.type & 3);
+	info->ports[i].link.link_up = port.link_up;
+	info->ports[i].link.loop_closed = port.loop_closed;
+	info->ports[i].link.signal_detected = port.signal;
+	info->ports[i].receive_time = port.receive_time;
+	info->ports[i].next_slave = port.next_slave;
+	info->ports[i].delay_to_next_dc = port.delay_to_next_dc;
+	return ret;
+}
+
+/* All of one slave, also if another one has its position by now. */
+static int get_slave(const ec_master_t *m, uint16_t position, ec_slave_info_t *info)
+{
+	struct ec_ioc_address device = { 0 };
+	int ret = fill_slave(m, position, &device, info);
+	unsigned int i;
+
+	ret = ret ? ret : fill_name(m, &device, info);
+	for (i = 0; i < EC_MAX_PORTS && !ret; i++)
+		ret = fill_port(m, &device, info, i);
+	return ret;
 }
 
 int ecrt_master_get_slave(ec_master_t *master, uint16_t slave_position,
 			  ec_slave_info_t *slave_info)
 {
-	struct ec_ioc_slave s = { .position = slave_position };
-	int ret;
-
 	if (!slave_info)
 		return -EINVAL;
-	ret = ec_do(master, EC_IOC_SLAVE, &s, "get slave %u", slave_position);
-	if (ret)
-		return ret;
-	fill_slave(slave_info, &s);
-	return 0;
+	return ec_complain(master, NULL, get_slave(master, slave_position, slave_info), true,
+			   "get slave %u", slave_position);
 }
 EXPORT_SYMBOL_GPL(ecrt_master_get_slave);
 
@@ -77,7 +100,7 @@ static int check(const ec_master_t *master, const void *result, uint8_t sync_ind
 int ecrt_master_get_sync_manager(ec_master_t *master, uint16_t slave_position,
 				 uint8_t sync_index, ec_sync_info_t *sync)
 {
-	struct ec_ioc_sm sm = { .position = slave_position, .sm = sync_index };
+	struct ec_ioc_sm sm = { .slave.position = slave_position, .sm = sync_index };
 	int ret = check(master, sync, sync_index) ?:
 		  ec_do(master, EC_IOC_SM, &sm, "get SM%u of slave %u", sync_index,
 			slave_position);
@@ -96,7 +119,9 @@ EXPORT_SYMBOL_GPL(ecrt_master_get_sync_manager);
 int ecrt_master_get_pdo(ec_master_t *master, uint16_t slave_position, uint8_t sync_index,
 			uint16_t pos, ec_pdo_info_t *pdo)
 {
-	struct ec_ioc_pdo p = { .position = slave_position, .sm = sync_index, .pdo_pos = pos };
+	struct ec_ioc_pdo p = {
+		.slave.position = slave_position, .sm = sync_index, .pdo_pos = pos,
+	};
 	int ret = check(master, pdo, sync_index) ?:
 		  ec_do(master, EC_IOC_PDO, &p, "get PDO %u of SM%u of slave %u", pos,
 			sync_index, slave_position);
@@ -114,7 +139,7 @@ int ecrt_master_get_pdo_entry(ec_master_t *master, uint16_t slave_position, uint
 			      uint16_t pdo_pos, uint16_t entry_pos, ec_pdo_entry_info_t *entry)
 {
 	struct ec_ioc_pdo_entry e = {
-		.position = slave_position, .sm = sync_index, .pdo_pos = pdo_pos,
+		.slave.position = slave_position, .sm = sync_index, .pdo_pos = pdo_pos,
 		.entry_pos = entry_pos,
 	};
 	int ret = check(master, entry, sync_index) ?:
@@ -169,11 +194,13 @@ static noinline int ref_clock(const ec_master_t *m, int *position)
 	return ret;
 }
 
-static noinline int dc_of_slave(const ec_master_t *m, unsigned int position, int reference,
+static noinline int dc_of_slave(const ec_master_t *m, __u64 device, int reference,
 				ec_slave_config_dc_state_t *state)
 {
 	static const unsigned int bits[] = { 0, 32, 64 };
-	struct ec_ioc_slave s = { .position = (__u16)position };
+	struct ec_ioc_slave s = {
+		.slave = { .kind = EC_ADDRESS_DEVICE, .device = device },
+	};
 	int ret = ec_command(m, EC_IOC_SLAVE, &s);
 	__s64 diff = s.dc_diff;
 
@@ -203,12 +230,12 @@ int ecrt_slave_config_dc_state(const ec_slave_config_t *sc, ec_slave_config_dc_s
 	ret = ec_command(ec_sc_master(sc), EC_IOC_CONFIG, &config);
 	if (ret)
 		return ret;
-	if (config.slave_position < 0)
+	if (!config.device)
 		return -ENODEV;
 	ret = ref_clock(ec_sc_master(sc), &reference);
 	if (ret)
 		return ret;
-	return dc_of_slave(ec_sc_master(sc), (unsigned int)config.slave_position, reference, state);
+	return dc_of_slave(ec_sc_master(sc), config.device, reference, state);
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_dc_state);
 

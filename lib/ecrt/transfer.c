@@ -13,7 +13,7 @@ static int sdo(ec_master_t *master, unsigned int cmd, struct ec_ioc_sdo *i,
 	bool read = cmd == EC_IOC_SDO_UPLOAD;
 	int ret = ec_do(master, cmd, i, "%s SDO 0x%04x:%02x %s slave %u",
 			read ? "upload" : "download", i->index, i->subindex,
-			read ? "from" : "to", i->position);
+			read ? "from" : "to", i->slave.position);
 
 	if (ret == -EIO && abort_code)
 		*abort_code = i->abort_code;
@@ -24,7 +24,7 @@ static int download(ec_master_t *master, uint16_t position, uint16_t index, uint
 		    __u32 flags, const uint8_t *data, size_t size, uint32_t *abort_code)
 {
 	struct ec_ioc_sdo i = {
-		.flags = flags, .position = position, .index = index, .subindex = subindex,
+		.flags = flags, .slave.position = position, .index = index, .subindex = subindex,
 		.size = ec_u32(size), .data = (uintptr_t)data,
 	};
 
@@ -60,7 +60,7 @@ static int upload(ec_master_t *master, uint16_t position, uint16_t index, uint8_
 		  uint32_t *abort_code)
 {
 	struct ec_ioc_sdo i = {
-		.flags = flags, .position = position, .index = index, .subindex = subindex,
+		.flags = flags, .slave.position = position, .index = index, .subindex = subindex,
 		.size = ec_u32(size), .data = (uintptr_t)target,
 	};
 	int ret;
@@ -112,7 +112,7 @@ static int idn_transfer(ec_master_t *master, unsigned int cmd, struct ec_ioc_soe
 	if (i->drive >= DRIVES)
 		return ec_fail(master, -EINVAL, "use drive %u; there are 0 to 7", i->drive);
 	ret = ec_do(master, cmd, i, "%s IDN 0x%04x of drive %u of slave %u",
-		    cmd == EC_IOC_SOE_READ ? "read" : "write", i->idn, i->drive, i->position);
+		    cmd == EC_IOC_SOE_READ ? "read" : "write", i->idn, i->drive, i->slave.position);
 	if (ret == -EIO && error_code)
 		*error_code = (uint16_t)i->error_code;
 	return ret;
@@ -123,7 +123,7 @@ int ecrt_master_read_idn(ec_master_t *master, uint16_t slave_position, uint8_t d
 			 uint16_t *error_code)
 {
 	struct ec_ioc_soe i = {
-		.position = slave_position, .idn = idn, .drive = drive_no,
+		.slave.position = slave_position, .idn = idn, .drive = drive_no,
 		.size = ec_u32(target_size), .data = (uintptr_t)target,
 	};
 	int ret;
@@ -143,7 +143,7 @@ int ecrt_master_write_idn(ec_master_t *master, uint16_t slave_position, uint8_t 
 			  uint16_t *error_code)
 {
 	struct ec_ioc_soe i = {
-		.position = slave_position, .idn = idn, .drive = drive_no,
+		.slave.position = slave_position, .idn = idn, .drive = drive_no,
 		.size = ec_u32(data_size), .data = (uintptr_t)data,
 	};
 

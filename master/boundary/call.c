@@ -6,6 +6,7 @@
 #include <linux/uaccess.h>
 #include "call.h"
 #include "../base/limits.h"
+#include "../bus/find.h"
 #include "../bus/slave.h"
 #include "master.h"
 #include "../session/session.h"
@@ -149,28 +150,52 @@ int ec_ioc_pause(struct ec_call *call)
 	return ret;
 }
 
+/* In a show section; a long search pauses. With an error other than -ENOENT it has ended. */
+static int find_slave(struct ec_call *call, const struct ec_ioc_address *a, char *why, size_t size)
+{
+	const struct ec_bus *bus = &call->master->bus;
+	unsigned int from = 0;
+	struct ec_slave *s;
+	int ret;
+
+	while (ec_find_slave(bus, a, &from, &s) == -EAGAIN) {
+		ret = ec_show_pause(&call->master->base->show);
+		if (ret)
+			return ret;
+	}
+	if (s)
+		call->slave = ec_slave_ref(s);
+	else
+		ec_find_text(bus, a, why, size);
+	ec_show_end(&call->master->base->show);
+	return s ? 0 : a->kind == EC_ADDRESS_DEVICE ? -ENODEV : -ENOENT;
+}
+
 /**
  * ec_ioc_get_slave() - the slave a command names
  * @call: command; its @slave is set, with a reference for the time of the command
- * @position: ring position
+ * @address: which one
  *
  * Context: Process. May sleep.
- * Return: 0 or -ENOENT with the reason noted.
+ * Return: 0, or with the reason noted: -ENOENT, -ENODEV no slave has the device number;
+ * -EOPNOTSUPP, -EINVAL as ec_find_check().
  */
-int ec_ioc_get_slave(struct ec_call *call, u16 position)
+int ec_ioc_get_slave(struct ec_call *call, const struct ec_ioc_address *address)
 {
-	struct ec_master *m = call->master;
-	int ret = ec_show_begin(&m->base->show);
+	char text[EC_UAPI_REASON];
+	const char *why;
+	int ret = ec_find_check(address, &why);
 
 	if (ret)
-		return ret;
-	if (position < m->bus.n_slaves)
-		call->slave = ec_slave_ref(m->bus.slaves[position]);
-	ec_show_end(&m->base->show);
-	if (call->slave)
-		return 0;
-	return ec_refuse(call, -ENOENT, "no slave at position %u; 'ethercat slaves' lists %u",
-			 position, m->bus.n_slaves);
+		return ec_refuse(call, ret, "%s", why);
+	do {
+		ret = ec_show_begin(&call->master->base->show) ?:
+		      find_slave(call, address, text, sizeof(text));
+		/* as in with_show() */
+		if (ret == -EAGAIN && signal_pending(current))
+			ret = -ERESTARTSYS;
+	} while (ret == -EAGAIN);
+	return ret == -ENOENT || ret == -ENODEV ? ec_refuse(call, ret, "%s", text) : ret;
 }
 
 /* A command that only shows what is known of a slave also works for one that was lost. */
@@ -186,7 +211,7 @@ static int refuse_lost(struct ec_call *call, const struct ec_ioctl *op, int ret)
 
 static int with_slave(struct ec_call *call, const struct ec_ioctl *op)
 {
-	int ret = ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at));
+	int ret = ec_ioc_get_slave(call, call->arg + op->at);
 
 	ret = ret ?: refuse_lost(call, op, 0);
 	if (ret)
@@ -223,7 +248,7 @@ static int execute(struct ec_call *call, const struct ec_ioctl *op)
 	case EC_CLASS_SLAVE:
 		return with_slave(call, op);
 	case EC_CLASS_SHOW_SLAVE:
-		return ec_ioc_get_slave(call, *(u16 *)(call->arg + op->at)) ?: with_show(call, op);
+		return ec_ioc_get_slave(call, call->arg + op->at) ?: with_show(call, op);
 	case EC_CLASS_SHOW_CONFIG:
 	case EC_CLASS_SHOW_DOMAIN:
 		return with_show(call, op);

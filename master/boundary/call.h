@@ -16,7 +16,7 @@ struct ec_reserved {
 /* What ec_call_run() finds and locks before the handler of a command runs. */
 enum ec_ioc_class {
 	EC_CLASS_MASTER,	/* nothing */
-	EC_CLASS_SLAVE,		/* a slave by its position */
+	EC_CLASS_SLAVE,		/* a slave by its address */
 	EC_CLASS_SHOW_SLAVE,	/* the same, in a show section */
 	EC_CLASS_SESSION,	/* session of the file; with session lock */
 	EC_CLASS_IDLE,		/* the same while it is not active */
@@ -43,7 +43,7 @@ struct ec_ioc_buffer {
  * @known: flags of the argument that are known
  * @min: bytes the oldest program sends, less is no such argument; 0: all of them
  * @class: what ec_call_run() finds and locks
- * @at: where the argument has the position or index for that
+ * @at: where the argument has the address or index for that
  * @buffer: @most is 0 when there is none
  * @reserved: fields that must be zero; size 0 ends them
  */

@@ -6,14 +6,18 @@
  */
 CMD(EC_IOC_VERSION, ec_ioc_version, 0)
 CMD(EC_IOC_REASON, ec_ioc_reason, 0)
-CMD(EC_IOC_MASTER, ec_ioc_master, 0, OLDEST(ec_ioc_master, not_captured))
-CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), OLDEST(ec_ioc_slave, dc_odd))
+CMD(EC_IOC_MASTER, ec_ioc_master, 0)
+CMD(EC_IOC_DEVICE, ec_ioc_device, 0)
+CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), RSV1(ec_ioc_slave))
+CMD(EC_IOC_SLAVE_NAMES, ec_ioc_slave_names, 0, SLAVE(ec_ioc_slave_names), RSV1(ec_ioc_slave_names))
+CMD(EC_IOC_SLAVE_WHY, ec_ioc_slave_why, 0, SHOW_SLAVE(ec_ioc_slave_why), RSV1(ec_ioc_slave_why))
+CMD(EC_IOC_PORT, ec_ioc_port, 0, SHOW_SLAVE(ec_ioc_port), RSV1(ec_ioc_port))
 CMD(EC_IOC_SM, ec_ioc_sm, 0, SLAVE(ec_ioc_sm), RSV1(ec_ioc_sm))
 CMD(EC_IOC_PDO, ec_ioc_pdo, 0, SLAVE(ec_ioc_pdo), RSV2(ec_ioc_pdo))
-CMD(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, SLAVE(ec_ioc_pdo_entry), RSV1(ec_ioc_pdo_entry))
+CMD(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, SLAVE(ec_ioc_pdo_entry), RSV2(ec_ioc_pdo_entry))
 CMD(EC_IOC_SII, ec_ioc_sii, 0, SLAVE(ec_ioc_sii), OUT(ec_ioc_sii, EC_MAX_SII_BYTES),
 	RSV1(ec_ioc_sii))
-CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config))
+CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config), RSV1(ec_ioc_config))
 CMD(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, SHOW_CONFIG(ec_ioc_config_sm), RSV1(ec_ioc_config_sm))
 CMD(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, SHOW_CONFIG(ec_ioc_config_pdo),
 	RSV1(ec_ioc_config_pdo))
@@ -26,42 +30,42 @@ CMD(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
 	OUT(ec_ioc_config_idn, EC_MAX_SOE_SIZE), RSV1(ec_ioc_config_idn))
 CMD(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag))
 CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
-	OLDEST(ec_ioc_config_why, text), RSV1(ec_ioc_config_why))
+	RSV1(ec_ioc_config_why))
 CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
-CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies))
+CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies),
+	OUT(ec_ioc_emergencies, EC_EMERGENCIES * sizeof(struct ec_emergency)))
 CMD(EC_IOC_EVENTS, ec_ioc_events, 0, FLAGS(EC_EVENTS_FLAG_NEW))
-CMD(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain), OLDEST(ec_ioc_domain, age))
+CMD(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain))
 CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
 	RSV1(ec_ioc_domain_fmmu))
 CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
 	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
 CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
-	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)),
-	OLDEST(ec_ioc_cycle_stats, priority_wanted))
+	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)))
 CMD(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
-	OUT(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+	OUT(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV2(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
 CMD(EC_IOC_SDO_DOWNLOAD, ec_ioc_sdo_download, F_WRITE, SLAVE(ec_ioc_sdo),
-	IN(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
+	IN(ec_ioc_sdo, EC_MAX_SDO_SIZE), RSV2(ec_ioc_sdo), FLAGS(EC_SDO_FLAG_COMPLETE))
 CMD(EC_IOC_SDO_INFO, ec_ioc_sdo_info, F_WRITE, SLAVE(ec_ioc_sdo_info),
 	OUT(ec_ioc_sdo_info, EC_MAX_SDO_SIZE), RSV1(ec_ioc_sdo_info))
-CMD(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, OUT(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),
+CMD(EC_IOC_REG_READ, ec_ioc_reg_read, F_WRITE, OUT(ec_ioc_reg, EC_MAX_REG_SIZE), RSV2(ec_ioc_reg),
 	FLAGS(EC_REG_FLAG_EMERGENCY))
-CMD(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE), RSV1(ec_ioc_reg),
+CMD(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE), RSV2(ec_ioc_reg),
 	FLAGS(EC_REG_FLAG_EMERGENCY))
 CMD(EC_IOC_REG_RDWR, ec_ioc_reg_rdwr, F_WRITE, INOUT(ec_ioc_reg, EC_MAX_REG_SIZE),
-	RSV1(ec_ioc_reg))
+	RSV2(ec_ioc_reg))
 CMD(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe), OUT(ec_ioc_soe, EC_MAX_SOE_SIZE),
-	RSV1(ec_ioc_soe))
+	RSV2(ec_ioc_soe))
 CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
-	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV1(ec_ioc_soe))
+	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV2(ec_ioc_soe))
 CMD(EC_IOC_FOE_READ, ec_ioc_foe_read, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
 CMD(EC_IOC_FOE_WRITE, ec_ioc_foe_write, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
 CMD(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state))
 CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
-	RSV(FIELD(ec_ioc_ip, params.reserved)))
+	RSV(FIELD(ec_ioc_ip, params.reserved), FIELD(ec_ioc_ip, reserved)))
 CMD(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, SLAVE(ec_ioc_ip),
-	RSV(FIELD(ec_ioc_ip, params.reserved)))
+	RSV(FIELD(ec_ioc_ip, params.reserved), FIELD(ec_ioc_ip, reserved)))
 CMD(EC_IOC_RESCAN, ec_ioc_rescan, F_WRITE)
 CMD(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE)
 CMD(EC_IOC_RESET, ec_ioc_reset, F_WRITE)

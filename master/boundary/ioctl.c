@@ -9,14 +9,16 @@
 
 #define MAX_ARG	896	/* on the stack: a 32-bit kernel warns above 1024 in all */
 
+#define OLD_VERSION	_IOR(EC_IOC_TYPE, _IOC_NR(EC_IOC_VERSION), struct ec_ioc_version)
+
 #define FIELD(type, field) { offsetof(struct type, field), sizeof_field(struct type, field) }
 #define RSV(...) .reserved = { __VA_ARGS__ }
 #define RSV1(type) RSV(FIELD(type, reserved))
 #define RSV2(type) RSV(FIELD(type, reserved), FIELD(type, reserved2))
-#define POSITION(c, type) .class = (c), .at = offsetof(struct type, position) + \
-	BUILD_BUG_ON_ZERO(sizeof_field(struct type, position) != sizeof(u16))
-#define SLAVE(type) POSITION(EC_CLASS_SLAVE, type)
-#define SHOW_SLAVE(type) POSITION(EC_CLASS_SHOW_SLAVE, type)
+#define ADDRESS(c, type) .class = (c), .at = offsetof(struct type, slave) + \
+	BUILD_BUG_ON_ZERO(sizeof_field(struct type, slave) != sizeof(struct ec_ioc_address))
+#define SLAVE(type) ADDRESS(EC_CLASS_SLAVE, type)
+#define SHOW_SLAVE(type) ADDRESS(EC_CLASS_SHOW_SLAVE, type)
 #define INDEX(c, type, field) .class = (c), .at = offsetof(struct type, field) + \
 	BUILD_BUG_ON_ZERO(sizeof_field(struct type, field) != sizeof(u32))
 #define CONFIG(type) INDEX(EC_CLASS_CONFIG, type, config)
@@ -52,7 +54,8 @@ static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int c
 {
 	unsigned int size = _IOC_SIZE(cmd), min = op->min ?: _IOC_SIZE(op->cmd);
 
-	if (size < min || size > (_IOC_DIR(cmd) ? MAX_ARG : 0))
+	/* a newer program has a longer one: fetch_arg() looks at the rest */
+	if (size < min || (size && !_IOC_DIR(cmd)))
 		return ec_refuse(call, -EINVAL,
 				 "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
 				 cmd, size, min);
@@ -106,6 +109,16 @@ int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
 	return ret ?: ec_call_run(f, op, arg, false);
 }
 
+/* Programs of the interface versions 1 and 2 do not name theirs. */
+static long refuse_old(struct ec_file *f)
+{
+	struct ec_call call = { .file = f };
+
+	return ec_refuse(&call, -EPROTO,
+			 "the program was built for interface version 1 or 2, this module has version %u: rebuild the program, or install its library of the same release",
+			 EC_UAPI_VERSION);
+}
+
 static int fetch_arg(struct ec_call *call, const struct ec_ioctl *op, unsigned int cmd, void *karg,
 		     void __user *uarg)
 {
@@ -138,6 +151,8 @@ static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long
 
 	if (cmd == _IOR(0xa4, 0, u64))
 		return foreign_version(arg);
+	if (cmd == OLD_VERSION)
+		return refuse_old(f);
 	if (_IOC_TYPE(cmd) != EC_IOC_TYPE || nr >= ARRAY_SIZE(table))
 		return -ENOTTY;
 	op = &table[array_index_nospec(nr, ARRAY_SIZE(table))];

@@ -45,7 +45,7 @@ struct ec_call {
 int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg);
 int ec_refuse(struct ec_call *call, int err, const char *fmt, ...) __printf(3, 4);
 int ec_ioc_limit(struct ec_call *call, int ret);
-int ec_ioc_get_slave(struct ec_call *call, u16 position);
+int ec_ioc_get_slave(struct ec_call *call, const struct ec_ioc_address *address);
 int ec_ioc_lock_session(struct ec_call *call);
 int ec_ioc_pause(struct ec_call *call);
 int ec_ioc_refuse_reserved(struct ec_call *call);
@@ -53,8 +53,7 @@ int ec_ioc_refuse_reserved(struct ec_call *call);
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what);
 long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg);
-int ec_ioc_mbox_failed(struct ec_call *call, int ret, u16 position, const char *protocol,
-		       const char *what);
+int ec_ioc_mbox_failed(struct ec_call *call, int ret, const char *protocol, const char *what);
 
 #define CMD(cmd, handler, ...) int handler(struct ec_call *call);
 #include "commands.h"

@@ -7,28 +7,46 @@
 #include "../bus/slave.h"
 #include "../carry/xfer.h"
 
+/* By ring position an unscanned bus is reached as well. */
+static int reg_address(struct ec_call *call, struct ec_dg *dg, u8 cmd, unsigned int *position)
+{
+	const struct ec_ioc_reg *i = call->arg;
+	int ret;
+
+	*position = i->slave.position;
+	if (i->flags & EC_REG_FLAG_EMERGENCY) {
+		if (i->slave.kind != EC_ADDRESS_POSITION)
+			return ec_refuse(call, -EINVAL,
+					 "an emergency access goes to a ring position, not to another kind of address");
+		dg->cmd = cmd == EC_CMD_FPWR ? EC_CMD_APWR : EC_CMD_APRD;
+		dg->adp = -i->slave.position;
+		return 0;
+	}
+	ret = ec_ioc_get_slave(call, &i->slave);
+	if (ret)
+		return ret;
+	*position = call->slave->position;
+	dg->cmd = cmd;
+	dg->adp = call->slave->station;
+	return 0;
+}
+
 static int reg_access(struct ec_call *call, u8 cmd)
 {
 	struct ec_master *m = call->master;
 	const struct ec_ioc_reg *i = call->arg;
 	struct ec_dg dg = { .ado = i->address, .len = i->size, .data = call->data };
 	u16 expected = cmd == EC_CMD_FPRW ? 3 : 1;
+	unsigned int position;
 	int ret;
 
 	if (!i->size || i->size > EC_MAX_REG_SIZE || i->address + i->size > 0x10000)
 		return ec_refuse(call, -EINVAL,
 				 "size must be 1 to %u bytes and end below 0x10000, not %u at 0x%04x",
 				 EC_MAX_REG_SIZE, i->size, i->address);
-	if (i->flags & EC_REG_FLAG_EMERGENCY) {
-		dg.cmd = cmd == EC_CMD_FPWR ? EC_CMD_APWR : EC_CMD_APRD;
-		dg.adp = -i->position;
-	} else {
-		ret = ec_ioc_get_slave(call, i->position);
-		if (ret)
-			return ret;
-		dg.cmd = cmd;
-		dg.adp = call->slave->station;
-	}
+	ret = reg_address(call, &dg, cmd, &position);
+	if (ret)
+		return ret;
 	ret = ec_xfer(&m->links, &dg, 1);
 	switch (ret) {
 	case 0:
@@ -36,22 +54,22 @@ static int reg_access(struct ec_call *call, u8 cmd)
 	case -ETIMEDOUT:
 		return ec_refuse(call, ret,
 				 "no reply to register access 0x%04x at slave %u; check the cables",
-				 i->address, i->position);
+				 i->address, position);
 	case -EINTR:
 		return ret;
 	case -ENODEV:
 	case -ENETDOWN:
 		return ec_refuse(call, ret,
 				 "register access 0x%04x at slave %u: the main device is missing or has no link; check the cable",
-				 i->address, i->position);
+				 i->address, position);
 	default:
 		return ec_refuse(call, ret, "register access 0x%04x at slave %u: cannot send (%pe)",
-				 i->address, i->position, ERR_PTR(ret));
+				 i->address, position, ERR_PTR(ret));
 	}
 	if (dg.wkc != expected)
 		return ec_refuse(call, -EIO,
 				 "slave %u did not execute access to 0x%04x: working counter %u, expected %u",
-				 i->position, i->address, dg.wkc, expected);
+				 position, i->address, dg.wkc, expected);
 	return 0;
 }
 
@@ -86,7 +104,7 @@ int ec_ioc_state(struct ec_call *call)
 				 "a transition may take at most %u ms, not %u", EC_MAX_AL_MS,
 				 i->timeout_ms);
 	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
-		return ec_refuse(call, -EIO, "slave %u could not be read: %.160s", i->position,
+		return ec_refuse(call, -EIO, "slave %u could not be read: %.160s", s->position,
 				 ec_slave_why(s, why, sizeof(why)));
 	ec_slave_request_anew(s, i->state, i->timeout_ms);
 	return 0;

@@ -29,6 +29,7 @@ int ec_ioc_config(struct ec_call *call)
 	i->vendor_id = c->vendor;
 	i->product_code = c->product;
 	i->slave_position = c->slave ? c->slave->position : -1;
+	i->device = c->slave ? c->slave->device : 0;
 	i->al_status = c->slave ? READ_ONCE(c->slave->al_status) : 0;
 	i->watchdog_divider = reg(c, EC_REG_WD_DIVIDER);
 	i->watchdog_intervals = reg(c, EC_REG_WD_SM);

@@ -119,6 +119,13 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
 	return ioctl_cyclic_send(f, what);
 }
 
+/* A program that was built with a later header; a cycle of this one does not pay for it. */
+static noinline int fetch_longer(struct ec_ioc_send *what, size_t size, const void __user *arg)
+{
+	return size < sizeof(*what) ? -EINVAL :
+	       copy_struct_from_user(what, sizeof(*what), arg, size);
+}
+
 /**
  * ec_ioctl_send() - EC_IOC_SEND of a program
  * @f: open file
@@ -126,18 +133,22 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
  * @arg: user pointer
  *
  * Context: Process. RT-safe.
- * Return: as ec_ioc_send(); -ENOTTY, -EINVAL, -EFAULT, -EOPNOTSUPP as ec_ioctl().
+ * Return: as ec_ioc_send(); -ENOTTY, -EINVAL, -E2BIG, -EFAULT, -EOPNOTSUPP as ec_ioctl().
  */
 long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 {
 	struct ec_ioc_send what;
+	int ret;
 
 	if (_IOC_DIR(cmd) != _IOC_DIR(EC_IOC_SEND))
 		return -ENOTTY;
-	if (_IOC_SIZE(cmd) != sizeof(what))
-		return -EINVAL;
-	if (copy_from_user(&what, (void __user *)arg, sizeof(what)))
+	if (unlikely(_IOC_SIZE(cmd) != sizeof(what))) {
+		ret = fetch_longer(&what, _IOC_SIZE(cmd), (void __user *)arg);
+		if (ret)
+			return ret;
+	} else if (copy_from_user(&what, (void __user *)arg, sizeof(what))) {
 		return -EFAULT;
+	}
 	if (what.flags & ~EC_SEND_FLAG_ALL || what.reserved)
 		return -EOPNOTSUPP;
 	return ec_ioc_send(f, &what);

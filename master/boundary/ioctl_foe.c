@@ -55,10 +55,9 @@ static void progress(void *ctx, u64 done)
 static int ioctl_foe_refused(struct ec_call *call, const struct ec_foe *f)
 {
 	const char *meaning = ec_foe_error_text(f->error) ?: "unknown code";
-	const struct ec_ioc_foe *i = call->arg;
 
 	return ec_refuse(call, -EIO, "file '%*pE' of slave %u: error 0x%08x: %s%s%s",
-			 (int)f->name_len, f->name, i->position, f->error, meaning,
+			 (int)f->name_len, f->name, call->slave->position, f->error, meaning,
 			 f->text[0] ? "; text of the slave: " : "", f->text);
 }
 
@@ -74,14 +73,14 @@ static int ioctl_foe_failed(struct ec_call *call, const struct ec_foe *f, int re
 	case -EINPROGRESS:
 		return ec_refuse(call, -EBUSY,
 				 "another file of slave %u is transferred just now; try again later",
-				 i->position);
+				 call->slave->position);
 	case -ENOBUFS:
 		return ec_refuse(call, ret, "%s of slave %u is larger than %u bytes", what,
-				 i->position, i->size);
+				 call->slave->position, i->size);
 	case -EFAULT:
 		return ret;
 	default:
-		return ec_ioc_mbox_failed(call, ret, i->position, "FoE", what);
+		return ec_ioc_mbox_failed(call, ret, "FoE", what);
 	}
 }
 

@@ -25,6 +25,10 @@ int ec_ioc_version(struct ec_call *call)
 {
 	struct ec_ioc_version *v = call->arg;
 
+	if (v->abi < EC_UAPI_FIRST)
+		return ec_refuse(call, -EPROTO,
+				 "the program was built for interface version %u, this module has version %u: rebuild the program",
+				 v->abi, EC_UAPI_VERSION);
 	v->abi = EC_UAPI_VERSION;
 	v->features = EC_FEATURE_APP_CYCLE | EC_FEATURE_COE | EC_FEATURE_KERNEL_CYCLE |
 		      EC_FEATURE_SOE | EC_FEATURE_VOE | EC_FEATURE_FOE |
@@ -55,9 +59,17 @@ static void copy_rates(u32 *to, const u32 *rate)
 		to[i] = READ_ONCE(rate[i]);
 }
 
-static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
+int ec_ioc_device(struct ec_call *call)
 {
+	const struct ec_links *links = &call->master->links;
+	struct ec_ioc_device *d = call->arg;
+	const struct ec_link *link;
 	struct ecdev *dev;
+
+	if (d->index >= ec_links_n(links))
+		return ec_refuse(call, -ENOENT, "master %u has %u network device(s), no %u",
+				 call->master->base->index, ec_links_n(links), d->index);
+	link = ec_links_at(&call->master->links, d->index);
 
 	ec_links_name(link->links, link->side, d->name, sizeof(d->name));
 	rcu_read_lock();
@@ -91,6 +103,7 @@ static void device_info(const struct ec_link *link, struct ec_ioc_device *d)
 	copy_rates(d->tx_byte_rate, link->rates.rate[2]);
 	copy_rates(d->rx_byte_rate, link->rates.rate[3]);
 	copy_rates(d->loss_rate, link->rates.rate[4]);
+	return 0;
 }
 
 static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
@@ -170,7 +183,7 @@ int ec_ioc_master(struct ec_call *call)
 	i->phase = !ec_links_attached(&m->links) ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
 	for (l = 0; l < ec_links_n(&m->links); l++) {
-		device_info(ec_links_at(&m->links, l), &i->devices[l]);
+		i->links_up |= READ_ONCE(ec_links_at(&m->links, l)->up) << l;
 		i->not_captured += atomic64_read(&ec_links_at(&m->links, l)->stats.not_captured);
 	}
 	i->device_count = l;
@@ -190,22 +203,23 @@ static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int
 	return p == s->upstream ? ec_clock_of(s)->prev_delay : ec_clock_of(next)->prev_delay;
 }
 
-static void slave_ports(const struct ec_master *m, const struct ec_slave *s,
-			struct ec_ioc_slave *i)
+int ec_ioc_port(struct ec_call *call)
 {
-	unsigned int p;
+	const struct ec_slave *s = call->slave;
+	struct ec_ioc_port *i = call->arg;
+	unsigned int p = i->port;
 
-	for (p = 0; p < EC_UAPI_PORTS; p++) {
-		struct ec_ioc_port *port = &i->ports[p];
-
-		port->type = ec_slave_port_type(s, p);
-		port->link_up = !!(s->dl_status & EC_DLS_LINK(p));
-		port->loop_closed = !!(s->dl_status & EC_DLS_LOOP(p));
-		port->signal = !!(s->dl_status & EC_DLS_COMM(p));
-		port->receive_time = s->recv[p];
-		port->next_slave = s->next[p];
-		port->delay_to_next_dc = way(m, s, p);
-	}
+	if (p >= EC_UAPI_PORTS)
+		return ec_refuse(call, -EINVAL, "a slave has ports 0 to %u, no port %u",
+				 EC_UAPI_PORTS - 1, p);
+	i->type = ec_slave_port_type(s, p);
+	i->link_up = !!(s->dl_status & EC_DLS_LINK(p));
+	i->loop_closed = !!(s->dl_status & EC_DLS_LOOP(p));
+	i->signal = !!(s->dl_status & EC_DLS_COMM(p));
+	i->receive_time = s->recv[p];
+	i->next_slave = s->next[p];
+	i->delay_to_next_dc = way(call->master, s, p);
+	return 0;
 }
 
 /* The nearest slave at or before this one that has an alias. */
@@ -230,42 +244,63 @@ static int slave_alias(struct ec_call *call, struct ec_ioc_slave *i)
 	return 0;
 }
 
-static void slave_general(const struct ec_slave *s, struct ec_ioc_slave *i)
+int ec_ioc_slave_names(struct ec_call *call)
 {
-	i->has_general = s->has_general;
-	i->coe_details = s->general.coe;
-	i->general_flags = s->general.flags;
-	i->foe_details = s->general.foe;
-	i->current_ma = s->general.current_ma;
+	const struct ec_slave *s = call->slave;
+	struct ec_ioc_slave_names *i = call->arg;
+
 	strscpy(i->group, s->group, sizeof(i->group));
 	strscpy(i->image, s->image, sizeof(i->image));
 	strscpy(i->order, s->order, sizeof(i->order));
 	strscpy(i->name, s->name, sizeof(i->name));
+	return 0;
 }
 
-/* The configuration that has the slave, or that expects another one in its place. */
-static int slave_config(struct ec_call *call, struct ec_ioc_slave *i)
+/* The configuration that has the slave, or that expects another one in its place; or NULL. */
+static int slave_config(struct ec_call *call, const struct ec_config **config)
 {
 	const struct ec_session *session = call->master->sessions.session;
-	const struct ec_slave *s = call->slave;
-	const struct ec_config *c = NULL;
 	unsigned int from = 0;
 	int ret;
 
+	*config = NULL;
 	while (session) {
-		c = ec_config_at(&session->wanted, s, i->alias_group, i->alias_pos, &from);
-		if (c || from >= session->wanted.n_configs)
+		*config = ec_config_at(&session->wanted, call->slave, &from);
+		if (*config || from >= session->wanted.n_configs)
 			break;
 		ret = ec_ioc_pause(call);
 		if (ret)
 			return ret;
 	}
-	i->config = c ? c->index + 1 : 0;
-	i->differs = c && ec_config_differs(c, s);
+	return 0;
+}
+
+int ec_ioc_slave_why(struct ec_call *call)
+{
+	struct ec_ioc_slave_why *i = call->arg;
+	struct ec_slave *s = call->slave;
+	const struct ec_config *c;
+	int ret = slave_config(call, &c);
+
+	if (ret)
+		return ret;
+	ec_slave_why(s, i->why, sizeof(i->why));
+	ec_slave_cause(s, &i->cause);
+	ec_slave_warning(s, i->warning, sizeof(i->warning));
 	/* such a slave is used all the same, so it has no other text */
-	if (i->differs && !i->warning[0])
+	if (c && ec_config_differs(c, s) && !i->warning[0])
 		ec_config_revision_text(c, s, i->warning, sizeof(i->warning));
 	return 0;
+}
+
+static int slave_attached(struct ec_call *call, struct ec_ioc_slave *i)
+{
+	const struct ec_config *c;
+	int ret = slave_config(call, &c);
+
+	i->config = c ? c->index + 1 : 0;
+	i->differs = c && ec_config_differs(c, call->slave);
+	return ret;
 }
 
 int ec_ioc_slave(struct ec_call *call)
@@ -275,6 +310,8 @@ int ec_ioc_slave(struct ec_call *call)
 	const struct ec_clock *c = ec_clock_of(s);
 	u16 feat = ec_slave_features(s);
 
+	i->device = s->device;
+	i->position = s->position;
 	i->station = s->station;
 	i->alias = s->alias;
 	i->al_status = READ_ONCE(s->al_status);
@@ -308,12 +345,12 @@ int ec_ioc_slave(struct ec_call *call)
 	i->fmmu_count = s->regs[EC_REG_FMMUS];
 	i->dl_status = s->dl_status;
 	i->sii_words = s->sii_bytes / 2;
-	slave_general(s, i);
-	ec_slave_why(s, i->why, sizeof(i->why));
-	ec_slave_cause(s, &i->cause);
-	ec_slave_warning(s, i->warning, sizeof(i->warning));
-	slave_ports(call->master, s, i);
-	return slave_alias(call, i) ?: slave_config(call, i);
+	i->has_general = s->has_general;
+	i->coe_details = s->general.coe;
+	i->general_flags = s->general.flags;
+	i->foe_details = s->general.foe;
+	i->current_ma = s->general.current_ma;
+	return slave_alias(call, i) ?: slave_attached(call, i);
 }
 
 int ec_ioc_sm(struct ec_call *call)
@@ -323,7 +360,7 @@ int ec_ioc_sm(struct ec_call *call)
 
 	if (i->sm >= s->n_sms)
 		return ec_refuse(call, -EINVAL, "slave %u has %u SyncManagers, not %u",
-				 i->position, s->n_sms, i->sm + 1);
+				 s->position, s->n_sms, i->sm + 1);
 	i->start = s->sms[i->sm].start;
 	i->default_size = s->sms[i->sm].len;
 	i->control = s->sms[i->sm].control;

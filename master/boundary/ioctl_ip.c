@@ -29,30 +29,38 @@ static int failed(struct ec_call *call, const struct ec_ioc_ip *i, int ret)
 	switch (ret) {
 	case -EREMOTEIO:
 		return ec_refuse(call, -EIO,
-				 "slave %u: IP parameters refused: EoE result 0x%04x (%s)", i->position,
-				 i->result, ec_eoe_result_text(i->result));
+				 "slave %u: IP parameters refused: EoE result 0x%04x (%s)",
+				 call->slave->position, i->result, ec_eoe_result_text(i->result));
 	case -EMSGSIZE:
 		return ec_refuse(call, ret,
 				 "the mailbox of slave %u is too small for IP parameters, or larger than a datagram",
-				 i->position);
+				 call->slave->position);
 	default:
-		return ec_ioc_mbox_failed(call, ret, i->position, "EoE", "IP parameters");
+		return ec_ioc_mbox_failed(call, ret, "EoE", "IP parameters");
 	}
 }
 
 int ec_ioc_ip_set(struct ec_call *call)
 {
 	struct ec_ioc_ip *i = call->arg;
+	int ret = check_params(call, &i->params);
+	u16 result = 0;
 
-	return check_params(call, &i->params) ?:
-	       failed(call, i, ec_eoe_set_ip(&call->slave->mbox, eoe_ip(&i->params), &i->result));
+	if (ret)
+		return ret;
+	ret = ec_eoe_set_ip(&call->slave->mbox, eoe_ip(&i->params), &result);
+	i->result = result;
+	return failed(call, i, ret);
 }
 
 int ec_ioc_ip_get(struct ec_call *call)
 {
 	struct ec_ioc_ip *i = call->arg;
+	u16 result = 0;
+	int ret = ec_eoe_get_ip(&call->slave->mbox, eoe_ip(&i->params), &result);
 
-	return failed(call, i, ec_eoe_get_ip(&call->slave->mbox, eoe_ip(&i->params), &i->result));
+	i->result = result;
+	return failed(call, i, ret);
 }
 
 int ec_ioc_sc_ip(struct ec_call *call)

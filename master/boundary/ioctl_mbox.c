@@ -27,21 +27,19 @@ static int check_size(struct ec_call *call, u32 least, u32 most)
  * ec_ioc_mbox_failed() - why a transfer through the mailbox of a slave failed
  * @call: command
  * @ret: result of the transfer
- * @position: of the slave
  * @protocol: of the mailbox
  * @what: was transferred
  *
  * Context: Process. May sleep.
  * Return: @ret, with its reason noted unless it is 0.
  */
-int ec_ioc_mbox_failed(struct ec_call *call, int ret, u16 position, const char *protocol,
-		       const char *what)
+int ec_ioc_mbox_failed(struct ec_call *call, int ret, const char *protocol, const char *what)
 {
 	char why[96];
 
 	if (!ret)
 		return 0;
-	return ec_refuse(call, ret, "%s of slave %u: %s", what, position,
+	return ec_refuse(call, ret, "%s of slave %u: %s", what, call->slave->position,
 			 ec_mbox_fail_text(ret, protocol, why, sizeof(why)));
 }
 
@@ -66,8 +64,8 @@ static int sdo_failed(struct ec_call *call, const struct ec_ioc_sdo *i, int ret)
 	if (ret == -ETIMEDOUT)
 		return ec_refuse(call, ret,
 				 "%s of slave %u: no reply in time, limit %u ms; if the slave needs longer, allow more: --timeout, ecrt_slave_config_sdo_timeout()",
-				 what, i->position, i->timeout_ms ?: sdo_ms(call));
-	return ec_ioc_mbox_failed(call, ret, i->position, "CoE", what);
+				 what, call->slave->position, i->timeout_ms ?: sdo_ms(call));
+	return ec_ioc_mbox_failed(call, ret, "CoE", what);
 }
 
 int ec_ioc_sdo_upload(struct ec_call *call)
@@ -107,11 +105,12 @@ static int info_failed(struct ec_call *call, const struct ec_ioc_sdo_info *i, in
 	else
 		scnprintf(what, sizeof(what), "description of 0x%04x:%02x", i->index, i->subindex);
 	if (ret == -EIO && i->abort_code)
-		return ec_refuse(call, ret, "%s: slave %u: error 0x%08x: %s", what, i->position,
-				 i->abort_code, ec_coe_abort_text(i->abort_code) ?: "unknown code");
+		return ec_refuse(call, ret, "%s: slave %u: error 0x%08x: %s", what,
+				 call->slave->position, i->abort_code,
+				 ec_coe_abort_text(i->abort_code) ?: "unknown code");
 	if (ret == -ENOBUFS)
 		return ec_refuse(call, ret, "%s is larger than %u bytes", what, call->size);
-	return ec_ioc_mbox_failed(call, ret, i->position, "CoE", what);
+	return ec_ioc_mbox_failed(call, ret, "CoE", what);
 }
 
 int ec_ioc_sdo_info(struct ec_call *call)
@@ -149,8 +148,14 @@ int ec_ioc_emergencies(struct ec_call *call)
 {
 	struct ec_ioc_emergencies *i = call->arg;
 
+	struct ec_emergency last[EC_EMERGENCIES];
+	unsigned int fit, n = ec_emerg_last(&call->slave->mbox, last, &i->total);
+
 	i->profile = READ_ONCE(call->slave->mbox.profile);
-	i->count = ec_emerg_last(&call->slave->mbox, i->entry, &i->total);
+	/* the newest ones that fit */
+	fit = min_t(u32, n, call->size / sizeof(last[0]));
+	i->size = fit * sizeof(last[0]);
+	memcpy(call->data, last + n - fit, i->size);
 	return 0;
 }
 
@@ -186,18 +191,18 @@ static int idn_failed(struct ec_call *call, const struct ec_ioc_soe *i, int ret)
 	switch (ret) {
 	case -EIO:
 		if (!i->error_code)
-			return ec_ioc_mbox_failed(call, ret, i->position, "SoE", what);
+			return ec_ioc_mbox_failed(call, ret, "SoE", what);
 		return ec_refuse(call, ret, "%s of drive %u: error 0x%04x: %s", what, i->drive,
 				 i->error_code,
 				 ec_soe_error_text(i->error_code) ?: "unknown code");
 	case -EMSGSIZE:
 		return ec_refuse(call, ret,
 				 "%s: the value does not fit into one message of the mailbox of slave %u; fragments are not supported",
-				 what, i->position);
+				 what, call->slave->position);
 	case -ENOBUFS:
 		return ec_refuse(call, ret, "%s is larger than %u bytes", what, i->size);
 	default:
-		return ec_ioc_mbox_failed(call, ret, i->position, "SoE", what);
+		return ec_ioc_mbox_failed(call, ret, "SoE", what);
 	}
 }
 

@@ -10,6 +10,7 @@
 #include <linux/spinlock.h>
 #include <linux/wait.h>
 #include "../base/base.h"
+#include "known.h"
 #include "workers.h"
 
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the list of slaves is used as it is */
@@ -60,6 +61,8 @@ struct ec_bus {
 	struct ec_slave **slaves;
 	/** @n_slaves: entries in @slaves */
 	unsigned int n_slaves;
+	/** @known: device numbers */
+	struct ec_known known;
 
 	/** @pending: slaves have changed, and there is no event of it so far */
 	bool pending;

@@ -399,6 +399,7 @@ static bool scan_publish(struct scan *sc)
 	sc->changed = differs(sc);
 	ec_show_change_begin(&bus->base->show);
 	take_regs(sc, true);
+	ec_known_update(bus, sc->slaves, sc->n);
 	note_aliases(sc);
 	WRITE_ONCE(bus->lists, bus->lists + 1);
 	for (i = 0; i < sc->n; i++)

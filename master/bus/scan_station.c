@@ -204,6 +204,7 @@ static void take_failure(struct scan *sc, struct ec_slave *s)
 		return;
 	strscpy(s->why, old->why, sizeof(s->why));
 	s->cause = old->cause;
+	s->device = old->device;
 	s->retry_ms = old->retry_ms;
 }
 
@@ -288,6 +289,7 @@ static int scan_station_add(struct scan *sc, unsigned int i, struct ec_dg *dg, b
 	sc->slaves[i] = s;
 	s->position = i;
 	take_failure(sc, s);
+	s->kept_station = sc->regs[i].there && old != NO_STATION && sc->claims[old] == 1 ? old : 0;
 	/* by its address it is the same */
 	if (known && sc->regs[i].there && sc->claims[old] == 1) {
 		scan_station_take_part(s, known);

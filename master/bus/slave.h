@@ -60,6 +60,9 @@ struct ec_break {
  * @name: name
  *
  * Of the last scan, changed under bus->topo:
+ * @device: device number
+ * @by_device: in bus->known.present while it is in the list
+ * @kept_station: station address with which it was found, 0: it had none of its own
  * @position: ring position
  * @regs: registers 0x0000-0x0009
  * @dl_status: register 0x0110
@@ -147,6 +150,9 @@ struct ec_slave {
 	char order[EC_UAPI_STRING];
 	char name[EC_UAPI_STRING];
 
+	u64 device;
+	struct hlist_node by_device;
+	u16 kept_station;
 	u16 position;
 	u8 regs[EC_INFO_SIZE];
 	u16 dl_status;

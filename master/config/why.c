@@ -183,8 +183,6 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
  * ec_config_at() - look for the configuration that a slave has or differs from
  * @w: what an application configures
  * @slave: slave
- * @alias: of the nearest slave at or before it that has one, or 0
- * @distance: to that one
  * @from: configuration to begin with, initially 0; set behind the last one checked
  *
  * Looks at some configurations only, as a section of a reader is short.
@@ -194,10 +192,10 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
  * go on until @from is the number of configurations.
  */
 const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
-				     u16 alias, u16 distance, unsigned int *from)
+				     unsigned int *from)
 {
 	const struct ec_config *has = ec_config_of(slave);
-	unsigned int end = min(w->n_configs, *from + WALK);
+	unsigned int pos, end = min(w->n_configs, *from + WALK);
 
 	ec_wanted_assert_stays(w);
 	if (has && has->wanted == w)
@@ -205,8 +203,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
 	while (*from < end) {
 		const struct ec_config *c = w->configs[(*from)++];
 
-		if (!c->slave && (c->alias ? c->alias == alias && c->position == distance :
-					     c->position == slave->position))
+		if (!c->slave && place(c, &pos) && pos == slave->position)
 			return c;
 	}
 	return NULL;

@@ -133,7 +133,7 @@ static void al_time_limit_without_application(struct kunit *test)
 {
 	const struct limit *l = test->param_value;
 	struct ec_ioc_state req = {
-		.position = AI, .state = EC_AL_PREOP, .timeout_ms = l->request_ms,
+		.slave.position = AI, .state = EC_AL_PREOP, .timeout_ms = l->request_ms,
 	};
 	struct bus *b = bus_up(test, line, N);
 	u32 ms;

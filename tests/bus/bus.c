@@ -360,7 +360,7 @@ void bus_strip_names(struct bus *b, u32 index)
  */
 void bus_request(struct bus *b, u32 position, u8 state)
 {
-	struct ec_ioc_state s = { .position = position, .state = state };
+	struct ec_ioc_state s = { .slave.position = position, .state = state };
 
 	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_STATE, &s), 0);
 }

@@ -76,7 +76,7 @@ static void dc_log_delay_only(struct kunit *test)
 		bool only = i && i < 21;
 
 		memset(info, 0, sizeof(*info));
-		info->position = i;
+		info->slave.position = i;
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, info), 0);
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_delay_only, only);
 		KUNIT_EXPECT_EQ(test, (bool)info->dc_set, !only);

@@ -208,7 +208,7 @@ static bool shown_odd(struct bus *b, u32 position)
 	struct ec_ioc_slave *s = kunit_kzalloc(b->test, sizeof(*s), GFP_KERNEL);
 
 	KUNIT_ASSERT_NOT_NULL(b->test, s);
-	s->position = position;
+	s->slave.position = position;
 	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE, s), 0);
 	return s->dc_odd;
 }

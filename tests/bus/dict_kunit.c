@@ -16,7 +16,7 @@ static const char text[] =
 static int ask(struct bus *b, u8 what, u16 index, u8 sub, u8 *buf, size_t *size, u64 *sum)
 {
 	struct ec_ioc_sdo_info i = {
-		.position = 0, .what = what, .index = index, .subindex = sub, .size = ROOM,
+		.slave.position = 0, .what = what, .index = index, .subindex = sub, .size = ROOM,
 		.data = (uintptr_t)buf,
 	};
 	int ret = ec_ioc(&b->app, EC_IOC_SDO_INFO, &i);

@@ -73,7 +73,7 @@ static struct cyc *in_op(struct kunit *test)
 static void differ_logged_at_activation(struct kunit *test)
 {
 	struct bus *b = bus_up(test, tree, N);
-	struct ec_ioc_slave s = { .position = 2 };
+	struct ec_ioc_slave s = { .slave.position = 2 };
 	struct cyc *c;
 	u32 other;
 
@@ -93,11 +93,11 @@ static void differ_logged_at_activation(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, other + 1);
 	KUNIT_EXPECT_EQ(test, s.differs, 1u);
-	s.position = 1;
+	s.slave.position = 1;
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, 2u);
 	KUNIT_EXPECT_EQ(test, s.differs, 0u);
-	s.position = 4;
+	s.slave.position = 4;
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
 	KUNIT_EXPECT_EQ(test, s.config, 0u);
 }
@@ -125,7 +125,8 @@ static void differ_revision(struct kunit *test)
 {
 	struct bus *b = bus_up(test, tree, N);
 	struct ec_ioc_sc_flag f = { .key = EC_FLAG_REVISION, .value = 0x4711 };
-	struct ec_ioc_slave s = { .position = 1 };
+	struct ec_ioc_slave s = { .slave.position = 1 };
+	struct ec_ioc_slave_why w = { .slave.position = 1 };
 	struct cyc *c;
 	char want[80];
 
@@ -145,7 +146,8 @@ static void differ_revision(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, s.differs, 1u);
 	scnprintf(want, sizeof(want), "slave 1 has revision 0x%08x, expected 0x00004711",
 		  bus_slave(b, 1)->info.revision);
-	KUNIT_EXPECT_STREQ(test, s.warning, want);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &w), 0);
+	KUNIT_EXPECT_STREQ(test, w.warning, want);
 }
 
 /* A reason says what the slave is waiting for. */

@@ -111,20 +111,20 @@ static void eoe_parameters_set_by_tool(struct kunit *test)
 	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), 0, "%s", b->app.reason);
 	KUNIT_EXPECT_MEMEQ(test, &i.params, &net, sizeof(net));
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &(struct ec_ioc_ip){ 0 }), -EINVAL);
-	i.position = 1;
+	i.slave.position = 1;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &i), -EIO);
 	KUNIT_EXPECT_EQ(test, i.result, 0x0201);
 	KUNIT_EXPECT_STREQ(test, b->app.reason,
 			   "slave 1: IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), -EIO);
-	i.position = 2;
+	i.slave.position = 2;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &i), -EPROTONOSUPPORT);
 	KUNIT_EXPECT_STREQ(test, b->app.reason, "IP parameters of slave 2: no EoE mailbox");
-	i.position = 3;
+	i.slave.position = 3;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), -ENOENT);
 	bus_request(b, 0, EC_AL_INIT);
 	bus_idle(b);
-	i.position = 0;
+	i.slave.position = 0;
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_GET, &i), -EAGAIN);
 }
 

@@ -44,7 +44,7 @@ static int serial(struct bus *b, u32 position)
 {
 	u8 data[4];
 	struct ec_ioc_sdo sdo = {
-		.position = position, .index = 0x1018, .subindex = 4, .size = 4,
+		.slave.position = position, .index = 0x1018, .subindex = 4, .size = 4,
 		.data = (uintptr_t)data,
 	};
 	int ret = ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &sdo);
@@ -188,17 +188,18 @@ static void expect_lost(struct bus *b, u32 position)
 {
 	u8 data[4] = { EC_AL_INIT };
 	struct ec_ioc_sdo sdo = {
-		.position = position, .index = 0x1018, .subindex = 4, .size = 4,
+		.slave.position = position, .index = 0x1018, .subindex = 4, .size = 4,
 		.data = (uintptr_t)data,
 	};
-	struct ec_ioc_foe foe = { .position = position, .size = 4, .data = (uintptr_t)data };
-	struct ec_ioc_soe soe = { .position = position, .size = 4, .data = (uintptr_t)data };
-	struct ec_ioc_state al = { .position = position, .state = EC_AL_INIT };
+	struct ec_ioc_foe foe = { .slave.position = position, .size = 4, .data = (uintptr_t)data };
+	struct ec_ioc_soe soe = { .slave.position = position, .size = 4, .data = (uintptr_t)data };
+	struct ec_ioc_state al = { .slave.position = position, .state = EC_AL_INIT };
 	struct ec_ioc_reg reg = {
-		.position = position, .address = EC_REG_AL_CONTROL, .size = 2,
+		.slave.position = position, .address = EC_REG_AL_CONTROL, .size = 2,
 		.data = (uintptr_t)data,
 	};
-	struct ec_ioc_slave i = { .position = position };
+	struct ec_ioc_slave i = { .slave.position = position };
+	struct ec_ioc_slave_why w = { .slave.position = position };
 
 	KUNIT_EXPECT_EQ(b->test, command(b, EC_IOC_SDO_UPLOAD, &sdo), -EIO);
 	KUNIT_EXPECT_EQ(b->test, command(b, EC_IOC_SDO_DOWNLOAD, &sdo), -EIO);
@@ -208,10 +209,11 @@ static void expect_lost(struct bus *b, u32 position)
 	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -EIO);
 	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_REG_WRITE, &reg), -EIO);
 	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
-	KUNIT_EXPECT_EQ(b->test, i.cause.kind, (u32)EC_CAUSE_SILENT);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &w), 0);
+	KUNIT_EXPECT_EQ(b->test, w.cause.kind, (u32)EC_CAUSE_SILENT);
 	KUNIT_EXPECT_EQ(b->test, i.error, EC_SLAVE_SCAN_FAILED);
 	KUNIT_EXPECT_EQ(b->test, i.al_status, 0);
-	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(i.why, "held"), "%s", i.why);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(w.why, "held"), "%s", w.why);
 }
 
 /*

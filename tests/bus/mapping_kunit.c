@@ -95,13 +95,13 @@ static void mapping_flag_accepts_other_entry(struct kunit *test)
 	struct cyc *c = configure(test, FIXED, 0, 0);
 	struct ec_ioc_sc_flag f = { .config = 0, .value = 1, .key = EC_FLAG_ANY_PDOS };
 	struct bus *b = c->b;
-	struct ec_ioc_slave i = { 0 };
+	struct ec_ioc_slave_why i = { 0 };
 
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	/* what was accepted stays visible */
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x6040:71"), "%s", i.warning);
 }
 
@@ -120,19 +120,19 @@ static void mapping_unreadable_stays_visible(struct kunit *test)
 {
 	struct cyc *c = configure(test, FIXED, 99, 0);
 	struct bus *b = c->b;
-	struct ec_ioc_slave i = { 0 };
+	struct ec_ioc_slave_why i = { 0 };
 
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_TYPE, 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 60000), ~0ull);
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_GOOD, 0);
 	cyc_run(c, 3000);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "cannot be read"), "%s", i.warning);
 	/* the next configuration begins without it */
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_STREQ(test, i.warning, "");
 }
 
@@ -164,7 +164,7 @@ static void mapping_without_mailbox_is_compared(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave o EL2008\n", 1);
 	struct ec_ioc_sc_flag f = { .config = 0, .value = 1, .key = EC_FLAG_ANY_PDOS };
-	struct ec_ioc_slave i = { 0 };
+	struct ec_ioc_slave_why i = { 0 };
 	struct cyc *c = terminal(test, b, 0, 0x70100101);	/* that of another place */
 
 	cyc_activate(c);
@@ -188,7 +188,7 @@ static void mapping_without_mailbox_is_compared(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "registered 0x7010:01"), "%s", i.warning);
 }
 
@@ -197,7 +197,7 @@ static void mapping_without_mailbox_names_are_labels(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave o EL2008\n", 1);
 	struct cyc *c = terminal(test, b, 0, 0x30010101);
-	struct ec_ioc_slave i = { 0 };
+	struct ec_ioc_slave_why i = { 0 };
 	struct kmsg_dump_iter it;
 
 	kmsg_dump_rewind(&it);
@@ -207,7 +207,7 @@ static void mapping_without_mailbox_names_are_labels(struct kunit *test)
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_EXPECT_EQ(test, logged(&it, "EtherCAT 0-0: "), 1u);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test,
 				  strstr(i.warning, "registered as 0x3001:01, named 0x7000:01"),
 				  "%s", i.warning);
@@ -226,7 +226,7 @@ static void mapping_without_knowledge_stays_visible(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave o EL2008\n");
 	struct ec_esc_eeprom *e = &bus_esc(b, 0)->eep;
-	struct ec_ioc_slave i = { 0 };
+	struct ec_ioc_slave_why i = { 0 };
 	struct ec_sii_iter it;
 	struct ec_sii_cat cat;
 	struct cyc *c;
@@ -240,7 +240,7 @@ static void mapping_without_knowledge_stays_visible(struct kunit *test)
 	c = terminal(test, b, 99, 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "EEPROM lists no PDOs"), "%s", i.warning);
 }
 
@@ -248,7 +248,7 @@ static void mapping_without_knowledge_stays_visible(struct kunit *test)
 static void mapping_found_unreadable_stays_visible(struct kunit *test)
 {
 	struct bus *b = bus_new(test, "slave d drive in=8 out=8\n");
-	struct ec_ioc_slave i = { 0 };
+	struct ec_ioc_slave_why i = { 0 };
 	struct cyc *c;
 
 	bus_plug(b);
@@ -261,7 +261,7 @@ static void mapping_found_unreadable_stays_visible(struct kunit *test)
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &i), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &i), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(i.warning, "PDOs could not be read"), "%s",
 				  i.warning);
 }

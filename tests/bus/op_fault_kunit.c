@@ -229,7 +229,7 @@ static void op_application_stalls(struct kunit *test)
 {
 	struct cyc *c = in_op(test);
 	struct bus *b = c->b;
-	struct ec_ioc_slave s = { .position = X };
+	struct ec_ioc_slave s = { .slave.position = X };
 
 	msleep(300);
 	KUNIT_EXPECT_EQ(test, bus_access_mode(b), EC_ACCESS_DIRECT);

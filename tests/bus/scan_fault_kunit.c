@@ -111,7 +111,7 @@ static void scan_refused_state_request(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, ~0u, 0);
 	others_fine(b, 2, 400);
 	for (i = 0; i < ARRAY_SIZE(state); i++) {
-		struct ec_ioc_state st = { .position = 2, .state = state[i] };
+		struct ec_ioc_state st = { .slave.position = 2, .state = state[i] };
 
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &st), -EIO);
 		KUNIT_EXPECT_NOT_NULL_MSG(test,

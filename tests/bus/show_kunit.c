@@ -91,7 +91,7 @@ static void show_many_configs_in_pieces(struct kunit *test)
 		configure(b, i);
 	configure(b, 0);
 	KUNIT_ASSERT_EQ(test, ec_show_begin(bus_show(b)), 0);
-	KUNIT_EXPECT_NULL(test, ec_config_at(bus_wanted(b), bus_slave_at(b, 0), 0, 0, &from));
+	KUNIT_EXPECT_NULL(test, ec_config_at(bus_wanted(b), bus_slave_at(b, 0), &from));
 	KUNIT_EXPECT_LE(test, from, 64u);
 	ec_show_end(bus_show(b));
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE, &slave), 0);
@@ -128,10 +128,10 @@ static int meet_change(struct ec_call *call)
 static int read_on(void *arg)
 {
 	static const struct ec_ioctl op = { .fn = meet_change, .class = EC_CLASS_SHOW_SLAVE };
-	u16 position = 0;
+	struct ec_ioc_address first = { 0 };
 
 	allow_signal(SIGUSR1);
-	return ec_call_run(&reader->b->app, &op, &position, false);
+	return ec_call_run(&reader->b->app, &op, &first, false);
 }
 
 /* Changes one after the other do not keep a reader that has got a signal. */

@@ -34,8 +34,8 @@ static int upload(struct bus *b, u16 position, u16 index)
 {
 	u8 data[4];
 	struct ec_ioc_sdo i = {
-		.position = position, .index = index, .subindex = 1, .size = 4, .timeout_ms = 100,
-		.data = (uintptr_t)data,
+		.slave.position = position, .index = index, .subindex = 1, .size = 4,
+		.timeout_ms = 100, .data = (uintptr_t)data,
 	};
 
 	return ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &i);
@@ -140,7 +140,7 @@ static void texts_dead(struct kunit *test)
 static void texts_register(struct kunit *test)
 {
 	struct bus *b = ready(test);
-	struct ec_ioc_reg reg = { .position = BAD, .address = 0x0130, .size = 2 };
+	struct ec_ioc_reg reg = { .slave.position = BAD, .address = 0x0130, .size = 2 };
 
 	bus_fault(b, EC_SIM_FAULT_DEAD, BAD, 0, 1, 0);
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_REG_READ, &reg), -EIO);
@@ -176,7 +176,7 @@ static void texts_link(struct kunit *test)
 	struct ec_slave *s = ec_slave_ref(bus_slave(b, BAD));
 	struct ec_mbox_limit limit = { .timeout_ms = 100 };
 	struct ec_ioc_reg reg = {
-		.position = BAD, .address = 0x0130, .size = 2, .flags = EC_REG_FLAG_EMERGENCY,
+		.slave.position = BAD, .address = 0x0130, .size = 2, .flags = EC_REG_FLAG_EMERGENCY,
 	};
 	char why[96];
 	u8 v[4];

@@ -22,9 +22,9 @@ static struct ec_cause why(struct bus *b, u32 config)
 
 static struct ec_cause of_slave(struct bus *b, u16 position)
 {
-	struct ec_ioc_slave s = { .position = position };
+	struct ec_ioc_slave_why s = { .slave.position = position };
 
-	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE, &s), 0);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_SLAVE_WHY, &s), 0);
 	return s.cause;
 }
 

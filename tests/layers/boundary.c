@@ -140,7 +140,7 @@ static void commands_show_the_bus(void)
 {
 	struct bench *b = bench_new();
 	struct ec_ioc_master m = { 0 };
-	struct ec_ioc_slave s = { .position = AXIS };
+	struct ec_ioc_slave s = { .slave.position = AXIS };
 
 	if (!b)
 		return;
@@ -150,7 +150,7 @@ static void commands_show_the_bus(void)
 	CHECK_EQ(ec_ioc(&b->file, EC_IOC_SLAVE, &s), 0);
 	CHECK_EQ(s.al_status, EC_AL_PREOP);
 	CHECK_EQ(s.vendor_id, b->m->bus.slaves[AXIS]->info.vendor);
-	s.position = SLAVES;
+	s.slave.position = SLAVES;
 	CHECK_OP(ec_ioc(&b->file, EC_IOC_SLAVE, &s), <, 0);
 	CHECK(b->file.reason[0]);
 	bench_free(b);

@@ -38,7 +38,7 @@ static void lists(ec_master_t *m)
 	size_t n = 99;
 
 	CHECK(!ecrt_master_sdo_info_list(m, 3, 1, list, 4, &n, &abort));
-	CHECK(arg->position == 3 && arg->what == EC_SDO_INFO_LIST && arg->index == 1);
+	CHECK(arg->slave.position == 3 && arg->what == EC_SDO_INFO_LIST && arg->index == 1);
 	CHECK(arg->size == 8 && n == 2 && list[0] == 0x1000 && list[1] == 0x1018 && !abort);
 	CHECK(!ecrt_master_sdo_info_list(m, 3, 1, list, 1 << 20, &n, NULL) && arg->size == 65536);
 	calls = fake.calls;
@@ -64,7 +64,7 @@ static void descriptions(ec_master_t *m)
 	uint32_t abort = 9;
 
 	CHECK(!ecrt_master_sdo_info_object(m, 2, 0x1018, &o, &abort) && !abort);
-	CHECK(arg->position == 2 && arg->what == EC_SDO_INFO_OBJECT && arg->index == 0x1018);
+	CHECK(arg->slave.position == 2 && arg->what == EC_SDO_INFO_OBJECT && arg->index == 0x1018);
 	CHECK(o.index == 0x1018 && o.data_type == 0x23 && o.max_subindex == 4 &&
 	      o.object_code == 9 && !strcmp(o.name, "Identity"));
 	CHECK(!ecrt_master_sdo_info_entry(m, 2, 0x1018, 1, &e, &abort));
@@ -73,7 +73,7 @@ static void descriptions(ec_master_t *m)
 	      e.access == 7 && !strcmp(e.name, "Vendor"));
 	CHECK(ecrt_master_sdo_info_object(m, 2, 0x1018, NULL, &abort) == -EINVAL);
 	CHECK(ecrt_master_sdo_info_entry(m, 2, 0x1018, 1, NULL, &abort) == -EINVAL);
-	CHECK(!ecrt_master_sdo_info_forget(m, 7) && arg->position == 7);
+	CHECK(!ecrt_master_sdo_info_forget(m, 7) && arg->slave.position == 7);
 	CHECK(arg->what == EC_SDO_INFO_FORGET && !arg->size);
 	/* shorter than any answer, without a name, longer than a name may be */
 	fake.answer = 5;

@@ -163,15 +163,23 @@ static void slave(struct ec_ioc_slave *s)
 	s->alias = 9;
 	s->current_ma = -2000;
 	s->error = EC_SLAVE_CONFIG_FAILED;
-	s->ports[1].type = 3;
-	s->ports[1].next_slave = 7;
 	s->dc_supported = (__u8)fake.dc_bits;
 	s->transmission_delay = 145;
 	s->dc_offset = 5;
 	s->dc_diff = fake.dc_diff;
 	s->dc_set = 1;
 	s->dc_odd = (__u16)fake.dc_odd;
-	memset(s->name, 'n', sizeof(s->name));
+	s->device = FAKE_DEVICE;
+	s->position = s->slave.kind == EC_ADDRESS_DEVICE ? 1 : s->slave.position;
+}
+
+static void port(struct ec_ioc_port *p)
+{
+	/* of the device that EC_IOC_SLAVE has found */
+	if (p->slave.kind != EC_ADDRESS_DEVICE || p->slave.device != FAKE_DEVICE)
+		abort();
+	p->type = p->port == 1 ? 3 : 0;
+	p->next_slave = p->port == 1 ? 7 : 0;
 }
 
 static void master(struct ec_ioc_master *m)
@@ -183,8 +191,7 @@ static void master(struct ec_ioc_master *m)
 	m->al_states = 2;
 	m->app_time = 12345;
 	m->device_count = 1;
-	m->devices[0].link_up = 1;
-	m->devices[0].slaves = 3;
+	m->links_up = 1;
 }
 
 static void pdo_op(struct ec_ioc_sc_pdo *p)
@@ -238,6 +245,21 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SLAVE:
 		slave(arg);
 		break;
+	case EC_IOC_DEVICE:
+		if (((struct ec_ioc_device *)arg)->index) {
+			errno = ENOENT;
+			return -1;
+		}
+		((struct ec_ioc_device *)arg)->link_up = 1;
+		((struct ec_ioc_device *)arg)->slaves = 3;
+		((struct ec_ioc_device *)arg)->al_states = 2;
+		break;
+	case EC_IOC_SLAVE_NAMES:
+		memset(((struct ec_ioc_slave_names *)arg)->name, 'n', EC_UAPI_STRING);
+		break;
+	case EC_IOC_PORT:
+		port(arg);
+		break;
 	case EC_IOC_SM:
 		((struct ec_ioc_sm *)arg)->control = 0x64;
 		((struct ec_ioc_sm *)arg)->pdo_count = 2;
@@ -251,6 +273,7 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		break;
 	case EC_IOC_CONFIG:
 		((struct ec_ioc_config *)arg)->slave_position = 1;
+		((struct ec_ioc_config *)arg)->device = FAKE_DEVICE;
 		((struct ec_ioc_config *)arg)->al_status = 2;
 		((struct ec_ioc_config *)arg)->state = EC_STATUS_SC_ONLINE | 2;
 		break;

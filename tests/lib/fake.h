@@ -7,6 +7,7 @@
 #include "../../include/uapi/ethercat.h"
 
 #define FAKE_FD	1000
+#define FAKE_DEVICE	4711ULL	/* its number */
 
 /*
  * @calls: system calls so far, @last: the last one but EC_IOC_REASON

@@ -27,7 +27,7 @@ static void read_at_once(ec_master_t *m)
 
 	CHECK(!ecrt_master_foe_read(m, 3, "a.bin", 0x12345678, b, 8, &n, &error, 700));
 	CHECK(fake.last == (unsigned int)EC_IOC_FOE_READ);
-	CHECK(arg->position == 3 && arg->password == 0x12345678 && arg->size == 8);
+	CHECK(arg->slave.position == 3 && arg->password == 0x12345678 && arg->size == 8);
 	CHECK(arg->timeout_ms == 700 && !strcmp(arg->name, "a.bin") && !arg->done && !arg->flags);
 	CHECK(n == 4 && !memcmp(b, "file", 4) && !error);
 	CHECK(!ecrt_master_foe_read(m, 3, longest, 0, b, 8, &n, NULL, 0));
@@ -58,7 +58,8 @@ static void write_at_once(ec_master_t *m)
 	unsigned int calls;
 
 	CHECK(!ecrt_master_foe_write(m, 2, "b", 0, b, 4, &error, 0));
-	CHECK(fake.last == (unsigned int)EC_IOC_FOE_WRITE && arg->position == 2 && arg->size == 4);
+	CHECK(fake.last == (unsigned int)EC_IOC_FOE_WRITE);
+	CHECK(arg->slave.position == 2 && arg->size == 4);
 	CHECK(arg->data == (uintptr_t)b && !arg->timeout_ms && !error);
 	CHECK(!ecrt_master_foe_write(m, 2, "b", 0, NULL, 0, NULL, 0) && !arg->size);
 	calls = fake.calls;

@@ -107,6 +107,7 @@ static void master_prints(void)
 	refuse(EC_IOC_MASTER, EIO);
 	EXPECT(1, -EIO, ecrt_master(m, &info));
 	EXPECT(1, -EIO, ecrt_master_scan_progress(m, &progress));
+	refuse(EC_IOC_DEVICE, EIO);
 	EXPECT(1, -EIO, ecrt_master_link_state(m, 0, &link));
 	fake.refuse = 0;
 	EXPECT(1, -EINVAL, ecrt_master_link_state(m, 1, &link));

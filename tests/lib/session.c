@@ -101,10 +101,15 @@ static void opening(void)
 	fake.refuse = EC_IOC_VERSION;
 	fake.err = ENOTTY;
 	CHECK(!ecrt_open_master(0) && fake.closes == 2);
+	/* a later module that does not serve this library any more, and says so */
+	fake.err = EPROTO;
+	fake.reason = "rebuild the program";
+	CHECK(!ecrt_open_master(0) && errno == EPROTO && fake.closes == 3);
 
 	memset(&fake, 0, sizeof(fake));
 	m = ecrt_open_master(0);
 	CHECK(m && fake.last == EC_IOC_VERSION);
+	CHECK(((struct ec_ioc_version *)fake.arg)->abi == EC_UAPI_VERSION);
 	CHECK(!ecrt_master_reserve(m) && fake.last == EC_IOC_RESERVE);
 	CHECK(ecrt_master_deactivate(m) == -EINVAL);
 	CHECK(ecrt_master_send(m) == -EINVAL);
@@ -148,6 +153,10 @@ static void information(void)
 	fake.refuse = EC_IOC_SLAVE;
 	fake.err = ENOENT;
 	CHECK(ecrt_master_get_slave(m, 9, &slave) == -EINVAL);
+	/* it was disconnected before its name was read, and another one has its position */
+	fake.refuse = EC_IOC_SLAVE_NAMES;
+	fake.err = ENODEV;
+	CHECK(ecrt_master_get_slave(m, 1, &slave) == -ENODEV);
 	ecrt_release_master(m);
 }
 

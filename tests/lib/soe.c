@@ -50,7 +50,7 @@ static void at_once(ec_master_t *m)
 	size_t n = 99;
 
 	CHECK(!ecrt_master_read_idn(m, 3, 7, 0x8096, b, 8, &n, &error));
-	CHECK(arg->position == 3 && arg->drive == 7 && arg->idn == 0x8096 &&
+	CHECK(arg->slave.position == 3 && arg->drive == 7 && arg->idn == 0x8096 &&
 	      arg->size == 8);
 	CHECK(n == 2 && EC_READ_U16(b) == 0x1234 && !error);
 	CHECK(!ecrt_master_write_idn(m, 3, 1, 15, b, 2, &error));

@@ -9,28 +9,28 @@
 #include "fake.h"
 
 /* slave 1 hangs at port 1 of slave 0, slave 2 at its port 2 with a port closed by a command */
-static void tree(struct ec_ioc_slave *s)
+static void tree(struct fake_slave *s)
 {
 	if (s->position == 0) {
-		s->ports[2] = (struct ec_ioc_port){ 3, 1, 0, 1, 1600, 2, 0, 345 };
+		s->ports[2] = (struct fake_port){ 3, 1, 0, 1, 1600, 2, 345 };
 	} else if (s->position == 1) {
-		s->ports[1] = (struct ec_ioc_port){ 2, 0, 0, 0, 0, EC_UAPI_NONE16, 0, 0 };
+		s->ports[1] = (struct fake_port){ 2, 0, 0, 0, 0, EC_UAPI_NONE16, 0 };
 	} else {
-		s->ports[0] = (struct ec_ioc_port){ 3, 1, 0, 1, 5000, 0, 0, 345 };
-		s->ports[1] = (struct ec_ioc_port){ 2, 1, 1, 0, 0, EC_UAPI_NONE16, 0, 0 };
+		s->ports[0] = (struct fake_port){ 3, 1, 0, 1, 5000, 0, 345 };
+		s->ports[1] = (struct fake_port){ 2, 1, 1, 0, 0, EC_UAPI_NONE16, 0 };
 	}
 }
 
 /* each is behind each other, and behind slaves that are not there */
-static void loop(struct ec_ioc_slave *s)
+static void loop(struct fake_slave *s)
 {
 	for (unsigned int p = 0; p < EC_UAPI_PORTS; p++)
-		s->ports[p] = (struct ec_ioc_port){ 3, 1, 0, 1, 0,
-			(__u16)(p < 3 ? p : 4711), 0, 0 };
+		s->ports[p] = (struct fake_port){ 3, 1, 0, 1, 0,
+			(__u16)(p < 3 ? p : 4711), 0 };
 }
 
 /* the clocks of slaves 0 and 2 */
-static void clocks(struct ec_ioc_slave *s)
+static void clocks(struct fake_slave *s)
 {
 	if (s->position == 1)
 		return;
@@ -40,7 +40,7 @@ static void clocks(struct ec_ioc_slave *s)
 	s->config = s->position;
 }
 
-void fake_glance_slave(struct ec_ioc_slave *s)
+void fake_glance_slave(struct fake_slave *s)
 {
 	if (fake_bus("tree"))
 		tree(s);
@@ -90,17 +90,18 @@ static __u8 clock_register(__u32 address)
 void fake_glance_registers(const struct ec_ioc_reg *x, __u8 *to)
 {
 	static unsigned int readings[3];
-	bool again = x->address == 0x0300 && x->position < LEN(readings) && readings[x->position]++;
+	bool again = x->address == 0x0300 && x->slave.position < LEN(readings) &&
+		     readings[x->slave.position]++;
 
 	for (__u32 i = 0; i < x->size; i++) {
 		__u32 a = x->address + i;
 
-		if (fake_bus("dc") && x->position == 2)
+		if (fake_bus("dc") && x->slave.position == 2)
 			to[i] = clock_register(a);
-		if (fake_bus("full") && x->position == 1 && a == 0x0300)
+		if (fake_bus("full") && x->slave.position == 1 && a == 0x0300)
 			to[i] = 255;
 		if (again)
-			to[i] += second_reading(x->position, a);
+			to[i] += second_reading(x->slave.position, a);
 		if (again && fake_bus("cleared"))
 			to[i] = 0;
 	}

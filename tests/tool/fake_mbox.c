@@ -39,7 +39,7 @@ static int diag_upload(struct ec_ioc_sdo *x)
 	__u32 most;
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
-	if (!kind || x->position != 2 || fake_index)
+	if (!kind || x->slave.position != 2 || fake_index)
 		return abort_sdo(x, 0x06020000);
 	for (size_t i = 0; i < LEN(diag); i++) {
 		if (diag[i].sub != x->subindex)
@@ -194,14 +194,21 @@ static int emergencies(struct ec_ioc_emergencies *x)
 		.time_ns = 1764000000012345678, .code = 0x8130, .error_register = 0x11,
 		.data = { 1, 2, 3, 4, 0xff },
 	};
+	struct ec_emergency *to = (struct ec_emergency *)(uintptr_t)x->data;
+	__u32 n;
 
-	if (x->position != 2)
+	if (x->slave.position != 2) {
+		x->size = 0;
 		return 0;
+	}
 	x->total = fake_bus("two") ? 70000 : 2;
-	x->count = fake_bus("two") ? EC_EMERGENCIES : 2;
-	for (__u32 i = 0; i < x->count; i++)
-		x->entry[i] = e;
-	x->entry[1].code = 0;
+	n = fake_bus("two") ? EC_EMERGENCIES : 2;
+	if (x->size < n * sizeof(e))
+		return fake_fail(EFAULT, "the buffer is small");
+	x->size = (__u32)(n * sizeof(e));
+	for (__u32 i = 0; i < n; i++)
+		to[i] = e;
+	to[1].code = 0;
 	return 0;
 }
 
@@ -211,8 +218,8 @@ static int download(struct ec_ioc_sdo *x)
 
 	if (x->index == 0x1018)
 		return abort_sdo(x, 0x06010002);
-	snprintf(what, sizeof(what), "sdo %u 0x%04x:%02x%s ", x->position, x->index, x->subindex,
-		 x->flags ? " C" : "");
+	snprintf(what, sizeof(what), "sdo %u 0x%04x:%02x%s ", x->slave.position, x->index,
+		 x->subindex, x->flags ? " C" : "");
 	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
 	return 0;
 }
@@ -254,7 +261,7 @@ static int soe_write(struct ec_ioc_soe *x)
 
 	if (x->idn == 30)
 		return soe_error(x, 0x7004);
-	snprintf(what, sizeof(what), "soe %u %u 0x%04x ", x->position, x->drive, x->idn);
+	snprintf(what, sizeof(what), "soe %u %u 0x%04x ", x->slave.position, x->drive, x->idn);
 	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
 	return 0;
 }
@@ -307,7 +314,8 @@ static int foe_write(struct ec_ioc_foe *x)
 
 	if (!strcmp(x->name, "full") || !strcmp(x->name, "own") || !strcmp(x->name, "same"))
 		return foe_error(x, 0x8003);
-	snprintf(what, sizeof(what), "foe %u %.64s 0x%08x ", x->position, x->name, x->password);
+	snprintf(what, sizeof(what), "foe %u %.64s 0x%08x ", x->slave.position, x->name,
+		 x->password);
 	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
 	return 0;
 }
@@ -323,9 +331,9 @@ static int ip(struct ec_ioc_ip *x, bool write)
 {
 	const struct ec_ip_params *p = &x->params;
 
-	if (x->position == 1)
+	if (x->slave.position == 1)
 		return fake_fail(EPROTONOSUPPORT, "slave 1 has no EoE mailbox");
-	if (!x->position) {
+	if (!x->slave.position) {
 		x->result = 0x0201;
 		return fake_fail(EIO, "slave 0: IP parameters refused: EoE result 0x0201 (the slave does not support IP)");
 	}
@@ -335,7 +343,7 @@ static int ip(struct ec_ioc_ip *x, bool write)
 			memcpy(x->params.name, "\033[2J\302\233bbbbbbbbbbbbbbbbbbbbbbbbbb", 32);
 		return 0;
 	}
-	fake_record("ip %u 0x%02x %.32s\n", x->position, p->which, p->name);
+	fake_record("ip %u 0x%02x %.32s\n", x->slave.position, p->which, p->name);
 	fake_hex("", p->mac, sizeof(p->mac));
 	fake_hex("", p->ip, sizeof(p->ip));
 	fake_hex("", p->mask, sizeof(p->mask));

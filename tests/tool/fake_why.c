@@ -21,15 +21,17 @@ static bool wrong(const char *name)
 	return false;
 }
 
-static void master(struct ec_ioc_master *m)
+void fake_why_master(struct fake_master *m)
 {
 	static __u64 late;
 
+	if (!getenv("FAKE_WHY"))
+		return;
 	m->no_cycle = wrong("no_cycle");
 	if (wrong("no_device"))
 		m->phase = EC_PHASE_WAITING;
 	if (wrong("link_down"))
-		m->devices[0].link_up = 0;
+		m->devices[0].link_up = m->links_up = 0;
 	if (wrong("no_slaves"))
 		m->slave_count = m->slaves_responding = 0;
 	if (wrong("scan"))
@@ -47,8 +49,10 @@ static void master(struct ec_ioc_master *m)
 		m->cycle_wire_ns = 1500000;
 }
 
-static void slave(struct ec_ioc_slave *s)
+void fake_why_slave(struct fake_slave *s)
 {
+	if (!getenv("FAKE_WHY"))
+		return;
 	if (!s->position || fake_bus("app"))
 		s->al_status = s->al_requested = s->position ? 8 : 2;
 	s->al_code = 0;
@@ -196,20 +200,23 @@ static void domain(struct ec_ioc_domain *x)
 static void counters(struct ec_ioc_reg *x)
 {
 	/* slave 0 has an FMMU in domain 1, slave 2 that of its configuration */
-	if (x->address == 0x0600 && wrong("too_high") && x->position != 1)
+	if (x->address == 0x0600 && wrong("too_high") && x->slave.position != 1)
 		memcpy((__u8 *)(uintptr_t)x->data, "\1\0\0\0\6\0\0\7\0\x11\0\1\1", 13);
-	if (wrong("free_port") && x->position == 2)
+	if (wrong("free_port") && x->slave.position == 2)
 		((__u8 *)(uintptr_t)x->data)[6] = 7;	/* at port 3 */
-	if (wrong("both_ends") && x->position == 1)
+	if (wrong("both_ends") && x->slave.position == 1)
 		*(__u8 *)(uintptr_t)x->data = 2;	/* at port 0 */
 }
 
 static void emergency(struct ec_ioc_emergencies *x)
 {
-	if (!wrong("emergency") || x->position != 2)
+	struct ec_emergency *last;
+
+	if (!wrong("emergency") || x->slave.position != 2)
 		return;
 	x->profile = 402;
-	x->entry[x->count - 1].code = 0x7305;
+	last = (struct ec_emergency *)(uintptr_t)(x->data + x->size) - 1;
+	last->code = 0x7305;
 }
 
 /* Changes the reply to a command that was done. */
@@ -218,12 +225,6 @@ void fake_why(unsigned long request, void *arg)
 	if (!getenv("FAKE_WHY"))
 		return;
 	switch (request) {
-	case EC_IOC_MASTER:
-		master(arg);
-		break;
-	case EC_IOC_SLAVE:
-		slave(arg);
-		break;
 	case EC_IOC_CONFIG: {
 		struct ec_ioc_config_why w = { .index = ((struct ec_ioc_config *)arg)->index };
 

@@ -197,22 +197,25 @@ static bool all_enabled(const struct demo *d)
 /* Frames the master has missed since it got its device. */
 static bool frames_lost(const struct demo *d, unsigned long long *lost)
 {
-	struct ec_ioc_master info;
-	char path[40];
+	struct ec_ioc_device device;
 	unsigned int i;
-	int fd, ret;
+	char path[40];
+	int fd;
 
 	snprintf(path, sizeof(path), "/dev/EtherCAT%u", d->index);
-	memset(&info, 0, sizeof(info));
 	fd = open(path, O_RDONLY | O_CLOEXEC);
 	if (fd < 0)
 		return false;
-	ret = ioctl(fd, EC_IOC_MASTER, &info);
-	close(fd);
 	*lost = 0;
-	for (i = 0; i < EC_UAPI_DEVICES; i++)
-		*lost += info.devices[i].lost;
-	return !ret;
+	for (i = 0; i < EC_UAPI_DEVICES; i++) {
+		memset(&device, 0, sizeof(device));
+		device.index = i;
+		if (ioctl(fd, EC_IOC_DEVICE, &device))
+			break;
+		*lost += device.lost;
+	}
+	close(fd);
+	return i;
 }
 
 /*

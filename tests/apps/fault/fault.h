@@ -60,12 +60,14 @@ void expect_errno(int got, int want, const char *fmt, ...)
 /* generic.c: the same questions to every command */
 void check_numbers(void);
 void check_sizes(void);
+void check_version(void);
 void check_pointers(void);
 void check_unknown(void);
 void check_readonly(void);
 
 /* index.c: arguments that name what is not there */
 void check_positions(void);
+void check_addresses(void);
 void check_values(void);
 
 /* states.c: at the wrong time */

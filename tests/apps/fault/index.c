@@ -2,41 +2,106 @@
 /* Arguments that name what is not there, or carry impossible values. */
 #include <errno.h>
 #include <fcntl.h>
+#include <stddef.h>
 #include <string.h>
 #include <unistd.h>
 #include "fault.h"
 
 static unsigned char data[1 << 17];
 
-/* Positions of slaves that "three" does not have. */
-static void no_such_slave(int fd, __u16 pos)
+/* Every command for a slave with this address. */
+static void all_refuse(int fd, const struct ec_ioc_address *a, int err, const char *what)
 {
-	__u64 p = (__u64)(unsigned long)data;
-	struct ec_ioc_slave slave = { .position = pos };
-	struct ec_ioc_sm sm = { .position = pos };
-	struct ec_ioc_pdo pdo = { .position = pos };
-	struct ec_ioc_pdo_entry entry = { .position = pos };
-	struct ec_ioc_sii sii = { .position = pos, .size = 4, .data = p };
-	struct ec_ioc_sdo sdo = { .position = pos, .size = 4, .data = p };
-	struct ec_ioc_reg reg = { .position = pos, .size = 4, .data = p };
-	struct ec_ioc_state state = { .position = pos, .state = 1 };
-	const struct {
-		const char *name;
-		unsigned long nr;
-		void *arg;
-	} all[] = {
-		{ "SLAVE", EC_IOC_SLAVE, &slave }, { "SM", EC_IOC_SM, &sm },
-		{ "PDO", EC_IOC_PDO, &pdo }, { "PDO_ENTRY", EC_IOC_PDO_ENTRY, &entry },
-		{ "SII", EC_IOC_SII, &sii }, { "SDO_UPLOAD", EC_IOC_SDO_UPLOAD, &sdo },
-		{ "SDO_DOWNLOAD", EC_IOC_SDO_DOWNLOAD, &sdo },
-		{ "REG_READ", EC_IOC_REG_READ, &reg }, { "REG_WRITE", EC_IOC_REG_WRITE, &reg },
-		{ "REG_RDWR", EC_IOC_REG_RDWR, &reg },
-		{ "STATE", EC_IOC_STATE, &state },
+	static const unsigned long for_a_slave[] = {
+		EC_IOC_SLAVE, EC_IOC_SLAVE_NAMES, EC_IOC_SLAVE_WHY, EC_IOC_PORT, EC_IOC_SM,
+		EC_IOC_PDO, EC_IOC_PDO_ENTRY, EC_IOC_SII, EC_IOC_REG_READ, EC_IOC_REG_WRITE,
+		EC_IOC_REG_RDWR, EC_IOC_STATE, EC_IOC_SDO_UPLOAD, EC_IOC_SDO_DOWNLOAD,
+		EC_IOC_SDO_INFO, EC_IOC_SOE_READ, EC_IOC_SOE_WRITE, EC_IOC_FOE_READ,
+		EC_IOC_FOE_WRITE, EC_IOC_IP_GET, EC_IOC_IP_SET, EC_IOC_EMERGENCIES,
 	};
+	union {
+		struct ec_ioc_reg reg;
+		struct ec_ioc_slave_why largest;
+	} arg;
 
-	for (unsigned int i = 0; i < sizeof(all) / sizeof(all[0]); i++)
-		expect_errno(call(fd, all[i].nr, all[i].arg), ENOENT, "%s of slave %u",
-			     all[i].name, pos);
+	_Static_assert(offsetof(struct ec_ioc_reg, slave) == offsetof(struct ec_ioc_foe, slave),
+		       "at the same place in all");
+	for (unsigned int i = 0; i < sizeof(for_a_slave) / sizeof(for_a_slave[0]); i++) {
+		struct ec_ioc_reason r = { 0 };
+
+		memset(&arg, 0, sizeof(arg));
+		if (_IOC_SIZE(for_a_slave[i]) == sizeof(arg.reg)) {
+			arg.reg.size = 4;
+			arg.reg.data = (__u64)(unsigned long)data;
+		}
+		arg.reg.slave = *a;
+		expect_errno(call(fd, for_a_slave[i], &arg), err, "command 0x%02x, %s",
+			     (unsigned int)_IOC_NR(for_a_slave[i]), what);
+		expect(!call(fd, EC_IOC_REASON, &r) && r.len, "command 0x%02x, %s: no reason",
+		       (unsigned int)_IOC_NR(for_a_slave[i]), what);
+	}
+}
+
+static void no_such_slave(int fd, __u16 position)
+{
+	const struct ec_ioc_address a = { .position = position };
+
+	all_refuse(fd, &a, ENOENT, "no such position");
+}
+
+/* "three" has no alias, and device numbers from 1 on. */
+void check_addresses(void)
+{
+	static const struct {
+		struct ec_ioc_address a;
+		int err;
+		const char *what;
+	} wrong[] = {
+		{ { .kind = EC_ADDRESS_DEVICE + 1 }, EOPNOTSUPP, "unknown kind" },
+		{ { .kind = ~0U }, EOPNOTSUPP, "unknown kind" },
+		{ { .identification = 1 }, EOPNOTSUPP, "identification" },
+		{ { .port = 1 }, EOPNOTSUPP, "port" },
+		{ { .reserved = { 0, 0, 1 } }, EOPNOTSUPP, "reserved byte" },
+		{ { .alias = 1 }, EINVAL, "position with alias" },
+		{ { .station = 0x1001 }, EINVAL, "position with station address" },
+		{ { .device = 1 }, EINVAL, "position with device number" },
+		{ { .kind = EC_ADDRESS_ALIAS }, EINVAL, "alias 0" },
+		{ { .kind = EC_ADDRESS_ALIAS, .position = 1 }, EINVAL, "alias 0" },
+		{ { .kind = EC_ADDRESS_ALIAS, .alias = 7 }, ENOENT, "no such alias" },
+		{ { .kind = EC_ADDRESS_ALIAS, .alias = 7, .device = 1 }, EINVAL, "alias with number" },
+		{ { .kind = EC_ADDRESS_STATION }, ENOENT, "station address 0" },
+		{ { .kind = EC_ADDRESS_STATION, .station = 0xffff }, ENOENT, "station address" },
+		{ { .kind = EC_ADDRESS_STATION, .station = 0x1001, .position = 1 }, EINVAL,
+		  "station address with position" },
+		{ { .kind = EC_ADDRESS_DEVICE }, ENODEV, "device 0" },
+		{ { .kind = EC_ADDRESS_DEVICE, .device = ~0ULL }, ENODEV, "last device number" },
+		{ { .kind = EC_ADDRESS_DEVICE, .device = 1ULL << 32 }, ENODEV, "device number" },
+		{ { .kind = EC_ADDRESS_DEVICE, .device = 1, .position = 1 }, EINVAL,
+		  "device number with position" },
+	};
+	struct ec_ioc_reg r = { .flags = EC_REG_FLAG_EMERGENCY, .size = 2,
+				.data = (__u64)(unsigned long)data };
+	struct ec_ioc_slave s = { .slave.position = 1 };
+	int fd = open_master(O_RDWR);
+
+	for (unsigned int i = 0; i < sizeof(wrong) / sizeof(wrong[0]); i++)
+		all_refuse(fd, &wrong[i].a, wrong[i].err, wrong[i].what);
+	expect_errno(call(fd, EC_IOC_SLAVE, &s), 0, "slave 1");
+	for (__u32 kind = EC_ADDRESS_STATION; kind <= EC_ADDRESS_DEVICE; kind++) {
+		struct ec_ioc_slave same = { .slave.kind = kind };
+
+		if (kind == EC_ADDRESS_STATION)
+			same.slave.station = s.station;
+		else
+			same.slave.device = s.device;
+		expect_errno(call(fd, EC_IOC_SLAVE, &same), 0, "slave 1 by kind %u", kind);
+		expect(same.position == 1 && same.device == s.device, "kind %u: slave %u", kind,
+		       same.position);
+		/* by ring position only */
+		r.slave = same.slave;
+		expect_errno(call(fd, EC_IOC_REG_READ, &r), EINVAL, "emergency by kind %u", kind);
+	}
+	close(fd);
 }
 
 void check_positions(void)
@@ -48,20 +113,22 @@ void check_positions(void)
 	no_such_slave(fd, 255);
 	no_such_slave(fd, 65535);
 	for (unsigned int i = 0; i < 4; i++) {
-		struct ec_ioc_sm sm = { .position = 1, .sm = wrong[i] };
-		struct ec_ioc_pdo pdo = { .position = 1, .sm = wrong[i] };
-		struct ec_ioc_pdo_entry entry = { .position = 1, .sm = wrong[i] };
+		struct ec_ioc_sm sm = { .slave.position = 1, .sm = wrong[i] };
+		struct ec_ioc_pdo pdo = { .slave.position = 1, .sm = wrong[i] };
+		struct ec_ioc_pdo_entry entry = { .slave.position = 1, .sm = wrong[i] };
 
 		expect_errno(call(fd, EC_IOC_SM, &sm), EINVAL, "SM%u", wrong[i]);
 		expect_errno(call(fd, EC_IOC_PDO, &pdo), EINVAL, "PDO at SM%u", wrong[i]);
 		expect_errno(call(fd, EC_IOC_PDO_ENTRY, &entry), EINVAL, "entry at SM%u",
 			     wrong[i]);
-		pdo = (struct ec_ioc_pdo){ .position = 1, .pdo_pos = 0xff00 + wrong[i] };
+		pdo = (struct ec_ioc_pdo){ .slave.position = 1, .pdo_pos = 0xff00 + wrong[i] };
 		expect_errno(call(fd, EC_IOC_PDO, &pdo), EINVAL, "PDO %u", pdo.pdo_pos);
-		entry = (struct ec_ioc_pdo_entry){ .position = 1, .pdo_pos = 0xff00 + wrong[i] };
+		entry = (struct ec_ioc_pdo_entry){ .slave.position = 1,
+			.pdo_pos = 0xff00 + wrong[i] };
 		expect_errno(call(fd, EC_IOC_PDO_ENTRY, &entry), EINVAL, "entry of PDO %u",
 			     entry.pdo_pos);
-		entry = (struct ec_ioc_pdo_entry){ .position = 1, .entry_pos = 0xff00 + wrong[i] };
+		entry = (struct ec_ioc_pdo_entry){ .slave.position = 1,
+			.entry_pos = 0xff00 + wrong[i] };
 		expect_errno(call(fd, EC_IOC_PDO_ENTRY, &entry), EINVAL, "entry %u",
 			     entry.entry_pos);
 	}
@@ -94,7 +161,7 @@ static void check_reg(int fd)
 static void check_sdo(int fd)
 {
 	static const __u32 large[] = { 64 * 1024 + 1, 1U << 20, 1U << 31, ~0U };
-	struct ec_ioc_sdo s = { .position = 2, .index = 0x1018, .subindex = 1,
+	struct ec_ioc_sdo s = { .slave.position = 2, .index = 0x1018, .subindex = 1,
 				.data = (__u64)(unsigned long)data };
 
 	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), ENOBUFS, "upload into 0 bytes");
@@ -113,10 +180,10 @@ static void check_sdo(int fd)
 	s.index = 0x5fff;
 	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), EIO, "object that does not exist");
 	expect(s.abort_code == 0x06020000, "abort code 0x%08x", s.abort_code);
-	s.position = 0;
+	s.slave.position = 0;
 	s.size = 4;
 	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), EPROTONOSUPPORT, "SDO of a coupler");
-	s = (struct ec_ioc_sdo){ .position = 2, .index = 0x1018, .subindex = 1, .size = 4,
+	s = (struct ec_ioc_sdo){ .slave.position = 2, .index = 0x1018, .subindex = 1, .size = 4,
 				 .data = (__u64)(unsigned long)data };
 	expect_errno(call(fd, EC_IOC_SDO_UPLOAD, &s), 0, "vendor id");
 	expect(s.size == 4 && data[0] == 2, "vendor id: %u bytes, %u", s.size, data[0]);
@@ -124,7 +191,7 @@ static void check_sdo(int fd)
 
 static void check_foe(int fd)
 {
-	struct ec_ioc_foe f = { .position = 2, .name = "file", .size = 3,
+	struct ec_ioc_foe f = { .slave.position = 2, .name = "file", .size = 3,
 				.data = (__u64)(unsigned long)"abc" };
 
 	expect_errno(call(fd, EC_IOC_FOE_WRITE, &f), 0, "a file");
@@ -151,9 +218,9 @@ static void check_foe(int fd)
 		f.size = 3;
 		expect_errno(call(fd, EC_IOC_FOE_WRITE, &f), 0, "a file");
 	}
-	f.position = 0;
+	f.slave.position = 0;
 	expect_errno(call(fd, EC_IOC_FOE_READ, &f), EPROTONOSUPPORT, "file of a coupler");
-	f.position = 2;
+	f.slave.position = 2;
 	memset(f.name, 'x', sizeof(f.name));
 	expect_errno(call(fd, EC_IOC_FOE_READ, &f), EIO, "a name without end");
 	f.name[9] = '\n';
@@ -165,7 +232,8 @@ static void check_foe(int fd)
 static void check_soe(int fd)
 {
 	static const __u32 wrong[] = { 0, 64 * 1024 + 1, 1U << 20, 1U << 31, ~0U };
-	struct ec_ioc_soe s = { .position = 2, .idn = 91, .data = (__u64)(unsigned long)data };
+	struct ec_ioc_soe s = { .slave.position = 2, .idn = 91,
+				.data = (__u64)(unsigned long)data };
 
 	for (unsigned int i = 0; i < 5; i++) {
 		s.size = wrong[i];
@@ -183,13 +251,13 @@ static void check_soe(int fd)
 	s.idn = 92;
 	expect_errno(call(fd, EC_IOC_SOE_READ, &s), EIO, "IDN that does not exist");
 	expect(s.error_code == 0x1001, "error code 0x%08x", s.error_code);
-	s.position = 0;
+	s.slave.position = 0;
 	s.size = 4;
 	expect_errno(call(fd, EC_IOC_SOE_READ, &s), EPROTONOSUPPORT, "IDN of a coupler");
-	s.position = 3;
+	s.slave.position = 3;
 	s.size = 4;
 	expect(call(fd, EC_IOC_SOE_READ, &s) != 0, "IDN of nobody");
-	s = (struct ec_ioc_soe){ .position = 2, .idn = 91, .size = 4,
+	s = (struct ec_ioc_soe){ .slave.position = 2, .idn = 91, .size = 4,
 				 .data = (__u64)(unsigned long)data };
 	expect_errno(call(fd, EC_IOC_SOE_READ, &s), 0, "velocity limit");
 	expect(s.size == 4 && data[0] == (3000 & 255), "velocity limit: %u bytes, %u", s.size,
@@ -222,7 +290,7 @@ void check_values(void)
 	check_foe(fd);
 	check_sii(fd);
 	for (unsigned int i = 0; i < 256; i++) {
-		struct ec_ioc_state s = { .position = 1, .state = i };
+		struct ec_ioc_state s = { .slave.position = 1, .state = i };
 
 		if (i != 1 && i != 2 && i != 3 && i != 4 && i != 8)
 			expect_errno(call(fd, EC_IOC_STATE, &s), EINVAL, "AL state %u", i);

@@ -68,9 +68,9 @@ static void wrong_indexes(int fd)
 					       .data = (__u64)(unsigned long)arg };
 		struct ec_ioc_soe soe = { .drive = v, .size = 2,
 					  .data = (__u64)(unsigned long)arg };
-		struct ec_ioc_sdo_info info = { .position = 2, .index = 0x1018, .subindex = 1,
+		struct ec_ioc_sdo_info info = { .slave.position = 2, .index = 0x1018, .subindex = 1,
 						.what = EC_SDO_INFO_ENTRY, .value_info = v };
-		struct ec_ioc_sdo_info list = { .position = 2, .index = 1,
+		struct ec_ioc_sdo_info list = { .slave.position = 2, .index = 1,
 						.what = EC_SDO_INFO_LIST, .value_info = v };
 		struct ec_ioc_sc_request kind = { .kind = v };
 		struct ec_ioc_sc_sync dir = { .dir = v }, wd = { .dir = 1, .watchdog = v };

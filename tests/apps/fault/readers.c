@@ -67,7 +67,7 @@ static void fill(unsigned long nr, uint64_t *arg, unsigned int k)
 
 	switch (nr) {
 	case EC_IOC_SLAVE:
-		((struct ec_ioc_slave *)arg)->position = k % 2;
+		((struct ec_ioc_slave *)arg)->slave.position = k % 2;
 		break;
 	case EC_IOC_SM:
 		((struct ec_ioc_sm *)arg)->sm = sm;
@@ -126,8 +126,10 @@ static int allowed(const struct cmd *c, int err)
 		return err == EPERM;
 	switch (c->nr) {
 	case EC_IOC_VERSION:
+		return err == EPROTO;	/* it is not told a version */
 	case EC_IOC_REASON:
 	case EC_IOC_MASTER:
+	case EC_IOC_DEVICE:
 	case EC_IOC_CYCLE_STATS:
 	case EC_IOC_EVENTS:
 		return !err;

@@ -109,7 +109,7 @@ static int open_master(const struct bench *b)
 void frame_counters(const struct bench *b, unsigned long long *lost,
 		    unsigned long long *late)
 {
-	struct ec_ioc_master info;
+	struct ec_ioc_device device;
 	unsigned int i;
 	int fd = open_master(b);
 
@@ -117,12 +117,14 @@ void frame_counters(const struct bench *b, unsigned long long *lost,
 	*late = 0;
 	if (fd < 0)
 		return;
-	memset(&info, 0, sizeof(info));
-	if (!ioctl(fd, EC_IOC_MASTER, &info))
-		for (i = 0; i < EC_UAPI_DEVICES; i++) {
-			*lost += info.devices[i].lost;
-			*late += info.devices[i].late;
-		}
+	for (i = 0; i < EC_UAPI_DEVICES; i++) {
+		memset(&device, 0, sizeof(device));
+		device.index = i;
+		if (ioctl(fd, EC_IOC_DEVICE, &device))
+			break;
+		*lost += device.lost;
+		*late += device.late;
+	}
 	close(fd);
 }
 

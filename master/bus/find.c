@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "find.h"
+#include "slave.h"
+
+#define WALK	64	/* slaves to look at without a pause */
+
+/* Does @a have a value in a field that its kind does not use? */
+static bool has_more(const struct ec_ioc_address *a)
+{
+	struct ec_ioc_address rest = *a;
+
+	rest.kind = 0;
+	switch (a->kind) {
+	case EC_ADDRESS_ALIAS:
+		rest.alias = 0;
+		fallthrough;
+	case EC_ADDRESS_POSITION:
+		rest.position = 0;
+		break;
+	case EC_ADDRESS_STATION:
+		rest.station = 0;
+		break;
+	case EC_ADDRESS_DEVICE:
+		rest.device = 0;
+		break;
+	}
+	return memchr_inv(&rest, 0, sizeof(rest));
+}
+
+/**
+ * ec_find_check() - is an address one that this module knows?
+ * @a: address
+ * @why: result: why not
+ *
+ * Context: Any.
+ * Return: 0; -EOPNOTSUPP an unknown kind, or fields that a later version may know; -EINVAL.
+ */
+int ec_find_check(const struct ec_ioc_address *a, const char **why)
+{
+	*why = "unknown kind of address; this module knows ring position, alias and offset, station address and device number";
+	if (a->kind > EC_ADDRESS_DEVICE)
+		return -EOPNOTSUPP;
+	*why = "the address has an identification, port or reserved bytes, which this module does not know";
+	if (a->identification || a->port || memchr_inv(a->reserved, 0, sizeof(a->reserved)))
+		return -EOPNOTSUPP;
+	*why = "the address has a value in a field that its kind does not use; set these fields to 0";
+	if (has_more(a))
+		return -EINVAL;
+	*why = "alias 0 is no alias; use the ring position";
+	return a->kind == EC_ADDRESS_ALIAS && !a->alias ? -EINVAL : 0;
+}
+
+static struct ec_slave *at(const struct ec_bus *bus, u32 position)
+{
+	return position < bus->n_slaves ? bus->slaves[position] : NULL;
+}
+
+static bool matches(const struct ec_slave *s, const struct ec_ioc_address *a)
+{
+	return a->kind == EC_ADDRESS_ALIAS ? s->alias == a->alias : s->station == a->station;
+}
+
+/**
+ * ec_find_slave() - look for the slave that an address names
+ * @bus: bus
+ * @a: address, checked by ec_find_check()
+ * @from: ring position to go on with, initially 0; 0 again when the list has changed
+ * @slave: result: NULL there is none
+ *
+ * Looks at some slaves only, as a section of a reader is short.
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: 0; -EAGAIN: call again.
+ */
+int ec_find_slave(const struct ec_bus *bus, const struct ec_ioc_address *a, unsigned int *from,
+		  struct ec_slave **slave)
+{
+	unsigned int end = min(bus->n_slaves, *from + WALK);
+
+	ec_bus_assert_stays(bus);
+	*slave = NULL;
+	if (a->kind == EC_ADDRESS_POSITION)
+		*slave = at(bus, a->position);
+	else if (a->kind == EC_ADDRESS_DEVICE)
+		*slave = ec_known_slave(bus, a->device);
+	if (a->kind == EC_ADDRESS_POSITION || a->kind == EC_ADDRESS_DEVICE)
+		return 0;
+	for (; *from < end; ++*from) {
+		if (!matches(bus->slaves[*from], a))
+			continue;
+		*slave = at(bus, *from + (a->kind == EC_ADDRESS_ALIAS ? a->position : 0));
+		return 0;
+	}
+	return end < bus->n_slaves ? -EAGAIN : 0;
+}
+
+/**
+ * ec_find_text() - why an address names no slave
+ * @bus: bus
+ * @a: address for which ec_find_slave() has found none
+ * @buf: result
+ * @size: of @buf
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: length of the text.
+ */
+size_t ec_find_text(const struct ec_bus *bus, const struct ec_ioc_address *a, char *buf,
+		    size_t size)
+{
+	switch (a->kind) {
+	case EC_ADDRESS_ALIAS:
+		return scnprintf(buf, size,
+				 "no slave %u after the first one with alias %u; 'ethercat slaves' lists %u",
+				 a->position, a->alias, bus->n_slaves);
+	case EC_ADDRESS_STATION:
+		return scnprintf(buf, size,
+				 "no slave has station address 0x%04x; 'ethercat slaves -v' lists them",
+				 a->station);
+	case EC_ADDRESS_DEVICE:
+		return ec_known_text(bus, a->device, buf, size);
+	default:
+		return scnprintf(buf, size, "no slave at position %u; 'ethercat slaves' lists %u",
+				 a->position, bus->n_slaves);
+	}
+}

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/hash.h>
+#include <linux/ktime.h>
+#include <linux/slab.h>
+#include "scan.h"
+#include "slave.h"
+
+/**
+ * struct lost - a device that was disconnected
+ * @number: its device number
+ * @by_number: in struct ec_known @lost
+ * @by_station: in struct ec_known @by_station
+ * @by_serial: in struct ec_known @by_serial, unless @serial is 0
+ * @age: in struct ec_known @oldest
+ * @since_ns: when its loss was found (ktime)
+ * @vendor: of its identity; 0 with @product 0: it was not readable
+ * @product: likewise
+ * @serial: likewise
+ * @station: its station address
+ * @position: its ring position
+ * @label: what people call it
+ */
+struct lost {
+	u64 number;
+	struct hlist_node by_number;
+	struct hlist_node by_station;
+	struct hlist_node by_serial;
+	struct list_head age;
+	u64 since_ns;
+	u32 vendor;
+	u32 product;
+	u32 serial;
+	u16 station;
+	u16 position;
+	char label[24];
+};
+
+static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
+{
+	return &heads[hash_64(key, EC_KNOWN_BITS)];
+}
+
+/**
+ * ec_known_init() - no device has a number
+ * @bus: bus
+ *
+ * Context: Process.
+ */
+void ec_known_init(struct ec_bus *bus)
+{
+	INIT_LIST_HEAD(&bus->known.oldest);
+}
+
+static void drop(struct ec_known *k, struct lost *l)
+{
+	hlist_del(&l->by_number);
+	hlist_del(&l->by_station);
+	hlist_del_init(&l->by_serial);
+	list_del(&l->age);
+	k->n_lost--;
+	kfree(l);
+}
+
+/**
+ * ec_known_exit() - forget the devices that were disconnected
+ * @bus: bus without users
+ *
+ * Context: Process.
+ */
+void ec_known_exit(struct ec_bus *bus)
+{
+	struct lost *l, *next;
+
+	list_for_each_entry_safe(l, next, &bus->known.oldest, age)
+		drop(&bus->known, l);
+}
+
+/* Without memory the number is not known any more when the device comes back. */
+static void note_lost(struct ec_known *k, struct ec_slave *s)
+{
+	struct lost *l = kzalloc(sizeof(*l), GFP_KERNEL | __GFP_NOWARN);
+
+	hlist_del_init(&s->by_device);
+	if (!l)
+		return;
+	l->number = s->device;
+	l->since_ns = ktime_get_ns();
+	l->vendor = s->info.vendor;
+	l->product = s->info.product;
+	l->serial = s->info.serial;
+	l->station = s->station;
+	l->position = s->position;
+	strscpy(l->label, ec_slave_label(s), sizeof(l->label));
+	hlist_add_head(&l->by_number, head_of(k->lost, l->number));
+	hlist_add_head(&l->by_station, head_of(k->by_station, l->station));
+	if (l->serial)
+		hlist_add_head(&l->by_serial, head_of(k->by_serial, l->serial));
+	list_add_tail(&l->age, &k->oldest);
+	if (++k->n_lost > ec_scan_limit())
+		drop(k, list_first_entry(&k->oldest, struct lost, age));
+}
+
+static bool was_read(u32 vendor, u32 product)
+{
+	return vendor || product;
+}
+
+static bool same_device(const struct lost *l, const struct ec_slave *s)
+{
+	return was_read(l->vendor, l->product) && l->vendor == s->info.vendor &&
+	       l->product == s->info.product && l->serial == s->info.serial;
+}
+
+/* It has kept the station address: it had power all the time. */
+static struct lost *by_station(struct ec_known *k, const struct ec_slave *s, bool unread)
+{
+	struct lost *l;
+
+	if (!s->kept_station)
+		return NULL;
+	hlist_for_each_entry(l, head_of(k->by_station, s->kept_station), by_station)
+		if (l->station == s->kept_station &&
+		    (same_device(l, s) ||
+		     (unread && (!was_read(l->vendor, l->product) ||
+				 !was_read(s->info.vendor, s->info.product)))))
+			return l;
+	return NULL;
+}
+
+/* A serial number that two devices have says nothing. */
+static struct lost *by_serial(struct ec_known *k, const struct ec_slave *s,
+			      struct ec_slave **slaves, unsigned int n)
+{
+	struct lost *l, *found = NULL;
+	unsigned int i;
+
+	if (!s->info.serial)
+		return NULL;
+	hlist_for_each_entry(l, head_of(k->by_serial, s->info.serial), by_serial) {
+		if (!same_device(l, s))
+			continue;
+		if (found)
+			return NULL;
+		found = l;
+	}
+	for (i = 0; found && i < n; i++)
+		if (slaves[i] != s && same_device(found, slaves[i]))
+			return NULL;
+	return found;
+}
+
+static struct lost *by_number(const struct ec_known *k, u64 number)
+{
+	struct lost *l;
+
+	hlist_for_each_entry(l, head_of((struct hlist_head *)k->lost, number), by_number)
+		if (l->number == number)
+			return l;
+	return NULL;
+}
+
+/**
+ * ec_known_update() - give the slaves of a new list their device numbers
+ * @bus: bus, still with the list before
+ * @slaves: new list; @position of each slave is that in it
+ * @n: entries in @slaves
+ *
+ * Context: The monitor thread, topo held for writing, after ec_show_change_begin(). May sleep.
+ */
+void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
+{
+	struct ec_known *k = &bus->known;
+	unsigned int i;
+
+	lockdep_assert_held_write(&bus->topo);
+	ec_for_each_slave(s, bus)
+		if (s->position >= n || slaves[s->position] != s)
+			note_lost(k, s);
+	for (i = 0; i < n; i++) {
+		struct ec_slave *s = slaves[i];
+		struct lost *l;
+
+		if (!hlist_unhashed(&s->by_device))
+			continue;
+		l = by_station(k, s, false) ?: by_serial(k, s, slaves, n) ?:
+		    by_station(k, s, true) ?: by_number(k, s->device);
+		if (l) {
+			s->device = l->number;
+			drop(k, l);
+		} else {
+			s->device = ++k->last;
+		}
+		hlist_add_head(&s->by_device, head_of(k->present, s->device));
+	}
+}
+
+/**
+ * ec_known_slave() - the slave with a device number
+ * @bus: bus
+ * @number: device number
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: the slave, or NULL.
+ */
+struct ec_slave *ec_known_slave(const struct ec_bus *bus, u64 number)
+{
+	struct ec_slave *s;
+
+	ec_bus_assert_stays(bus);
+	hlist_for_each_entry(s, head_of((struct hlist_head *)bus->known.present, number), by_device)
+		if (s->device == number)
+			return s;
+	return NULL;
+}
+
+/**
+ * ec_known_text() - why no slave has a device number
+ * @bus: bus
+ * @number: device number that ec_known_slave() has not found
+ * @buf: result
+ * @size: of @buf
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: length of the text.
+ */
+size_t ec_known_text(const struct ec_bus *bus, u64 number, char *buf, size_t size)
+{
+	const struct lost *l = by_number(&bus->known, number);
+
+	ec_bus_assert_stays(bus);
+	if (!number || number > bus->known.last)
+		return scnprintf(buf, size,
+				 "no device has had number %llu; 'ethercat slaves --json' lists the numbers",
+				 number);
+	if (!l)
+		return scnprintf(buf, size,
+				 "device %llu disconnected long ago; 'ethercat slaves' lists the connected slaves",
+				 number);
+	return scnprintf(buf, size,
+			 "device %llu, which was slave %u (%s), disconnected %llu s ago; 'ethercat slaves' lists the connected slaves",
+			 number, l->position, l->label,
+			 div_u64(ktime_get_ns() - l->since_ns, NSEC_PER_SEC));
+}
