@@ -203,7 +203,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
 	while (*from < end) {
 		const struct ec_config *c = w->configs[(*from)++];
 
-		if (!c->slave && place(c, &pos) && pos == slave->position)
+		if (!c->slave && why_place(c, &pos) && pos == slave->position)
 			return c;
 	}
 	return NULL;

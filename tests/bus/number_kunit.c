@@ -199,7 +199,7 @@ static void number_after_loss_of_all(struct kunit *test)
 	for (i = 0; i < N; i++)
 		KUNIT_EXPECT_EQ_MSG(test, position(b, before[i]), (int)i, "device %llu",
 				    before[i]);
-	KUNIT_EXPECT_EQ(test, b->m->bus.known.n_lost, 0u);
+	KUNIT_EXPECT_EQ(test, bus_table(b)->known.n_lost, 0u);
 }
 
 /* Two devices with one serial number are told apart by their station addresses alone. */
@@ -229,7 +229,7 @@ static void number_of_unreadable_slave(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, C, 0, ~0u, 0);
 	bus_plug(b);
 	msleep(1000);
-	KUNIT_ASSERT_EQ(test, b->m->bus.n_slaves, (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	n = number(b, C);
 	msleep(5000);
 	KUNIT_ASSERT_EQ(test, bus_slave(b, C)->error, EC_SLAVE_SCAN_FAILED);
@@ -259,7 +259,7 @@ static void number_of_many_devices(struct kunit *test)
 	}
 	/* the first one lost its power, those behind it did not */
 	KUNIT_EXPECT_EQ(test, position(b, last), 300);
-	KUNIT_EXPECT_EQ(test, b->m->bus.known.n_lost, 3u);
+	KUNIT_EXPECT_EQ(test, bus_table(b)->known.n_lost, 3u);
 }
 
 static struct kunit_case cases[] = {
