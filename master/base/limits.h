@@ -44,7 +44,7 @@
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
 #define EC_LINK_ACYCLIC		64	/* acyclic frames of a link, of all callers, on their way */
 #define EC_LINK_QUEUED		192	/* the same beside a cycle */
-#define EC_POSTS_MAX		8	/* posts that share a frame: each of their callers is woken */
+#define EC_POSTS_MAX	8	/* posts that share a frame: each of their callers is woken */
 #define EC_CLOCK_WINDOW	120	/* the same of ec_xfer_clock(): what 60 ms carry */
 #define EC_CLOCK_DATAGRAMS	74	/* in a frame of it, at most */
 #define EC_QUARANTINE_NS	(20 * NSEC_PER_MSEC)

@@ -27,8 +27,8 @@ static bool next_class(struct ec_carry *c, enum ec_post_class *class)
 }
 
 /*
- * Send what is ready, several datagrams in a frame. With @hold no more than keeps the wire busy,
- * so that what becomes ready meanwhile shares frames. False: the device is full.
+ * Send what is ready, several datagrams in a frame. With @hold no more than keeps the wire
+ * busy, so that what becomes ready meanwhile shares frames. False: the device is full.
  */
 static bool send_ready(struct ec_carry *c, bool hold)
 {
@@ -45,7 +45,8 @@ static bool send_ready(struct ec_carry *c, bool hold)
 			.dgrams = class == EC_POST_CLOCK ? 0 : l->max_datagrams,
 		};
 
-		if (!ec_carry_has_place(c, class) || (hold && ec_links_acyclic_ns(l) >= FLIGHT_NS)) {
+		if (!ec_carry_has_place(c, class) ||
+		    (hold && ec_links_acyclic_ns(l) >= FLIGHT_NS)) {
 			WRITE_ONCE(c->held, true);
 			break;
 		}

@@ -69,7 +69,7 @@ static void look_at_links(struct ec_links *l, struct look *k)
 	}
 }
 
-static int link_error(const struct look *k, u8 sides)
+static int loss_error(const struct look *k, u8 sides)
 {
 	return sides & k->up ? 0 : sides & k->there ? -ENETDOWN : -ENODEV;
 }
@@ -93,7 +93,7 @@ static int outcome(struct ec_carry *c, unsigned int i, const struct look *k)
 	struct ec_links *l = c->links;
 	struct ec_flight *f = &c->flight[i];
 	u32 polls = READ_ONCE(l->access.polls);
-	int err = link_error(k, f->sides);
+	int err = loss_error(k, f->sides);
 
 	lockdep_assert_held(&c->lock);
 	if (err)
@@ -155,7 +155,7 @@ static bool is_stuck(const struct ec_carry *c, const struct look *k)
 static int refusal(struct ec_carry *c, const struct ec_post *post, const struct look *k)
 {
 	u64 since = max(post->since_ns, post->due_ns);
-	int err = link_error(k, post->sides);
+	int err = loss_error(k, post->sides);
 
 	lockdep_assert_held(&c->lock);
 	if (err)

@@ -102,7 +102,7 @@ static struct ec_flight_room find_room(const struct ec_carry *c, enum ec_post_cl
 	};
 }
 
-static void count(struct ec_carry *c, enum ec_post_class class, u32 frame_ns)
+static void share_count(struct ec_carry *c, enum ec_post_class class, u32 frame_ns)
 {
 	c->share.frames++;
 	c->share.wire_ns += frame_ns;
@@ -175,7 +175,7 @@ void ec_share_send_left(struct ec_carry *c, u32 wire_ns)
 		ret = ec_flight_send(c, class, &room, ec_read64(&l->access.last_send_ns) + wire_ns);
 		if (ret <= 0)
 			break;
-		count(c, class, ret);
+		share_count(c, class, ret);
 		wire_ns += ret;
 	}
 }

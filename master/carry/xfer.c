@@ -35,7 +35,7 @@ struct batch {
 };
 
 /* The datagrams of a post from @first on: a frame that fits before the next cycle, at least one. */
-static unsigned int count(const struct batch *b, unsigned int first)
+static unsigned int xfer_count(const struct batch *b, unsigned int first)
 {
 	const struct ec_links *l = b->c->links;
 	unsigned int most = l->max_datagrams, len = 0, i;
@@ -73,7 +73,7 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 		post->wait = &h->wait;
 		post->class = b->class;
 		post->dg = &b->dg[first];
-		post->n = count(b, first);
+		post->n = xfer_count(b, first);
 		first += post->n;
 	}
 	if (!h->n)
@@ -173,7 +173,7 @@ static int result(struct batch *b)
 }
 
 /* No wait for the turn of a frame that cannot leave. */
-static int link_error(const struct ec_links *l)
+static int xfer_link_error(const struct ec_links *l)
 {
 	if (!ec_links_attached(l))
 		return -ENODEV;
@@ -183,7 +183,7 @@ static int link_error(const struct ec_links *l)
 static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum ec_post_class class)
 {
 	struct batch b = {
-		.c = l->carry, .dg = dg, .n = n, .class = class, .err = link_error(l),
+		.c = l->carry, .dg = dg, .n = n, .class = class, .err = xfer_link_error(l),
 	};
 	unsigned int i, try, window = class == EC_POST_CLOCK ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
 	struct ec_post few[FEW], *more = NULL;

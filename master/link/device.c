@@ -107,7 +107,7 @@ static void report(struct ec_link *link, bool attached)
 }
 
 /* The call of a cycle that is under way finds the same device from its begin to its end. */
-static void publish(struct ecdev *dev, struct ec_link *link)
+static void device_publish(struct ecdev *dev, struct ec_link *link)
 {
 	struct ec_links *l = link->links;
 	bool cyclic;
@@ -152,7 +152,7 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 		synchronize_rcu();
 		return;
 	}
-	publish(dev, link);
+	device_publish(dev, link);
 	ec_info(l, "%s device %s attached (%s, %pM)\n", side_name(link), dev->name,
 		dev->ops->kind, dev->mac);
 	ec_event(l->base, EC_EVENT_DEVICE_ON, link->side);

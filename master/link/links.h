@@ -52,7 +52,7 @@ struct ec_links {
 	bool closed;
 	/** @link: main and backup */
 	struct ec_link link[EC_MAX_LINKS];
-	/** @capture: interface for capture programs, NULL: none; immutable while devices are there */
+	/** @capture: for capture programs, NULL: none; immutable while devices are there */
 	struct ec_capture *capture;
 	/** @sides: mask of the links on which frames are sent, immutable */
 	u8 sides;

@@ -29,7 +29,7 @@ struct ec_tap_frame {
 	u8 data[EC_ETH_MAX];
 };
 
-/* the next free entry, until publish() */
+/* the next free entry, until tap_publish() */
 static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 {
 	struct ec_tap_frame *f = &t->ring[t->head % EC_TAP_RING];
@@ -45,7 +45,7 @@ static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 	return f;
 }
 
-static void publish(struct ec_tap *t)
+static void tap_publish(struct ec_tap *t)
 {
 	lockdep_assert_held(&t->lock);
 	/* the frame before the head */
@@ -78,7 +78,7 @@ bool ec_tap_sent(struct ec_tap *t, const u8 *frame, size_t len)
 	if (f) {
 		memcpy(f->data, frame, len);
 		f->len = len;
-		publish(t);
+		tap_publish(t);
 	}
 	raw_spin_unlock_irqrestore(&t->lock, flags);
 	return f;
@@ -110,7 +110,7 @@ bool ec_tap_received(struct ec_tap *t, const u8 *src, const u8 *data, size_t len
 		put_unaligned_be16(EC_ETHERTYPE, f->data + 2 * ETH_ALEN);
 		memcpy(f->data + EC_ETH_HDR, data, len);
 		f->len = EC_ETH_HDR + len;
-		publish(t);
+		tap_publish(t);
 	}
 	raw_spin_unlock_irqrestore(&t->lock, flags);
 	return f;

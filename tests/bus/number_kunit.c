@@ -123,7 +123,7 @@ static void number_is_one_of_four_addresses(struct kunit *test)
 }
 
 /* From list to download the ring changes: the value reaches the device, and no other one. */
-static void number_follows_the_device(struct kunit *test)
+static void number_stays_with_device(struct kunit *test)
 {
 	struct bus *b = ready(test);
 	struct ec_ioc_address a = by_number(number(b, A));
@@ -264,7 +264,7 @@ static void number_of_many_devices(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(number_is_one_of_four_addresses),
-	KUNIT_CASE(number_follows_the_device),
+	KUNIT_CASE(number_stays_with_device),
 	KUNIT_CASE(number_of_lost_device_is_refused),
 	KUNIT_CASE(number_after_power_loss),
 	KUNIT_CASE(number_after_loss_of_all),

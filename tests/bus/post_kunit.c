@@ -434,7 +434,7 @@ static void post_thread_rests(struct kunit *test)
 	before = bus_post_slept(b);
 	cyc_run(c, 10000);
 	beside = bus_post_slept(b) - before;
-	bus_figure("thread of the posts in 10 s: %lu times without cycle, %lu times beside one", idle,
+	bus_figure("thread of the posts in 10 s: %lu times without cycle, %lu beside one", idle,
 		   beside);
 	KUNIT_EXPECT_LT(test, idle, 100ul);
 	KUNIT_EXPECT_LT(test, beside, 100ul);
