@@ -56,7 +56,11 @@ struct ec_carry {
 	raw_spinlock_t lock;
 	/** @ready: posts to be sent, by enum ec_post_class, the oldest first */
 	struct list_head ready[EC_POST_CLASSES];
-	/** @n_ready: entries in @ready */
+	/** @later: posts that are not due */
+	struct list_head later;
+	/** @due_ns: when the first of these is (ktime), U64_MAX: there is none */
+	u64 due_ns;
+	/** @n_ready: entries in @ready and @later */
 	unsigned int n_ready;
 	/** @flying: slots whose frame is on its way */
 	DECLARE_BITMAP(flying, EC_SLOTS);
@@ -65,11 +69,11 @@ struct ec_carry {
 	/** @flight: by index of the slot */
 	struct ec_flight flight[EC_SLOTS];
 	/** @stuck_ns: since when the first frame does not fit beside the cycle, ktime; 0: it does */
-	u64 stuck_ns;
+	aligned_u64 stuck_ns;
 	/** @stuck_class: of that frame, enum ec_post_class */
 	u8 stuck_class;
 	/** @full_ns: since when the transmit ring takes nothing (ktime), 0: it does */
-	u64 full_ns;
+	aligned_u64 full_ns;
 	/** @held: posts were left because the link is busy; of the owner of the links */
 	bool held;
 	/** @closed: nothing is sent any more */

@@ -3,6 +3,7 @@
 #include <linux/ktime.h>
 #include "direct.h"
 #include "flight.h"
+#include "post_int.h"
 
 #define FLIGHT_NS	(300 * NSEC_PER_USEC)	/* on the wire: later ones leave together */
 
@@ -11,19 +12,25 @@ static bool next_class(struct ec_carry *c, enum ec_post_class *class)
 	static const enum ec_post_class order[] = {
 		EC_POST_URGENT, EC_POST_NORMAL, EC_POST_CLOCK,
 	};
-	u64 now = ktime_get_ns();
 	unsigned long flags;
 	unsigned int i;
 
 	raw_spin_lock_irqsave(&c->lock, flags);
+	ec_post_due(c, ktime_get_ns());
 	for (i = 0; i < ARRAY_SIZE(order); i++)
-		if (ec_flight_first(c, order[i], now))
+		if (ec_flight_first(c, order[i]))
 			break;
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	if (i == ARRAY_SIZE(order))
 		return false;
 	*class = order[i];
 	return true;
+}
+
+static bool is_busy(const struct ec_carry *c, enum ec_post_class class, bool hold)
+{
+	return !ec_carry_has_place(c, class) ||
+	       (hold && ec_links_acyclic_ns(c->links) >= FLIGHT_NS);
 }
 
 /*
@@ -45,10 +52,12 @@ static bool send_ready(struct ec_carry *c, bool hold)
 			.dgrams = class == EC_POST_CLOCK ? 0 : l->max_datagrams,
 		};
 
-		if (!ec_carry_has_place(c, class) ||
-		    (hold && ec_links_acyclic_ns(l) >= FLIGHT_NS)) {
+		if (is_busy(c, class, hold)) {
 			WRITE_ONCE(c->held, true);
-			break;
+			smp_mb();	/* before the places; pairs with ec_flight_landed() */
+			if (is_busy(c, class, hold))
+				break;
+			WRITE_ONCE(c->held, false);
 		}
 		ret = ec_flight_send(c, class, &room, ktime_get_ns());
 	}

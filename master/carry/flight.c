@@ -11,26 +11,6 @@
 #include "flight.h"
 #include "post_int.h"
 
-/**
- * ec_flight_first() - the post of a class that is to leave next
- * @c: posts of the master
- * @class: enum ec_post_class
- * @now_ns: time (ktime); posts that are not due are left out
- *
- * Context: Any, with the lock of the posts held. RT-safe.
- * Return: the post, or NULL.
- */
-struct ec_post *ec_flight_first(const struct ec_carry *c, enum ec_post_class class, u64 now_ns)
-{
-	struct ec_post *post;
-
-	lockdep_assert_held(&c->lock);
-	list_for_each_entry(post, &c->ready[class], list)
-		if (post->due_ns <= now_ns)
-			return post;
-	return NULL;
-}
-
 /*
  * May it share the frame? One that a slave never forwards must not take others with it twice,
  * so what is repeated leaves alone.
@@ -44,9 +24,9 @@ static bool shares(const struct ec_post *first, const struct ec_post *post, unsi
 
 /* Take posts that leave together to the frame of a slot; their order stays. */
 static struct ec_post *gather(struct ec_carry *c, enum ec_post_class class, struct ec_slot *slot,
-			      const struct ec_flight_room *room, u64 now)
+			      const struct ec_flight_room *room)
 {
-	struct ec_post *first = ec_flight_first(c, class, now), *post = first, *next;
+	struct ec_post *first = ec_flight_first(c, class), *post = first, *next;
 	unsigned int len = EC_FRAME_HDR, dgrams = 0, n = 0;
 	struct ec_flight *f = &c->flight[slot->index];
 
@@ -56,8 +36,6 @@ static struct ec_post *gather(struct ec_carry *c, enum ec_post_class class, stru
 	if (!first)
 		return NULL;
 	list_for_each_entry_safe_from(post, next, &c->ready[class], list) {
-		if (post->due_ns > now)
-			continue;
 		if (n && !shares(first, post, n, len, dgrams, room))
 			break;
 		list_move_tail(&post->list, &f->posts);
@@ -188,8 +166,8 @@ static void put_back(struct ec_carry *c, struct ec_slot *slot)
 		list_move(&post->list, &c->ready[f->class]);
 		WRITE_ONCE(c->n_ready, c->n_ready + 1);
 	}
-	if (!c->full_ns)
-		c->full_ns = ktime_get_ns();
+	if (!ec_read64(&c->full_ns))
+		ec_write64(&c->full_ns, ktime_get_ns());
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	ec_slot_put(slot);
 }
@@ -236,7 +214,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 		return -EBUSY;
 	f = &c->flight[slot->index];
 	raw_spin_lock_irqsave(&c->lock, flags);
-	first = gather(c, class, slot, room, now);
+	first = gather(c, class, slot, room);
 	if (first)
 		sides = first->sides;
 	raw_spin_unlock_irqrestore(&c->lock, flags);
@@ -258,7 +236,8 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 		put_back(c, slot);
 		return ret;
 	}
-	WRITE_ONCE(c->full_ns, 0);
+	if (unlikely(ec_read64(&c->full_ns)))
+		ec_write64(&c->full_ns, 0);
 	if (ret)
 		refused(c, slot, ret);
 	return ret ?: wire_ns;
@@ -313,7 +292,8 @@ void ec_flight_landed(struct ec_slot *slot)
 		take_results(slot, post);
 	ec_links_count(c->links, slot->sides & ~slot->back, lost);
 	ec_slot_put(slot);
-	/* the thread sends what found no place */
+	/* the thread sends what found no place; the place before @held, pairs with send_ready() */
+	smp_mb();
 	if (READ_ONCE(c->held))
 		ec_carry_kick(c);
 	ec_post_finish(c, &posts);

@@ -15,7 +15,13 @@ struct ec_flight_room {
 	unsigned int dgrams;
 };
 
-struct ec_post *ec_flight_first(const struct ec_carry *c, enum ec_post_class class, u64 now_ns);
+/* the post of a class that is to leave next, NULL: none; with the lock of the posts held */
+static inline struct ec_post *ec_flight_first(struct ec_carry *c, enum ec_post_class class)
+{
+	lockdep_assert_held(&c->lock);
+	return list_first_entry_or_null(&c->ready[class], struct ec_post, list);
+}
+
 int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 		   const struct ec_flight_room *room, u64 sent_ns);
 void ec_flight_end(struct ec_carry *c, const struct ec_slot *slot, struct list_head *posts);

@@ -114,6 +114,7 @@ static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look 
 	unsigned long flags;
 	LIST_HEAD(posts);
 	int err = 0;
+	u8 sides;
 
 	raw_spin_lock_irqsave(&c->lock, flags);
 	if (test_bit(i, c->flying) && atomic_read(&slot->state) == EC_SLOT_SENT)
@@ -123,6 +124,7 @@ static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look 
 		settled = ec_slot_settle(slot);
 		lost = !settled && ec_slot_cancel(slot, k->now);
 	}
+	sides = slot->sides;
 	if (lost)
 		ec_flight_end(c, slot, &posts);
 	raw_spin_unlock_irqrestore(&c->lock, flags);
@@ -130,7 +132,7 @@ static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look 
 		ec_flight_landed(slot);
 	if (!lost)
 		return;
-	ec_links_count(c->links, c->flight[i].sides, lost);
+	ec_links_count(c->links, sides, lost);
 	ec_post_lost(c, &posts, err);
 }
 
@@ -141,20 +143,21 @@ static bool is_stuck(const struct ec_carry *c, const struct look *k)
 {
 	u64 limit = ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC * STUCK_CYCLES;
 	u32 late_per_s = READ_ONCE(c->share.late_per_s);	/* a takeover may change it */
+	u64 since = ec_read64(&c->stuck_ns);
 
 	lockdep_assert_held(&c->lock);
-	if (!c->stuck_ns || !ec_access_is_cyclic(&c->links->access))
+	if (!since || !ec_access_is_cyclic(&c->links->access))
 		return false;
 	limit = max(limit, (u64)STUCK_NS);
 	if (late_per_s)
 		limit += 2 * NSEC_PER_SEC / late_per_s;
-	return (s64)(k->now - c->stuck_ns) > (s64)limit;
+	return (s64)(k->now - since) > (s64)limit;
 }
 
 /* Why a post will not leave; 0: it may. */
 static int refusal(struct ec_carry *c, const struct ec_post *post, const struct look *k)
 {
-	u64 since = max(post->since_ns, post->due_ns);
+	u64 since = max(post->since_ns, post->due_ns), full = ec_read64(&c->full_ns);
 	int err = loss_error(k, post->sides);
 
 	lockdep_assert_held(&c->lock);
@@ -162,38 +165,48 @@ static int refusal(struct ec_carry *c, const struct ec_post *post, const struct 
 		return err;
 	if (post->due_ns > k->now)
 		return 0;
-	if (c->full_ns && (s64)(k->now - c->full_ns) > (s64)FULL_NS) {
+	if (full && (s64)(k->now - full) > (s64)FULL_NS) {
 		ec_links_count(c->links, post->sides, tx_errors);
 		return -EBUSY;
 	}
 	return (s64)(k->now - since) > (s64)WAIT_NS ? -EBUSY : 0;
 }
 
-static void look_at_ready(struct ec_carry *c, const struct look *k)
+static void look_at_list(struct ec_carry *c, struct list_head *list, const struct look *k,
+			 bool stuck, struct list_head *ended)
 {
 	struct ec_post *post, *next;
+
+	lockdep_assert_held(&c->lock);
+	list_for_each_entry_safe(post, next, list, list) {
+		int err = refusal(c, post, k);
+
+		if (!err && stuck)
+			err = -EAGAIN;
+		/* the first one alone */
+		stuck = false;
+		if (err)
+			ec_post_refuse(c, post, err, ended);
+	}
+}
+
+static void look_at_ready(struct ec_carry *c, const struct look *k)
+{
 	unsigned long flags;
 	unsigned int class;
-	LIST_HEAD(posts);
+	LIST_HEAD(ended);
 
 	raw_spin_lock_irqsave(&c->lock, flags);
 	for (class = 0; class < EC_POST_CLASSES; class++) {
 		bool stuck = class == c->stuck_class && is_stuck(c, k);
 
-		list_for_each_entry_safe(post, next, &c->ready[class], list) {
-			int err = refusal(c, post, k);
-
-			if (!err && stuck && post->due_ns <= k->now) {
-				err = -EAGAIN;
-				stuck = false;
-				c->stuck_ns = 0;
-			}
-			if (err)
-				ec_post_refuse(c, post, err, &posts);
-		}
+		if (stuck)
+			ec_write64(&c->stuck_ns, 0);
+		look_at_list(c, &c->ready[class], k, stuck, &ended);
 	}
+	look_at_list(c, &c->later, k, false, &ended);
 	raw_spin_unlock_irqrestore(&c->lock, flags);
-	ec_post_finish(c, &posts);
+	ec_post_finish(c, &ended);
 }
 
 /* thread --------------------------------------------------------------------*/
@@ -230,17 +243,15 @@ static void look_at_all(struct ec_carry *c)
 /* Until when a post that is ready need not be sent by the thread. */
 static u64 until_due(struct ec_carry *c, u64 now)
 {
-	struct ec_post *post;
 	unsigned int class;
-	u64 until = U64_MAX;
 
 	lockdep_assert_held(&c->lock);
 	if (ec_access_is_cyclic(&c->links->access))
-		return until;
+		return U64_MAX;
 	for (class = 0; class < EC_POST_CLASSES; class++)
-		list_for_each_entry(post, &c->ready[class], list)
-			until = min(until, post->due_ns > now ? post->due_ns : now + RETRY_NS);
-	return until;
+		if (!list_empty(&c->ready[class]))
+			return now + RETRY_NS;
+	return c->due_ns;
 }
 
 /* Until when nothing has to be done: ktime; U64_MAX: until it is kicked. */
@@ -269,13 +280,12 @@ static u64 idle_until(struct ec_carry *c, u64 looked)
 /* Runs where the thread does not: with a loop of a higher priority on its CPU, say. */
 static enum hrtimer_restart starved(struct hrtimer *t)
 {
-	struct ec_carry *c = container_of(t, struct ec_carry, starved);
-	struct task_struct *thread = READ_ONCE(c->thread);
+	struct ec_base *b = container_of(t, struct ec_carry, starved)->links->base;
 
-	if (thread)
-		ec_log_event(c->links->base, EC_LOG_ANY, 0, KERN_WARNING,
-			     "thread %s has not run for a second: a thread of higher priority keeps CPU %u; lost frames are not found meanwhile\n",
-			     thread->comm, task_cpu(thread));
+	/* it was started on the CPU of the thread, or of who kicked it */
+	ec_log_event(b, EC_LOG_ANY, 0, KERN_WARNING,
+		     "thread EtherCAT%u-post has not run for a second: a thread of higher priority keeps its CPU, perhaps %u; lost frames are not found meanwhile\n",
+		     b->index, raw_smp_processor_id());
 	return HRTIMER_NORESTART;
 }
 
@@ -301,7 +311,7 @@ static void sleep_until(struct ec_carry *c, u64 until)
 static void rest(struct ec_carry *c, u64 until)
 {
 	WRITE_ONCE(c->rests, until == U64_MAX);
-	smp_mb();	/* before who makes a post ready looks at it */
+	smp_mb();	/* before the posts; pairs with ec_post_send() */
 	if (until != U64_MAX || !ec_carry_is_busy(c))
 		sleep_until(c, until);
 	WRITE_ONCE(c->rests, false);

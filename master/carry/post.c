@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include <linux/ktime.h>
+#include "../base/once64.h"
 #include "post_int.h"
 
 /**
@@ -37,12 +38,40 @@ static void make_ready(struct ec_carry *c, struct ec_post *post)
 	lockdep_assert_held(&c->lock);
 	measure(post);
 	if (!c->n_ready) {
-		c->full_ns = 0;
-		c->stuck_ns = 0;
+		ec_write64(&c->full_ns, 0);
+		ec_write64(&c->stuck_ns, 0);
 	}
 	post->state = EC_POST_READY;
-	list_add_tail(&post->list, &c->ready[post->class]);
+	if (post->due_ns > post->since_ns) {
+		list_add_tail(&post->list, &c->later);
+		c->due_ns = min(c->due_ns, post->due_ns);
+	} else {
+		list_add_tail(&post->list, &c->ready[post->class]);
+	}
 	WRITE_ONCE(c->n_ready, c->n_ready + 1);
+}
+
+/**
+ * ec_post_due() - posts whose time has come may be sent
+ * @c: posts of the master
+ * @now_ns: time (ktime)
+ *
+ * Context: Any, with the lock of the posts held. RT-safe.
+ */
+void ec_post_due(struct ec_carry *c, u64 now_ns)
+{
+	struct ec_post *post, *next;
+
+	lockdep_assert_held(&c->lock);
+	if (likely(now_ns < c->due_ns))
+		return;
+	c->due_ns = U64_MAX;
+	list_for_each_entry_safe(post, next, &c->later, list) {
+		if (post->due_ns <= now_ns)
+			list_move_tail(&post->list, &c->ready[post->class]);
+		else
+			c->due_ns = min(c->due_ns, post->due_ns);
+	}
 }
 
 /**
@@ -70,7 +99,11 @@ void ec_post_send(struct ec_post *post, u64 due_ns)
 	if (!c->closed)
 		make_ready(c, post);
 	raw_spin_unlock_irqrestore(&c->lock, flags);
-	if (post->done && (!ec_access_is_cyclic(&post->links->access) || READ_ONCE(c->rests)))
+	if (!post->done)
+		return;
+	/* the post before @rests; pairs with rest() */
+	smp_mb();
+	if (!ec_access_is_cyclic(&post->links->access) || READ_ONCE(c->rests))
 		ec_carry_kick(c);
 }
 
@@ -269,6 +302,7 @@ void ec_post_lost(struct ec_carry *c, struct list_head *posts, int err)
 		list_del(&post->list);
 		post->running = false;
 		post->tries++;
+		post->due_ns = 0;
 		make_ready(c, post);
 	}
 	raw_spin_unlock_irqrestore(&c->lock, flags);

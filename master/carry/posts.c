@@ -20,6 +20,8 @@ int ec_carry_init(struct ec_carry *c, struct ec_links *l, const struct ec_carry_
 	raw_spin_lock_init(&c->lock);
 	for (i = 0; i < EC_POST_CLASSES; i++)
 		INIT_LIST_HEAD(&c->ready[i]);
+	INIT_LIST_HEAD(&c->later);
+	c->due_ns = U64_MAX;
 	for (i = 0; i < EC_SLOTS; i++)
 		INIT_LIST_HEAD(&c->flight[i].posts);
 	l->carry = c;

@@ -9,6 +9,7 @@
 #include <linux/module.h>
 #include "../base/once64.h"
 #include "flight.h"
+#include "post_int.h"
 
 unsigned int ec_share_max = 64;
 
@@ -52,15 +53,15 @@ static bool next_post(struct ec_carry *c, enum ec_post_class *class, unsigned in
 	u32 most = clamp(ec_access_interval_us(&c->links->access) * EC_SHARE_PER_MS / 1000, 1u,
 			 READ_ONCE(ec_share_max));
 	struct ec_post *normal, *urgent, *clock, *next;
-	u64 now = ktime_get_ns();
 	unsigned long flags;
 
 	if (c->share.frames >= most)
 		return false;
 	raw_spin_lock_irqsave(&c->lock, flags);
-	normal = ec_flight_first(c, EC_POST_NORMAL, now);
-	urgent = ec_flight_first(c, EC_POST_URGENT, now);
-	clock = c->share.clock_credit >= 1000 ? ec_flight_first(c, EC_POST_CLOCK, now) : NULL;
+	ec_post_due(c, ktime_get_ns());
+	normal = ec_flight_first(c, EC_POST_NORMAL);
+	urgent = ec_flight_first(c, EC_POST_URGENT);
+	clock = c->share.clock_credit >= 1000 ? ec_flight_first(c, EC_POST_CLOCK) : NULL;
 	next = urgent && !(c->share.was_urgent && normal) ? urgent : normal;
 	if (clock && (!next || !c->share.clock_last))
 		next = clock;
@@ -110,8 +111,8 @@ static void share_count(struct ec_carry *c, enum ec_post_class class, u32 frame_
 	c->share.clock_last = class == EC_POST_CLOCK;
 	if (c->share.clock_last)
 		c->share.clock_credit -= 1000;
-	if (unlikely(READ_ONCE(c->stuck_ns)))
-		WRITE_ONCE(c->stuck_ns, 0);
+	if (unlikely(ec_read64(&c->stuck_ns)))
+		ec_write64(&c->stuck_ns, 0);
 }
 
 /*
@@ -136,8 +137,8 @@ static void note_stuck(struct ec_carry *c, enum ec_post_class class)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&c->lock, flags);
-	if (!c->stuck_ns) {
-		c->stuck_ns = ktime_get_ns();
+	if (!ec_read64(&c->stuck_ns)) {
+		ec_write64(&c->stuck_ns, ktime_get_ns());
 		c->stuck_class = class;
 	}
 	raw_spin_unlock_irqrestore(&c->lock, flags);
