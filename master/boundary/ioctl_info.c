@@ -12,14 +12,13 @@
 #include "master.h"
 #include "../base/once64.h"
 #include "../session/session.h"
+#include "../bus/find.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
 
 #ifndef EC_RELEASE
 #define EC_RELEASE "0.1.0"
 #endif
-
-#define WALK	64	/* slaves to check without a pause */
 
 int ec_ioc_version(struct ec_call *call)
 {
@@ -225,19 +224,11 @@ int ec_ioc_port(struct ec_call *call)
 /* The nearest slave at or before this one that has an alias. */
 static int slave_alias(struct ec_call *call, struct ec_ioc_slave *i)
 {
-	const struct ec_bus *bus = &call->master->bus;
-	const struct ec_slave *s = call->slave;
-	int k, ret;
+	u32 steps = 0;
+	int ret;
 
-	i->alias_group = 0;
-	i->alias_pos = s->position;
-	for (k = min_t(int, s->position, (int)bus->n_slaves - 1); k >= 0; k--) {
-		if (bus->slaves[k]->alias) {
-			i->alias_group = bus->slaves[k]->alias;
-			i->alias_pos = s->position - k;
-			break;
-		}
-		ret = k % WALK ? 0 : ec_ioc_pause(call);
+	while (ec_find_group(call->slave, &steps, &i->alias_group, &i->alias_pos) == -EAGAIN) {
+		ret = ec_ioc_pause(call);
 		if (ret)
 			return ret;
 	}

@@ -95,6 +95,100 @@ int ec_find_slave(const struct ec_bus *bus, const struct ec_ioc_address *a, unsi
 }
 
 /**
+ * ec_find_alias() - look for the first slave with an alias
+ * @bus: bus
+ * @alias: alias, not 0
+ *
+ * Looks at all slaves: not for a section of a reader.
+ *
+ * Context: Process, topo held.
+ * Return: its ring position; the number of slaves: there is none.
+ */
+unsigned int ec_find_alias(const struct ec_bus *bus, u16 alias)
+{
+	unsigned int i = 0;
+
+	lockdep_assert_held(&bus->topo);
+	while (i < bus->n_slaves && bus->slaves[i]->alias != alias)
+		i++;
+	return i;
+}
+
+/**
+ * ec_find_place() - the ring position that alias and offset mean
+ * @bus: bus
+ * @alias: alias, 0: @position is that in the ring
+ * @alias_at: what ec_find_alias() has found for it; the list may have changed since
+ * @position: slaves after the one with the alias
+ * @place: result, also when the ring ends before it
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: false: no slave with the alias is at @alias_at.
+ */
+bool ec_find_place(const struct ec_bus *bus, u16 alias, unsigned int alias_at, u16 position,
+		   unsigned int *place)
+{
+	ec_bus_assert_stays(bus);
+	*place = position;
+	if (!alias)
+		return true;
+	*place += alias_at;
+	return alias_at < bus->n_slaves && bus->slaves[alias_at]->alias == alias;
+}
+
+/**
+ * ec_find_slave_at() - the slave that alias and offset mean
+ * @bus: bus
+ * @alias: alias, 0: @position is that in the ring
+ * @position: slaves after the one with the alias
+ *
+ * Context: Process, topo held.
+ * Return: the slave, or NULL.
+ */
+struct ec_slave *ec_find_slave_at(const struct ec_bus *bus, u16 alias, u16 position)
+{
+	unsigned int place;
+
+	lockdep_assert_held(&bus->topo);
+	if (!ec_find_place(bus, alias, alias ? ec_find_alias(bus, alias) : 0, position, &place))
+		return NULL;
+	return at(bus, place);
+}
+
+/**
+ * ec_find_group() - alias and offset by which a slave is known: of the nearest slave upstream
+ * @slave: slave of the list
+ * @steps: positions that were looked at, initially 0
+ * @alias: result: alias of the slave or of the nearest one before it that has one, 0: none has
+ * @distance: result: slaves from that one on; without alias the ring position
+ *
+ * Looks at some slaves only, as a section of a reader is short.
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: 0; -EAGAIN: call again.
+ */
+int ec_find_group(const struct ec_slave *slave, u32 *steps, u16 *alias, u16 *distance)
+{
+	const struct ec_bus *bus = slave->bus;
+	u32 end = min_t(u32, *steps + WALK, slave->position + 1);
+
+	ec_bus_assert_stays(bus);
+	*alias = 0;
+	*distance = slave->position;
+	for (; *steps < end; ++*steps) {
+		const struct ec_slave *s = at(bus, slave->position - *steps);
+
+		/* it may have been disconnected since, behind the end of the list */
+		if (!s || !s->alias)
+			continue;
+		*alias = s->alias;
+		*distance = *steps;
+		return 0;
+	}
+	return end <= slave->position ? -EAGAIN : 0;
+}
+
+/**
  * ec_find_text() - why an address names no slave
  * @bus: bus
  * @a: address for which ec_find_slave() has found none
@@ -107,6 +201,7 @@ int ec_find_slave(const struct ec_bus *bus, const struct ec_ioc_address *a, unsi
 size_t ec_find_text(const struct ec_bus *bus, const struct ec_ioc_address *a, char *buf,
 		    size_t size)
 {
+	ec_bus_assert_stays(bus);
 	switch (a->kind) {
 	case EC_ADDRESS_ALIAS:
 		return scnprintf(buf, size,

@@ -3,6 +3,7 @@
 #include "config.h"
 #include "../link/links.h"
 #include "ethercat_map.h"
+#include "../bus/find.h"
 #include "../bus/slave.h"
 #include "why.h"
 
@@ -10,17 +11,18 @@
 #define EVENTS_MAX	256	/* events per activation: others stay in the ring */
 #define WALK		64	/* configurations to check without a pause */
 
-/* The ring position that @c names; false: no slave has its alias. @topo is held, or it is shown. */
-static bool why_place(const struct ec_config *c, unsigned int *pos)
+/**
+ * ec_config_place() - the ring position that a configuration means
+ * @c: configuration
+ * @place: result, also when the ring ends before it
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: false: no slave has its alias.
+ */
+bool ec_config_place(const struct ec_config *c, unsigned int *place)
 {
-	const struct ec_bus *bus = c->wanted->bus;
-
 	ec_bus_assert_stays(c->wanted->bus);
-	*pos = c->position;
-	if (!c->alias)
-		return true;
-	*pos += c->alias_at;
-	return c->alias_at < bus->n_slaves && bus->slaves[c->alias_at]->alias == c->alias;
+	return ec_find_place(c->wanted->bus, c->alias, c->alias_at, c->position, place);
 }
 
 /**
@@ -42,9 +44,8 @@ void ec_config_locate(struct ec_config *c)
 	if (!c->alias && !c->lost.text[0])
 		return;
 	down_read(&bus->topo);
-	for (i = 0; c->alias && i < bus->n_slaves && bus->slaves[i]->alias != c->alias; i++)
-		;
-	c->alias_at = i;
+	if (c->alias)
+		c->alias_at = ec_find_alias(bus, c->alias);
 	for (i = 0; c->lost.text[0] && i < bus->n_slaves &&
 	     bus->slaves[i]->station != c->lost.at.station; i++)
 		;
@@ -69,7 +70,7 @@ static bool twice(const struct ec_config *has, unsigned int pos)
 {
 	unsigned int p;
 
-	return why_place(has, &p) && p == pos;
+	return ec_config_place(has, &p) && p == pos;
 }
 
 /* Without device or link there is no slave at all. */
@@ -106,7 +107,7 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
 				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
 	*cause = *EC_CAUSE(NO_ALIAS);
-	if (!why_place(c, &pos))
+	if (!ec_config_place(c, &pos))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
 				 bus->n_slaves, c->alias);
 	*cause = *EC_CAUSE(NO_SLAVE, .position = min_t(u32, pos, EC_UAPI_NONE16));
@@ -203,7 +204,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
 	while (*from < end) {
 		const struct ec_config *c = w->configs[(*from)++];
 
-		if (!c->slave && why_place(c, &pos) && pos == slave->position)
+		if (!c->slave && ec_config_place(c, &pos) && pos == slave->position)
 			return c;
 	}
 	return NULL;

@@ -11,6 +11,7 @@
 #include <linux/slab.h>
 #include <linux/sort.h>
 #include "../config/config.h"
+#include "../config/why.h"
 #include "../base/grow.h"
 #include "logical.h"
 #include "../bus/slave.h"
@@ -39,22 +40,19 @@ static bool is_out(const struct ec_config_fmmu *f)
 }
 
 /* The place of a slave in the ring does not change, or is known now. */
-static bool ring_known(const struct ec_config *c)
+static bool ring_place(const struct ec_config *c, unsigned int *place)
 {
-	return !c->alias || c->slave;
-}
-
-static u32 ring_position(const struct ec_config *c)
-{
-	return c->alias ? c->slave->position : c->position;
+	return ec_config_place(c, place) && (!c->alias || c->slave);
 }
 
 static enum way way_of(const struct place *p, const struct ec_config *c)
 {
+	unsigned int place;
+
 	if (p->l->separate)
 		return FREE;
 	if (p->d->options & EC_DOMAIN_OPT_OVERLAP)
-		return ring_known(c) ? RING : OWN;
+		return ring_place(c, &place) ? RING : OWN;
 	return c->overlap ? OWN : APART;
 }
 
@@ -62,9 +60,12 @@ static enum way way_of(const struct place *p, const struct ec_config *c)
 static int by_ring(const void *a, const void *b)
 {
 	const struct ec_domain_fmmu *x = a, *y = b;
-	u32 px = ring_known(x->config) ? ring_position(x->config) : U32_MAX;
-	u32 py = ring_known(y->config) ? ring_position(y->config) : U32_MAX;
+	unsigned int px, py;
 
+	if (!ring_place(x->config, &px))
+		px = U32_MAX;
+	if (!ring_place(y->config, &py))
+		py = U32_MAX;
 	if (px != py)
 		return px < py ? -1 : 1;
 	if (x->config != y->config)
@@ -253,6 +254,8 @@ int ec_logical_place(struct ec_domain *d, struct ec_logical *l)
 	l->refs = kvcalloc(d->n_fmmus + 1, sizeof(*l->refs), GFP_KERNEL_ACCOUNT);
 	if (!l->refs)
 		return -ENOMEM;
+	/* the places in the ring */
+	down_read(&d->wanted->bus->topo);
 	arrange(&p);
 	for (i = 0; i < l->n && !ret; i = k) {
 		struct ec_config *c = l->refs[i].config;
@@ -260,9 +263,10 @@ int ec_logical_place(struct ec_domain *d, struct ec_logical *l)
 
 		k = unit_end(&p, i, way);
 		if (way == RING)
-			c->ring_position = ring_position(c);
+			ring_place(c, &c->ring_position);
 		ret = add_unit(&p, i, k, way);
 	}
+	up_read(&d->wanted->bus->topo);
 	if (!ret && p.at.end > p.at.start)
 		ret = close_stretch(&p, p.at.end, l->n);
 	return ret;

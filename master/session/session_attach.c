@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Configurations and the slaves that they mean. */
+#include "../bus/find.h"
 #include "../config/why.h"
 #include "../mailbox/emerg.h"
 #include "request.h"
@@ -79,19 +80,15 @@ void ec_session_detach(struct ec_config *c)
 struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position, u32 vendor,
 				 u32 product)
 {
-	struct ec_slave *slave = NULL;
-	unsigned int i, pos = position;
+	struct ec_slave *slave;
 
 	down_read(&ss->bus->topo);
-	if (alias) {
-		for (i = 0; i < ss->bus->n_slaves && ss->bus->slaves[i]->alias != alias; i++)
-			;
-		pos += i;
-	}
-	if (pos < ss->bus->n_slaves && ss->bus->slaves[pos]->info.vendor == vendor &&
-	    ss->bus->slaves[pos]->info.product == product &&
-	    !READ_ONCE(ss->bus->slaves[pos]->stop.gone))
-		slave = ec_slave_ref(ss->bus->slaves[pos]);
+	slave = ec_find_slave_at(ss->bus, alias, position);
+	if (slave && slave->info.vendor == vendor && slave->info.product == product &&
+	    !READ_ONCE(slave->stop.gone))
+		ec_slave_ref(slave);
+	else
+		slave = NULL;
 	up_read(&ss->bus->topo);
 	return slave;
 }

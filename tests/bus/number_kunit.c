@@ -82,7 +82,8 @@ static u32 value_at(struct bus *b, u16 position)
 {
 	u32 value = 0;
 	struct ec_ioc_sdo sdo = {
-		.slave.position = position, .index = 0x2001, .subindex = 8, .size = 4, .data = (uintptr_t)&value,
+		.slave.position = position, .index = 0x2001, .subindex = 8, .size = 4,
+		.data = (uintptr_t)&value,
 	};
 
 	KUNIT_EXPECT_EQ_MSG(b->test, ec_ioc(&b->app, EC_IOC_SDO_UPLOAD, &sdo), 0, "%s",
@@ -262,6 +263,29 @@ static void number_of_many_devices(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_table(b)->known.n_lost, 3u);
 }
 
+/* Alias and offset mean the same slave in a configuration as in a command. */
+static void number_of_config_by_alias_further_upstream(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a drive in=8 out=8 alias=7\n"
+			       "slave b drive in=8 out=8 alias=9\nslave c drive in=8 out=8\n", 3);
+	struct ec_ioc_slave_config sc = { .alias = 7, .position = 2, .vendor_id = 1 };
+	const struct ec_ioc_address a = {
+		.kind = EC_ADDRESS_ALIAS, .alias = 7, .position = 2,
+	};
+	struct ec_ioc_slave s;
+
+	bus_idle(b);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
+	KUNIT_ASSERT_EQ(test, get(b, &a, &s), 0);
+	KUNIT_EXPECT_EQ(test, s.position, 2);
+	KUNIT_EXPECT_EQ(test, s.alias_group, 9);
+	KUNIT_EXPECT_EQ(test, s.alias_pos, 1);
+	KUNIT_EXPECT_EQ(test, s.config, sc.index + 1);
+	KUNIT_EXPECT_EQ(test, s.differs, 1u);
+	ec_session_end(bus_sessions(b), &b->app);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(number_is_one_of_four_addresses),
 	KUNIT_CASE(number_stays_with_device),
@@ -271,6 +295,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(number_with_serial_number_twice),
 	KUNIT_CASE(number_of_unreadable_slave),
 	KUNIT_CASE(number_of_many_devices),
+	KUNIT_CASE(number_of_config_by_alias_further_upstream),
 	{ }
 };
 

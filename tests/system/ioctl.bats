@@ -27,6 +27,8 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 @test "unknown flags, reserved bytes, reasons" { check unknown; }
 @test "a reader causes no traffic and changes nothing" { check readonly; }
 @test "slaves, SyncManagers, PDOs and entries that do not exist" { check positions; }
+@test "each kind of address with invalid values" { check addresses; }
+@test "programs of old and of later versions" { check version; }
 @test "impossible values" { check values; }
 @test "commands at the wrong time" { check states; }
 @test "too many and too much" { check limits; }

@@ -11,7 +11,7 @@ teardown_file() { stop; }
 	run ethercat version
 	[ "${#lines[@]}" = 1 ]
 	[[ "$output" =~ ^"EtherCAT master "[0-9]+\.[0-9]+ ]]
-	json '.abi == 2 and (.version | test("^[0-9]+[.]"))' version
+	json '.abi == 3 and (.version | test("^[0-9]+[.]"))' version
 }
 
 @test "master shows phase, device and clocks" {

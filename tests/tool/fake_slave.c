@@ -52,40 +52,42 @@ static const struct fake_slave slaves[FAKE_SLAVES] = {
 	},
 };
 
+#define AT(p)	.slave.position = (p)
+
 static const struct ec_ioc_sm sms[] = {
-	{ .slave.position = 1, .sm = 0, .start = 0x0f00, .default_size = 1, .control = 0x44, .enable = 1,
+	{ AT(1), .sm = 0, .start = 0x0f00, .default_size = 1, .control = 0x44, .enable = 1,
 	  .pdo_count = 2 },
-	{ .slave.position = 2, .sm = 0, .start = 0x1000, .default_size = 256, .control = 0x26,
+	{ AT(2), .sm = 0, .start = 0x1000, .default_size = 256, .control = 0x26,
 	  .enable = 1 },
-	{ .slave.position = 2, .sm = 1, .start = 0x1100, .default_size = 256, .control = 0x22,
+	{ AT(2), .sm = 1, .start = 0x1100, .default_size = 256, .control = 0x22,
 	  .enable = 1 },
-	{ .slave.position = 2, .sm = 2, .start = 0x1200, .default_size = 6, .control = 0x24,
+	{ AT(2), .sm = 2, .start = 0x1200, .default_size = 6, .control = 0x24,
 	  .enable = 1, .pdo_count = 1 },
-	{ .slave.position = 2, .sm = 3, .start = 0x1300, .default_size = 6, .control = 0x20,
+	{ AT(2), .sm = 3, .start = 0x1300, .default_size = 6, .control = 0x20,
 	  .enable = 1, .pdo_count = 1 },
 };
 
 static const struct ec_ioc_pdo pdos[] = {
-	{ .slave.position = 1, .sm = 0, .pdo_pos = 0, .index = 0x1600, .entry_count = 1,
+	{ AT(1), .sm = 0, .pdo_pos = 0, .index = 0x1600, .entry_count = 1,
 	  .name = "Channel 1" },
-	{ .slave.position = 1, .sm = 0, .pdo_pos = 1, .index = 0x1601, .entry_count = 1,
+	{ AT(1), .sm = 0, .pdo_pos = 1, .index = 0x1601, .entry_count = 1,
 	  .name = "Channel */ 2" },
-	{ .slave.position = 2, .sm = 2, .pdo_pos = 0, .index = 0x1600, .entry_count = 1,
+	{ AT(2), .sm = 2, .pdo_pos = 0, .index = 0x1600, .entry_count = 1,
 	  .name = "DRV Controlword" },
-	{ .slave.position = 2, .sm = 3, .pdo_pos = 0, .index = 0x1a00, .entry_count = 2,
+	{ AT(2), .sm = 3, .pdo_pos = 0, .index = 0x1a00, .entry_count = 2,
 	  .name = "FB Position" },
 };
 
 static const struct ec_ioc_pdo_entry entries[] = {
-	{ .slave.position = 1, .sm = 0, .pdo_pos = 0, .entry_pos = 0, .index = 0x7000, .subindex = 1,
+	{ AT(1), .sm = 0, .pdo_pos = 0, .entry_pos = 0, .index = 0x7000, .subindex = 1,
 	  .bits = 1, .name = "Output" },
-	{ .slave.position = 1, .sm = 0, .pdo_pos = 1, .entry_pos = 0, .index = 0x7010, .subindex = 1,
+	{ AT(1), .sm = 0, .pdo_pos = 1, .entry_pos = 0, .index = 0x7010, .subindex = 1,
 	  .bits = 1, .name = "Output" },
-	{ .slave.position = 2, .sm = 2, .pdo_pos = 0, .entry_pos = 0, .index = 0x7010, .subindex = 1,
+	{ AT(2), .sm = 2, .pdo_pos = 0, .entry_pos = 0, .index = 0x7010, .subindex = 1,
 	  .bits = 16, .name = "Controlword" },
-	{ .slave.position = 2, .sm = 3, .pdo_pos = 0, .entry_pos = 0, .index = 0x6000, .subindex = 0x11,
+	{ AT(2), .sm = 3, .pdo_pos = 0, .entry_pos = 0, .index = 0x6000, .subindex = 0x11,
 	  .bits = 32, .name = "Position" },
-	{ .slave.position = 2, .sm = 3, .pdo_pos = 0, .entry_pos = 1, .index = 0, .subindex = 0,
+	{ AT(2), .sm = 3, .pdo_pos = 0, .entry_pos = 1, .index = 0, .subindex = 0,
 	  .bits = 16 },
 };
 
@@ -141,7 +143,9 @@ static int slave(struct fake_slave *s)
 		s->cause.kind = EC_CAUSE_SILENT;
 	}
 	if (fake_bus("evil") && s->position == 2) {
-		snprintf(s->name, sizeof(s->name), "%s", "\033[2J\302\233H\2341m\342\200\256 Gr\303\266\337e\r\n\177");
+		snprintf(s->name, sizeof(s->name), "%s",
+			 "\033[2J\302\233H\2341m"
+			 "\342\200\256 Gr\303\266\337e\r\n\177");
 		snprintf(s->order, sizeof(s->order), "%s", "*/ \"x\\ /* int");
 		memset(s->group, 'g', sizeof(s->group));	/* no end */
 	}
@@ -206,11 +210,12 @@ static int sm(struct ec_ioc_sm *x)
 static int pdo(struct ec_ioc_pdo *x)
 {
 	if (fake_bus("evil") && x->slave.position == 2 && x->sm == 2) {
-		*x = (struct ec_ioc_pdo){ .slave.position = 2, .sm = 2, .index = 0x1600, .entry_count = 1,
+		*x = (struct ec_ioc_pdo){ AT(2), .sm = 2, .index = 0x1600, .entry_count = 1,
 			.name = "*/*/ int /*/ \\" };
 		return 0;
 	}
-	FIND(pdos, t_->slave.position == x->slave.position && t_->sm == x->sm && t_->pdo_pos == x->pdo_pos);
+	FIND(pdos, t_->slave.position == x->slave.position && t_->sm == x->sm &&
+	     t_->pdo_pos == x->pdo_pos);
 }
 
 static int entry(struct ec_ioc_pdo_entry *x)

@@ -146,3 +146,29 @@ sys.exit(p.returncode)
 	[ "$status" -eq 1 ]
 	[[ $output == *"slave 0: cannot read the PDOs"* ]]
 }
+
+# What is typed is a position; what is resolved once is a device.
+@test "a slave that takes the position of another one gets no command" {
+	local c
+
+	export FAKE_BUS=moved
+	printf x >"$BATS_TEST_TMPDIR/fw"
+	for c in "download -p2 -t uint16 0x8010 3 1" "upload -p2 -t uint16 0x1018 1" \
+		"soe_write -p2 -t uint16 S-0-0015 1" "soe_read -p2 -t uint16 S-0-0015" \
+		"reg_write -p2 -t uint8 0x10 1" "reg_read -p2 -t uint8 0x10" "states -p2 PREOP" \
+		"foe_write -p2 $BATS_TEST_TMPDIR/fw" "sdos -p2" "ip -p2 addr 10.0.0.1" \
+		"diag -p2" "crc -p2 reset"; do
+		export FAKE_LOG=$BATS_TEST_TMPDIR/log
+		: >"$FAKE_LOG"
+		run "$HERE/build/fake/ethercat" $c
+		[[ "$status" != 0 && "$output" == *"device 13, which was slave 2 (EL7201)"* ]] ||
+			{ echo "$c: $status $output"; return 1; }
+		[ ! -s "$FAKE_LOG" ] || { echo "$c reached a slave"; return 1; }
+	done
+	# without scan a register is written by position
+	[ "$(log_of reg_write -p2 -t uint8 --emergency 0x10 1)" = "reg 2 0x0010 emergency 01" ]
+}
+
+@test "slaves --json shows the device numbers" {
+	out slaves -j | json '[s["device_number"] for s in d["masters"][0]["slaves"]] == [11, 12, 13]'
+}
