@@ -79,6 +79,35 @@ api_calls() {
 		  sort -u) || { echo "add CALL(function)(...) to a case in tests/apps/api"; return 1; }
 }
 
+# "name node" in the package
+package_symbols() {
+	sed -n 's/^ \(ecrt_[a-z0-9_]*\)@\(LIBETHERCAT_[A-Z0-9_.]*\) .*/\1 \2/p' \
+		"${1:-$top/debian/libethercat1.symbols}" | sort
+}
+
+# no release adds to the symbol version of one before it
+one_release_each() {
+	sed -n 's/^ ecrt_[a-z0-9_]*@\(LIBETHERCAT_[A-Z0-9_.]*\) \(.*\)/\1 \2/p' \
+		"${1:-$top/debian/libethercat1.symbols}" | sort -u |
+		awk 'seen[$1]++ { print $1 " has symbols of " $2 " as well"; bad = 1 }
+		     END { exit bad || !NR }'
+}
+
+late_symbol_is_noticed() {
+	sed 's/^ \(ecrt_domain_age@LIBETHERCAT_EC_1\) .*/ \1 0.2.0/' \
+		"$top/debian/libethercat1.symbols" >"$o/late.symbols"
+	! one_release_each "$o/late.symbols"
+}
+
+gensymbols() {
+	local tree=$o/package
+
+	rm -rf "$tree"
+	mkdir -p "$tree/DEBIAN"
+	(cd "$top" && dpkg-gensymbols -plibethercat1 -v0.1.0 -P"$tree" -c4 \
+		-Idebian/libethercat1.symbols -e"$o/lib/libethercat.so.1.2.0")
+}
+
 soname() {
 	readelf -d "$o/lib/libethercat.so.1.2.0" |
 		grep -q 'SONAME.*\[libethercat\.so\.1\]'
@@ -196,6 +225,10 @@ t "map has the names of the list" \
 	diff <(names prototypes.txt) <(map_symbols | cut -d' ' -f1)
 t "each function has a case in tests/apps/api" api_calls
 t "library exports the map" diff <(map_symbols) <(exported)
+t "the package has the symbols of the map" diff <(map_symbols) <(package_symbols)
+t "a symbol version is of one release" one_release_each
+t "a symbol that is added to an older version is noticed" late_symbol_is_noticed
+! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees" gensymbols
 t "soname" soname
 t "library needs libc only" needs_libc_only
 t "install, use, uninstall" installs
