@@ -27,7 +27,7 @@ struct ec_master {
 	bool reserved;
 	bool active;
 	struct ec_app_cycle cycle;
-	bool no_advice;	/* the module has no EC_ADVICE_* */
+	bool no_advice;	/* the module does not admit EC_ADVICE_* */
 
 	/* mapped by activation */
 	const struct ec_status *status;

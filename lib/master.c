@@ -273,8 +273,8 @@ int ecrt_master_deactivate(ec_master_t *master)
 /* cycle --------------------------------------------------------------------*/
 
 /*
- * What a command of the cycle on the short way has returned: 0, its error, or 1: give it by
- * ioctl(). That says why when an old module or a filter of system calls refuses the advice.
+ * What a command of the cycle by the shorter entry has returned: 0, its error, or 1: give it by
+ * ioctl(). That shows the cause when the module or a filter of system calls refuses the advice.
  */
 static inline int advised(struct ec_master *m, int err)
 {

@@ -55,14 +55,22 @@ err_free:
 
 int ecrt_master_reserve(ec_master_t *master)
 {
+	struct ec_ioc_send send = { 0 };
 	int ret;
 
 	if (!master)
 		return -EINVAL;
 	ret = ec_do(master, EC_IOC_RESERVE, NULL, "reserve master %u", master->index);
-	if (!ret)
-		master->reserved = true;
-	return ret;
+	if (ret)
+		return ret;
+	master->reserved = true;
+	/*
+	 * The module admits both to the shorter entry once ioctl() has let them through. They do
+	 * nothing before activation; one that is refused here is refused with its cause there.
+	 */
+	ec_command(master, EC_IOC_RECEIVE, NULL);
+	ec_command(master, EC_IOC_SEND, &send);
+	return 0;
 }
 
 ec_master_t *ecrt_request_master(unsigned int master_index)

@@ -666,8 +666,9 @@ struct ec_ioc_send {
 
 /*
  * The same as EC_IOC_RECEIVE and EC_IOC_SEND by posix_fadvise(fd, app_time, queued, advice), which
- * enters the kernel on a shorter way. EC_ADVICE_SEND is or-ed with EC_SEND_FLAG_*; @sync_time is
- * app_time. A module without them returns EINVAL.
+ * enters the kernel by a shorter entry. EC_ADVICE_SEND is or-ed with EC_SEND_FLAG_*; @sync_time is
+ * app_time. EINVAL: the same command has not come by ioctl() on this open file before, with any
+ * result, or the module was loaded with short_entry=0.
  */
 #define EC_ADVICE_RECEIVE	0x0ec00
 #define EC_ADVICE_SEND		0x0ed00

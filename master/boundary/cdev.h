@@ -22,6 +22,7 @@ struct ec_session;
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
  * @reader: NULL, or it reads events; set once
+ * @admitted: bits EC_ADMITTED_*: commands of the cycle that ioctl() has let through on this file
  * @rcu: frees it after the cycle has finished with @waiters
  */
 struct ec_file {
@@ -31,8 +32,12 @@ struct ec_file {
 	char reason[EC_UAPI_REASON];
 	struct ec_waiters waiters;
 	struct ec_event_reader *reader;
+	unsigned long admitted;
 	struct rcu_head rcu;
 };
+
+/* bits of @admitted */
+enum { EC_ADMITTED_RECEIVE, EC_ADMITTED_SEND };
 
 void ec_file_init(struct ec_file *f, struct ec_master *m, bool writable);
 __poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait);

@@ -194,8 +194,10 @@ long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)
 {
 	struct ec_file *f = filp->private_data;
 
-	if (cmd == EC_IOC_RECEIVE)
+	if (cmd == EC_IOC_RECEIVE) {
+		ec_ioctl_admit(f, EC_ADMITTED_RECEIVE);
 		return ec_ioc_receive(f);
+	}
 	if (_IOC_TYPE(cmd) == EC_IOC_TYPE && _IOC_NR(cmd) == _IOC_NR(EC_IOC_SEND))
 		return ec_ioctl_send(f, cmd, arg);
 	return dispatch(f, cmd, arg);

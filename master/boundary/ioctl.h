@@ -52,6 +52,7 @@ int ec_ioc_refuse_reserved(struct ec_call *call);
 
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what);
+void ec_ioctl_admit(struct ec_file *f, unsigned int which);
 long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg);
 int ec_ioc_mbox_failed(struct ec_call *call, int ret, const char *protocol, const char *what);
 

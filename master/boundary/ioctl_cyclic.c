@@ -2,6 +2,7 @@
 /* Commands of an application that runs the cycle: each of its calls is one of them. */
 #include <linux/err.h>
 #include <linux/fs.h>
+#include <linux/moduleparam.h>
 #include <linux/uaccess.h>
 #include "ioctl.h"
 #include "master.h"
@@ -119,6 +120,32 @@ int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
 	return ioctl_cyclic_send(f, what);
 }
 
+static bool short_entry = true;
+module_param(short_entry, bool, 0444);
+MODULE_PARM_DESC(short_entry,
+		 "0: receive and send of a cycle by ioctl() only, not by posix_fadvise()");
+
+/**
+ * ec_ioctl_admit() - a command of the cycle has come by ioctl()
+ * @f: open file
+ * @which: EC_ADMITTED_*
+ *
+ * Security modules and filters of system calls have let it through, so from now on it may take
+ * the shorter entry.
+ *
+ * Context: Process. RT-safe.
+ */
+void ec_ioctl_admit(struct ec_file *f, unsigned int which)
+{
+	if (short_entry && !test_bit(which, &f->admitted))
+		set_bit(which, &f->admitted);
+}
+
+static bool is_admitted(const struct ec_file *f, unsigned int which)
+{
+	return likely(test_bit(which, &f->admitted));
+}
+
 /* A program that was built with a later header; a cycle of this one does not pay for it. */
 static noinline int fetch_longer(struct ec_ioc_send *what, size_t size, const void __user *arg)
 {
@@ -142,6 +169,7 @@ long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
 
 	if (_IOC_DIR(cmd) != _IOC_DIR(EC_IOC_SEND))
 		return -ENOTTY;
+	ec_ioctl_admit(f, EC_ADMITTED_SEND);
 	if (unlikely(_IOC_SIZE(cmd) != sizeof(what))) {
 		ret = fetch_longer(&what, _IOC_SIZE(cmd), (void __user *)arg);
 		if (ret)
@@ -161,19 +189,21 @@ long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
  * @len: domains to send, bit n queues domain n
  * @advice: EC_ADVICE_RECEIVE, or EC_ADVICE_SEND with EC_SEND_FLAG_*
  *
- * Security modules look at each ioctl(), and that costs more than the rest of the entry.
+ * Security modules examine each ioctl(), and that costs more than the rest of the entry. They
+ * are not bypassed: a command that they have not let through on this file by ioctl() before is
+ * no advice.
  *
  * Context: Process. RT-safe.
- * Return: as EC_IOC_RECEIVE and EC_IOC_SEND; for other advice as for any file.
+ * Return: as EC_IOC_RECEIVE and EC_IOC_SEND; for other advice as for any file: -EINVAL.
  */
 int ec_ioctl_advise(struct file *filp, loff_t offset, loff_t len, int advice)
 {
 	struct ec_file *f = filp->private_data;
 	struct ec_ioc_send what;
 
-	if (advice == EC_ADVICE_RECEIVE)
+	if (advice == EC_ADVICE_RECEIVE && is_admitted(f, EC_ADMITTED_RECEIVE))
 		return ioctl_cyclic_receive(f);
-	if ((advice & ~EC_SEND_FLAG_ALL) == EC_ADVICE_SEND) {
+	if ((advice & ~EC_SEND_FLAG_ALL) == EC_ADVICE_SEND && is_admitted(f, EC_ADMITTED_SEND)) {
 		what = (struct ec_ioc_send){
 			.flags = advice & EC_SEND_FLAG_ALL, .queued = len,
 			.app_time = offset, .sync_time = offset,

@@ -221,6 +221,8 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	}
 	fake.calls++;
 	fake.last = (unsigned int)cmd;
+	fake.received |= cmd == EC_IOC_RECEIVE;
+	fake.admitted |= cmd == EC_IOC_SEND;
 	if (_IOC_SIZE(cmd))
 		memcpy(fake.arg, arg, _IOC_SIZE(cmd));
 	if (fake.refuse == cmd) {
@@ -353,6 +355,8 @@ int __wrap_posix_fadvise(int fd, off_t offset, off_t len, int advice)
 	};
 
 	fake.advised++;
+	if (!fake.received || !fake.admitted)
+		return EINVAL;	/* not let through by ioctl() before */
 	if (fake.no_advice)
 		return fake.no_advice;
 	if (advice == EC_ADVICE_RECEIVE)

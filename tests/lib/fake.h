@@ -46,6 +46,8 @@ struct fake {
 	unsigned int dc_odd;
 	unsigned int advised;	/* of @calls, by posix_fadvise() */
 	int no_advice;		/* errno that it returns */
+	int received;		/* by ioctl() */
+	int admitted;		/* likewise a send */
 	void (*beside)(void);	/* what another thread does during a send, once */
 	unsigned int answer;	/* bytes of SDO information; 0: all */
 	unsigned int large;	/* bytes of memory for the first request, behind the others */

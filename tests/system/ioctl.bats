@@ -31,6 +31,7 @@ state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 @test "programs of old and of later versions" { check version; }
 @test "impossible values" { check values; }
 @test "commands at the wrong time" { check states; }
+@test "a filter that refuses a command is not bypassed" { check policy; }
 @test "too many and too much" { check limits; }
 @test "wrong mappings" { check mmap; }
 @test "data are copied to absent pages beside mmap" { check pages; }

@@ -196,6 +196,13 @@ bridged() {
 	[ "$(cat $p)" = 0 ]
 }
 
+@test "the shorter entry of the cycle can be switched off" {
+	master main_devices=sim0 short_entry=0
+	[ "$(cat /sys/module/ec_master/parameters/short_entry)" = N ]
+	wait_for 10 test -e /dev/EtherCAT0
+	"$EC_BUILD/apps/ioctl_check" ioctl_only
+}
+
 # opened LETTERS: how many of these files could be opened so far
 opened() { tr -cd "$1" <"$BATS_TEST_TMPDIR/opened" | wc -c; }
 

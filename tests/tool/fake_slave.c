@@ -248,7 +248,8 @@ static int reg_read(struct ec_ioc_reg *x)
 		 * slave 2: latch 0 is high and has seen it rise, latch 1 is the slave's,
 		 * with FAKE_LATCHES both are
 		 */
-		if (x->slave.position == 2 && (a == 0x0980 || a == 0x09ae || a == 0x09b0 || a == 0x09a9))
+		if (x->slave.position == 2 &&
+		    (a == 0x0980 || a == 0x09ae || a == 0x09b0 || a == 0x09a9))
 			to[i] = a == 0x0980 ? (getenv("FAKE_LATCHES") ? 0x30 : 0x20) :
 				a == 0x09ae ? 5 : a == 0x09a9 ? 1 : 0x15;
 	}

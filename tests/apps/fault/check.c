@@ -60,6 +60,8 @@ static const struct {
 	{ "addresses", check_addresses },
 	{ "values", check_values },
 	{ "states", check_states },
+	{ "policy", check_policy },
+	{ "ioctl_only", check_ioctl_only },
 	{ "limits", check_limits },
 	{ "mmap", check_mmap },
 	{ "pages", check_pages },

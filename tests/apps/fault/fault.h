@@ -73,6 +73,8 @@ void check_values(void);
 /* states.c: at the wrong time */
 void session(int fd);
 void check_states(void);
+void check_policy(void);
+void check_ioctl_only(void);
 
 /* limits.c: too much */
 void check_limits(void);

@@ -2,7 +2,12 @@
 /* Commands at the wrong time. */
 #include <errno.h>
 #include <fcntl.h>
+#include <linux/filter.h>
+#include <linux/seccomp.h>
+#include <stddef.h>
 #include <string.h>
+#include <sys/prctl.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 #include "fault.h"
 
@@ -37,10 +42,26 @@ static int advise(int fd, off_t queued, int advice)
 	return posix_fadvise(fd, 0, queued, advice);
 }
 
+/* None that ioctl() has not let through before, on the same file. */
+static void first_advice(void)
+{
+	int fd = open_master(O_RDWR), other = open_master(O_RDWR);
+
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), EINVAL, "first advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EINVAL, "first advice to send");
+	expect_errno(call(fd, EC_IOC_RECEIVE, NULL), EPERM, "receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), EPERM, "advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EINVAL, "advice to send, after a receive");
+	expect_errno(call(fd, EC_IOC_SEND, zeroed()), EPERM, "send");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EPERM, "advice to send");
+	expect_errno(advise(other, 0, EC_ADVICE_RECEIVE), EINVAL, "advice on another file");
+	expect_errno(advise(other, 0, EC_ADVICE_SEND), EINVAL, "advice on another file");
+	close(fd);
+	close(other);
+}
+
 static void no_owner(int fd)
 {
-	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), EPERM, "advice to receive");
-	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EPERM, "advice to send");
 	for (unsigned int i = 0; i < n_cmds; i++) {
 		struct ec_ioc_interval interval = { .interval_us = 1000 };
 		struct ec_ioc_sc_flag flag = { .key = "x" };
@@ -65,6 +86,47 @@ static void no_owner(int fd)
 		expect_errno(call(fd, cmds[i].nr, a), EPERM, "%s without reservation",
 			     cmds[i].name);
 	}
+	/* by ioctl() they have come above */
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), EPERM, "advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EPERM, "advice to send");
+}
+
+/* With short_entry=0 of the module. */
+void check_ioctl_only(void)
+{
+	int fd = open_master(O_RDWR);
+
+	expect_errno(call(fd, EC_IOC_RECEIVE, NULL), EPERM, "receive");
+	expect_errno(call(fd, EC_IOC_SEND, zeroed()), EPERM, "send");
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), EINVAL, "advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EINVAL, "advice to send");
+	close(fd);
+}
+
+/* What a filter of system calls refuses by ioctl() does not come by the shorter entry. */
+void check_policy(void)
+{
+	struct sock_filter code[] = {
+		BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, nr)),
+		BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, __NR_ioctl, 0, 3),
+		BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(struct seccomp_data, args[1])),
+		BPF_JUMP(BPF_JMP | BPF_JEQ | BPF_K, (unsigned int)EC_IOC_SEND, 0, 1),
+		BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ERRNO | EACCES),
+		BPF_STMT(BPF_RET | BPF_K, SECCOMP_RET_ALLOW),
+	};
+	struct sock_fprog filter = { .len = sizeof(code) / sizeof(code[0]), .filter = code };
+	int fd = open_master(O_RDWR);
+
+	expect(!prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) &&
+	       !prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, &filter), "no filter: %s",
+	       strerror(errno));
+	session(fd);
+	expect_errno(call(fd, EC_IOC_ACTIVATE, zeroed()), 0, "activate");
+	expect_errno(call(fd, EC_IOC_RECEIVE, NULL), 0, "receive");
+	expect_errno(call(fd, EC_IOC_SEND, zeroed()), EACCES, "send, which the filter refuses");
+	expect_errno(advise(fd, 0, EC_ADVICE_RECEIVE), 0, "advice to receive");
+	expect_errno(advise(fd, 0, EC_ADVICE_SEND), EINVAL, "advice to send");
+	close(fd);
 }
 
 /* What must not change while process data run. */
@@ -115,6 +177,7 @@ void check_states(void)
 
 	expect_errno(call(fd, EC_IOC_CONFIG, zeroed()), ENOENT, "configuration of nobody");
 	expect_errno(call(fd, EC_IOC_DOMAIN, zeroed()), ENOENT, "domain of nobody");
+	first_advice();
 	no_owner(fd);
 	session(fd);
 	no_owner(other);
