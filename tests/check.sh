@@ -22,6 +22,7 @@ build
 unit
 decoders
 lib
+abi
 tool
 operation
 bats
@@ -40,7 +41,7 @@ tshark
 "
 # These use one CPU, build in folders of their own and measure no time: side by side, the long
 # ones first.
-side=" uml kernels arch witness build unit decoders lib tool operation bats fuzz data "
+side=" uml kernels arch witness build unit decoders lib abi tool operation bats fuzz data "
 # Of what these use, the others have built most. Their guests are in places that they share. A
 # level that does not take places itself holds one.
 guests=" system bench guests reboot demo layers tshark "
@@ -83,6 +84,7 @@ level_decoders() { tests/witness/decoders.py; }
 level_tshark() { tests/tshark/run.sh; }
 level_uml() { EC_UML_TIMEOUT=900 tests/uml/run.sh; }
 level_lib() { make -s -C tests/lib check; }
+level_abi() { tests/abi/check.sh; }
 level_tool() { make -s -C tests/tool check; }
 level_operation() { tests/operation/check.sh; }
 level_bats() { tests/check-bats.sh; }

@@ -21,6 +21,18 @@ check() {
 
 state_is() { [ "$(ethercat slaves -p"$1" | awk '{ print $3 }')" = "$2" ]; }
 
+@test "programs of each frozen version of the interface run" {
+	local p n=0
+
+	for p in "$EC_BUILD"/apps/abi_v*; do
+		run "$p" /dev/EtherCAT0
+		echo "$p: $output"
+		[ "$status" = 0 ] || return
+		n=$((n + 1))
+	done
+	[ "$n" = "$(find tests/abi -maxdepth 1 -name "v*" | wc -l)" ]
+}
+
 @test "unknown numbers and directions" { check numbers; }
 @test "wrong sizes in the number" { check sizes; }
 @test "no memory behind a pointer" { check pointers; }
