@@ -49,6 +49,7 @@ modules: headers sync
 
 lib:
 	$(MAKE) -C lib
+	$(MAKE) -C lib/tools
 
 tool:
 	$(MAKE) -C tool
@@ -115,6 +116,7 @@ install-modules: modules
 
 install-lib:
 	$(MAKE) -C lib prefix=$(PREFIX) install
+	$(MAKE) -C lib/tools prefix=$(PREFIX) install
 
 install-tool:
 	$(MAKE) -C tool prefix=$(PREFIX) install
@@ -139,6 +141,7 @@ uninstall:
 		$(if $(DESTDIR),:,depmod $${k##*/}); \
 	done
 	$(MAKE) -C lib prefix=$(PREFIX) uninstall
+	$(MAKE) -C lib/tools prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool/sim prefix=$(PREFIX) uninstall
 	$(MAKE) -C operation prefix=$(PREFIX) uninstall
@@ -158,6 +161,7 @@ uninstall:
 clean:
 	rm -rf $(BUILD)
 	$(MAKE) -C lib clean
+	$(MAKE) -C lib/tools clean
 	$(MAKE) -C tool clean
 	$(MAKE) -C tool/sim clean
 	$(MAKE) -C examples clean

@@ -8,7 +8,7 @@
 #define POLL_MS		10
 
 /* why a slave is not where it should be: ": text" parts, "" when all is well */
-void al_reason(const struct slave *s, char *buf, size_t size)
+void al_reason(const struct ect_slave *s, char *buf, size_t size)
 {
 	char code[8];
 	int n = 0;
@@ -21,18 +21,15 @@ void al_reason(const struct slave *s, char *buf, size_t size)
 		snprintf(buf + n, size - (size_t)n, "%s%s", n ? ": " : "", s->why);
 }
 
-int al_request(struct dev *d, const struct slave *s, u8 state, u32 timeout_ms)
+int al_request(struct dev *d, const struct ect_slave *s, u8 state, u32 timeout_ms)
 {
-	struct ec_ioc_state req = {
-		.slave = s->slave, .state = state, .timeout_ms = timeout_ms,
-	};
-	int err = dev_ioctl(d, EC_IOC_STATE, &req);
+	int err = ect_state_request(d->h, s->device, state, timeout_ms);
 
 	return err ? dev_fail(d, err, "Master%u slave %u: cannot request %s", d->master,
 			      s->position, ec_al_state_name(state)) : 0;
 }
 
-static int failed(const struct dev *d, const struct slave *s, u8 wanted, const char *what)
+static int failed(const struct dev *d, const struct ect_slave *s, u8 wanted, const char *what)
 {
 	char state[16], why[400];
 
@@ -46,17 +43,17 @@ static int failed(const struct dev *d, const struct slave *s, u8 wanted, const c
  * The master clears its error flag when it takes the request. The slave's own
  * error bit counts once it is new or its code differs from before.
  */
-int al_wait(struct dev *d, const struct slave *before, u8 wanted, double end)
+int al_wait(struct dev *d, const struct ect_slave *before, u8 wanted, double end)
 {
-	struct slave s;
+	struct ect_slave s = *before;
 	double start = now_s();
 
 	for (;;) {
-		if (dev_slave_again(d, before, &s))
+		if (dev_slave(d, &s))
 			return 1;
 		if ((s.al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == wanted)
 			return 0;
-		if (s.error == EC_SLAVE_CONFIG_FAILED)
+		if (s.error == ECT_SLAVE_CONFIG_FAILED)
 			return failed(d, &s, wanted, "cannot reach");
 		if (s.al_status & EC_AL_ERROR &&
 		    (!(before->al_status & EC_AL_ERROR) || s.al_code != before->al_code ||

@@ -7,10 +7,10 @@
 
 #define AL_WAIT_S	10.0	/* without --wait=SECONDS */
 
-void al_reason(const struct slave *s, char *buf, size_t size);
+void al_reason(const struct ect_slave *s, char *buf, size_t size);
 /* @timeout_ms: of each transition, 0: the usual limits */
-int al_request(struct dev *d, const struct slave *s, u8 state, u32 timeout_ms);
+int al_request(struct dev *d, const struct ect_slave *s, u8 state, u32 timeout_ms);
 /* @before: the slave before the request; @end: see now_s() */
-int al_wait(struct dev *d, const struct slave *before, u8 wanted, double end);
+int al_wait(struct dev *d, const struct ect_slave *before, u8 wanted, double end);
 
 #endif

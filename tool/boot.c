@@ -14,7 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include "attr.h"
+#include "../lib/tools/attr.h"
 #include "sys.h"
 #include "tool.h"
 

@@ -14,17 +14,17 @@ static int digits(unsigned int v)
 
 static int order(const void *a, const void *b)
 {
-	const struct ec_ioc_config *x = a, *y = b;
+	const struct ect_config *x = a, *y = b;
 
 	if (x->alias != y->alias)
 		return x->alias < y->alias ? -1 : 1;
 	return (x->position > y->position) - (x->position < y->position);
 }
 
-static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list, size_t *n)
+static int get(const struct tool *t, struct dev *d, struct ect_config **list, size_t *n)
 {
-	struct master m;
-	struct ec_ioc_config *c;
+	struct ect_master m;
+	struct ect_config *c;
 
 	*n = 0;
 	if (dev_master(d, &m))
@@ -35,9 +35,9 @@ static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list,
 	for (unsigned int i = 0; i < m.config_count; i++) {
 		int err;
 
-		c[*n] = (struct ec_ioc_config){ .index = i };
-		err = dev_ioctl(d, EC_IOC_CONFIG, &c[*n]);
-		if (err == ENOENT)
+		c[*n].struct_size = sizeof(*c);
+		err = ect_config_read(d->h, i, &c[*n]);
+		if (err == -ENOENT)
 			break;	/* the application has exited */
 		if (err) {
 			free(c);
@@ -53,7 +53,7 @@ static int get(const struct tool *t, struct dev *d, struct ec_ioc_config **list,
 	return 0;
 }
 
-static void cells(const struct ec_ioc_config *c, char *slave, char *state)
+static void cells(const struct ect_config *c, char *slave, char *state)
 {
 	strcpy(slave, "-");
 	strcpy(state, "-");
@@ -63,7 +63,7 @@ static void cells(const struct ec_ioc_config *c, char *slave, char *state)
 	al_state_text(c->al_status, state, 16);
 }
 
-static void table(const struct ec_ioc_config *c, size_t n, const char *indent)
+static void table(const struct ect_config *c, size_t n, const char *indent)
 {
 	char slave[12], state[16];
 	int w[3] = { 0 };
@@ -83,7 +83,7 @@ static void table(const struct ec_ioc_config *c, size_t n, const char *indent)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_config *c;
+	struct ect_config *c = NULL;
 	int ret = 0;
 	size_t n;
 

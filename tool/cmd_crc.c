@@ -4,21 +4,21 @@
 #include "crc_table.h"
 #include "out.h"
 
-static int row(const struct tool *t, struct dev *d, const struct slave *s)
+static int row(const struct tool *t, struct dev *d, const struct ect_slave *s)
 {
-	u8 regs[EC_ERRORS_SIZE];
+	struct ect_errors e;
 
-	if (errors_read(d, s, regs))
+	if (errors_read(d, s, &e))
 		return 1;
-	crc_table_row(t, s, regs);
+	crc_table_row(t, s, &e);
 	return 0;
 }
 
-static int clear(struct dev *d, const struct slave *s)
+static int clear(struct dev *d, const struct ect_slave *s)
 {
 	static const u8 zero[EC_ERRORS_SIZE];
 
-	return reg_write(d, s, EC_REG_ERRORS, zero, sizeof(zero));
+	return reg_write(d, s, EC_REG_ERRORS, zero, sizeof(zero), false);
 }
 
 static int all(const struct tool *t, struct dev *d, bool reset)

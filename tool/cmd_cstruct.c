@@ -54,7 +54,7 @@ static unsigned int pdos(unsigned int pos, const struct layout *l)
 
 	for (unsigned int i = 0; i < l->n; i++)
 		for (unsigned int k = 0; k < l->sms[i].sm.pdo_count; k++) {
-			const struct ec_ioc_pdo *p = &l->sms[i].pdos[k].pdo;
+			const struct ect_pdo *p = &l->sms[i].pdos[k].pdo;
 
 			if (!n++)
 				out_text("ec_pdo_info_t slave_%u_pdos[] = {\n", pos);
@@ -77,7 +77,7 @@ static void syncs(unsigned int pos, const struct layout *l)
 
 	out_text("ec_sync_info_t slave_%u_syncs[] = {\n", pos);
 	for (unsigned int i = 0; i < l->n; i++) {
-		const struct ec_ioc_sm *s = &l->sms[i].sm;
+		const struct ect_sm *s = &l->sms[i].sm;
 
 		out_text("    {%u, %s, %u, ", s->sm,
 			 layout_is_output(&l->sms[i]) ? "EC_DIR_OUTPUT" : "EC_DIR_INPUT",
@@ -93,7 +93,7 @@ static void syncs(unsigned int pos, const struct layout *l)
 	out_text("    {0xff}\n};\n\n");
 }
 
-static void json(const struct slave *s, const struct layout *l)
+static void json(const struct ect_slave *s, const struct layout *l)
 {
 	out_u("position", s->position, NULL);
 	out_str("order_number", s->order, NULL);
@@ -115,7 +115,7 @@ static void json(const struct slave *s, const struct layout *l)
 			out_str("name", sm->pdos[k].pdo.name, NULL);
 			out_array("entries");
 			for (unsigned int e = 0; e < sm->pdos[k].pdo.entry_count; e++) {
-				const struct ec_ioc_pdo_entry *x = &sm->pdos[k].entries[e];
+				const struct ect_pdo_entry *x = &sm->pdos[k].entries[e];
 
 				out_object(NULL);
 				out_u("index", x->index, NULL);
@@ -133,7 +133,7 @@ static void json(const struct slave *s, const struct layout *l)
 	out_end();
 }
 
-static void text(const struct dev *d, const struct slave *s, const struct layout *l)
+static void text(const struct dev *d, const struct ect_slave *s, const struct layout *l)
 {
 	out_text("/* Master %u, Slave %u", d->master, s->position);
 	if (s->order[0]) {
@@ -150,7 +150,7 @@ static void text(const struct dev *d, const struct slave *s, const struct layout
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct slave *s, bool several)
+		 const struct ect_slave *s, bool several)
 {
 	struct layout l;
 

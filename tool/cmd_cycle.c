@@ -13,18 +13,12 @@ struct row {
 	unsigned int count;
 };
 
-/* where a bucket begins, ns; as described at EC_CYCLE_BUCKETS */
-static u64 bucket_from(unsigned int n)
-{
-	return n < 8 ? n : (8ULL + n % 8) << (n / 8 - 1);
-}
-
 static u64 row_to(const struct row *r)
 {
-	return bucket_from(r->first + r->count) - 1;
+	return ect_bucket_ns(r->first + r->count) - 1;
 }
 
-static u64 sends_of(const struct ec_status_cycle *st, const struct row *r)
+static u64 sends_of(const struct ect_cycle *st, const struct row *r)
 {
 	u64 sum = 0;
 
@@ -33,26 +27,13 @@ static u64 sends_of(const struct ec_status_cycle *st, const struct row *r)
 	return sum;
 }
 
-/* the end of the bucket below which @permille of the sends are */
-static u64 quantile(const struct ec_status_cycle *st, u64 sends, unsigned int permille)
-{
-	u64 above = 0, most = sends * (1000 - permille) / 1000;
-	unsigned int i = EC_CYCLE_BUCKETS;
-
-	if (!sends)
-		return 0;
-	while (i && above <= most)
-		above += st->late[--i];
-	return min(bucket_from(i + 1) - 1, (u64)st->late_max);
-}
-
 /* rows of @step buckets from the first to the last that is not empty */
-static void bars(const struct ec_status_cycle *st, unsigned int step)
+static void bars(const struct ect_cycle *st, unsigned int step)
 {
 	struct row r = { .count = step }, first = r, last = r;
 	unsigned long long most = 0, n;
 
-	for (r.first = 0; r.first < EC_CYCLE_BUCKETS; r.first += step) {
+	for (r.first = 0; r.first < ECT_BUCKETS; r.first += step) {
 		n = sends_of(st, &r);
 		if (n && !most)
 			first = r;
@@ -72,21 +53,21 @@ static void bars(const struct ec_status_cycle *st, unsigned int step)
 		len = (size_t)((n * BAR + most - 1) / most);
 		memset(bar, '#', len);
 		bar[len] = 0;
-		out_text("    %11.3f %10.3f %10llu%s%s\n", (double)bucket_from(r.first) / 1000,
+		out_text("    %11.3f %10.3f %10llu%s%s\n", (double)ect_bucket_ns(r.first) / 1000,
 			 (double)row_to(&r) / 1000, n, len ? "  " : "", bar);
 	}
 }
 
-static void histogram(const struct ec_status_cycle *st, unsigned int step)
+static void histogram(const struct ect_cycle *st, unsigned int step)
 {
 	struct row r = { .count = 1 };
 
 	out_array("histogram");
-	for (; r.first < EC_CYCLE_BUCKETS; r.first++) {
+	for (; r.first < ECT_BUCKETS; r.first++) {
 		if (!st->late[r.first])
 			continue;
 		out_object(NULL);
-		out_u("from_ns", bucket_from(r.first), NULL);
+		out_u("from_ns", ect_bucket_ns(r.first), NULL);
 		out_u("to_ns", row_to(&r), NULL);
 		out_u("sends", st->late[r.first], NULL);
 		out_end();
@@ -96,17 +77,18 @@ static void histogram(const struct ec_status_cycle *st, unsigned int step)
 		bars(st, step);
 }
 
-static void figures(const struct ec_status_cycle *st)
+static void figures(const struct ect_cycle *st)
 {
-	const struct row all = { .count = EC_CYCLE_BUCKETS };
-	unsigned long long sends = sends_of(st, &all), p999 = quantile(st, sends, 999);
+	const struct row all = { .count = ECT_BUCKETS };
+	unsigned long long sends = sends_of(st, &all), p999 = ect_cycle_quantile(st, 999);
 	double mean = st->late_count ? (double)st->late_sum / (double)st->late_count : 0;
 
 	out_u("sends", sends, "  Sends: %llu\n", sends);
-	out_u("overruns", st->overruns, "  Overruns: %llu\n", st->overruns);
+	out_u("overruns", st->overruns, "  Overruns: %llu\n",
+	      (unsigned long long)st->overruns);
 	out_u("missed", st->missed, NULL);
 	if (st->missed)
-		out_text("  Without new outputs: %llu\n", st->missed);
+		out_text("  Without new outputs: %llu\n", (unsigned long long)st->missed);
 	out_u("late_min_ns", st->late_min, "  Send deviation [us]: min %.3f",
 	      st->late_min / 1000.0);
 	out_f("late_mean_ns", mean, ", mean %.3f", mean / 1000);
@@ -115,7 +97,7 @@ static void figures(const struct ec_status_cycle *st)
 }
 
 /* how long a cycle of the kernel takes */
-static void work(const struct ec_status_cycle *st)
+static void work(const struct ect_cycle *st)
 {
 	double mean;
 
@@ -126,62 +108,62 @@ static void work(const struct ec_status_cycle *st)
 	out_u("work_max_ns", st->work_max, ", max %.3f\n", st->work_max / 1000.0);
 }
 
-static const char *state_text(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle *st)
+static const char *state_text(const struct ect_cycle *i)
 {
 	if (!i->active)
 		return "ended";
-	switch (st->state) {
-	case EC_CYCLE_STATE_STALLED:
+	switch (i->state) {
+	case ECT_CYCLE_STALLED:
 		return "stalled";
-	case EC_CYCLE_STATE_STOPPED:
+	case ECT_CYCLE_STOPPED:
 		return "stopped";
-	case EC_CYCLE_STATE_WAITING:
+	case ECT_CYCLE_WAITING:
 		return "waiting";
 	default:
 		return "running";
 	}
 }
 
-static void who(const struct ec_ioc_cycle_stats *i, const struct ec_status_cycle *st)
+static void who(const struct ect_cycle *i)
 {
 	static const char *const by[] = { "nobody", "application", "kernel" };
 	const char *name = i->kind < ARRAY_SIZE(by) ? by[i->kind] : "unknown";
 
-	if (i->kind == EC_CYCLE_BY_NOBODY) {
+	if (i->kind == ECT_CYCLE_BY_NOBODY) {
 		out_str("by", name, "  Cycle: none yet\n");
 		return;
 	}
 	out_str("by", name, "  Cycle: run by the %s, ", name);
-	out_str("state", state_text(i, st), "%s\n", state_text(i, st));
+	out_str("state", state_text(i), "%s\n", state_text(i));
 	out_u("interval_ns", i->interval_ns, "  Interval: %.3f us (", i->interval_ns / 1000.0);
 	out_bool("interval_configured", i->interval_set, "%s)\n", i->interval_set ? "configured" : "measured");
 }
 
 /* of a cycle run by the kernel: where, if it shall be an interrupt */
-static void place(const struct ec_ioc_cycle_stats *i)
+static void place(const struct ect_cycle *i)
 {
 	static const char *const text[] = {
-		[EC_CYCLE_PLACE_THREAD] = "thread",
-		[EC_CYCLE_PLACE_INTERRUPT] = "interrupt",
-		[EC_CYCLE_PLACE_RIGHT] = "thread; interrupt not permitted",
-		[EC_CYCLE_PLACE_DEVICE] = "thread; the device needs it",
-		[EC_CYCLE_PLACE_LONG] = "thread; the interrupt left too little time to others",
-		[EC_CYCLE_PLACE_CPU] = "thread; the CPU is offline",
-		[EC_CYCLE_PLACE_DEBUG] = "thread; frames are printed",
-		[EC_CYCLE_PLACE_QUIET] = "thread; no frames are sent",
+		[ECT_PLACE_THREAD] = "thread",
+		[ECT_PLACE_INTERRUPT] = "interrupt",
+		[ECT_PLACE_RIGHT] = "thread; interrupt not permitted",
+		[ECT_PLACE_DEVICE] = "thread; the device needs it",
+		[ECT_PLACE_LONG] = "thread; the interrupt left too little time to others",
+		[ECT_PLACE_CPU] = "thread; the CPU is offline",
+		[ECT_PLACE_DEBUG] = "thread; frames are printed",
+		[ECT_PLACE_QUIET] = "thread; no frames are sent",
 	};
 	const char *is = i->place < ARRAY_SIZE(text) ? text[i->place] : "unknown";
 
 	if (!i->active)
 		return;
-	out_bool("interrupt", i->place == EC_CYCLE_PLACE_INTERRUPT, NULL);
+	out_bool("interrupt", i->place == ECT_PLACE_INTERRUPT, NULL);
 	out_str("place", is, NULL);
-	if (i->place != EC_CYCLE_PLACE_THREAD)
+	if (i->place != ECT_PLACE_THREAD)
 		out_text("  Runs in: %s\n", is);
 }
 
 /* of a cycle run by the kernel */
-static void thread(const struct ec_ioc_cycle_stats *i)
+static void thread(const struct ect_cycle *i)
 {
 	out_text("  Thread: ");
 	if (i->priority)
@@ -202,26 +184,25 @@ static void thread(const struct ec_ioc_cycle_stats *i)
 
 static int show(const struct tool *t, struct dev *d)
 {
-	struct ec_status_cycle st = { 0 };
-	struct ec_ioc_cycle_stats info = { .size = sizeof(st), .data = (uintptr_t)&st };
-	int err = dev_ioctl(d, EC_IOC_CYCLE_STATS, &info);
+	struct ect_cycle c = { .struct_size = sizeof(c) };
+	int err = ect_cycle_read(d->h, &c);
 
 	if (err)
 		return dev_fail(d, err, "Master%u: cannot read cycle statistics", d->master);
 	out_object(NULL);
 	out_u("master", d->master, "Master%u\n", d->master);
-	who(&info, &st);
-	if (info.kind == EC_CYCLE_BY_KERNEL) {
-		thread(&info);
-		place(&info);
+	who(&c);
+	if (c.kind == ECT_CYCLE_BY_KERNEL) {
+		thread(&c);
+		place(&c);
 	}
-	if (info.kind != EC_CYCLE_BY_NOBODY) {
-		figures(&st);
-		work(&st);
-		histogram(&st, t->verbosity > 0 ? 1 : 8);
+	if (c.kind != ECT_CYCLE_BY_NOBODY) {
+		figures(&c);
+		work(&c);
+		histogram(&c, t->verbosity > 0 ? 1 : 8);
 	}
 	out_end();
-	err = t->reset ? dev_ioctl(d, EC_IOC_CYCLE_RESET, NULL) : 0;
+	err = t->reset ? ect_cycle_reset(d->h) : 0;
 	return err ? dev_fail(d, err, "Master%u: cannot reset cycle statistics", d->master) : 0;
 }
 

@@ -4,7 +4,7 @@
 #include "domain.h"
 #include "out.h"
 
-static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom)
+static int show(const struct tool *t, struct dev *d, const struct ect_domain *dom)
 {
 	size_t size;
 	u8 *data;

@@ -25,7 +25,7 @@ enum { POSITION, CLOCK, DELAY, OFFSET, DIFFERENCE, SYNC0, SYNC1, STATE, CELLS };
  * @cell: text of the columns
  */
 struct clock {
-	const struct slave *s;
+	const struct ect_slave *s;
 	bool reference;
 	bool configured;
 	u16 assign;
@@ -46,12 +46,12 @@ static bool sync_active(const struct clock *c, int sync)
 
 static bool outside(s32 diff)
 {
-	return diff > EC_UAPI_DC_WINDOW_NS || diff < -EC_UAPI_DC_WINDOW_NS;
+	return diff > ECT_DC_WINDOW || diff < -ECT_DC_WINDOW;
 }
 
 static const char *state_text(const struct clock *c)
 {
-	const struct slave *s = c->s;
+	const struct ect_slave *s = c->s;
 
 	if (!s->dc_supported || s->dc_delay_only)
 		return "-";
@@ -64,7 +64,7 @@ static const char *state_text(const struct clock *c)
 	return outside(s->dc_diff) ? "outside window" : "synchronized";
 }
 
-static const char *clock_text(const struct slave *s)
+static const char *clock_text(const struct ect_slave *s)
 {
 	return s->dc_delay_only ? "delay only" : !s->dc_supported ? "none" :
 		s->dc_supported == 1 ? "32 bit" : "64 bit";
@@ -73,17 +73,17 @@ static const char *clock_text(const struct slave *s)
 /* What an application has configured; it may have exited meanwhile. */
 static int configured(struct dev *d, struct clock *c)
 {
-	struct ec_ioc_config i = { .index = c->s->config - 1 };
+	struct ect_config i = { .struct_size = sizeof(i) };
 	int err;
 
 	if (!c->s->config || c->s->differs)
 		return 0;
-	err = dev_ioctl(d, EC_IOC_CONFIG, &i);
-	if (err == ENOENT)
+	err = ect_config_read(d->h, c->s->config - 1, &i);
+	if (err == -ENOENT)
 		return 0;
 	if (err)
 		return dev_fail(d, err, "Master%u: cannot read configuration %u", d->master,
-				i.index);
+				c->s->config - 1);
 	c->configured = i.dc_assign_activate;
 	c->assign = i.dc_assign_activate;
 	memcpy(c->cycle, i.dc_cycle, sizeof(c->cycle));
@@ -91,7 +91,7 @@ static int configured(struct dev *d, struct clock *c)
 	return 0;
 }
 
-static int fill(struct dev *d, struct clock *c, const struct slave *s, s32 reference)
+static int fill(struct dev *d, struct clock *c, const struct ect_slave *s, s32 reference)
 {
 	*c = (struct clock){ .s = s, .reference = reference == s->position };
 	if (configured(d, c))
@@ -116,8 +116,8 @@ static int fill(struct dev *d, struct clock *c, const struct slave *s, s32 refer
 
 static void json(const struct clock *c)
 {
-	const struct slave *s = c->s;
-	char name[EC_UAPI_STRING];
+	const struct ect_slave *s = c->s;
+	char name[ECT_STRING];
 
 	slave_name(s, name, sizeof(name));
 	out_u("position", s->position, NULL);
@@ -151,12 +151,13 @@ static void json(const struct clock *c)
 static int registers(struct dev *d, const struct clock *c)
 {
 	u8 diff[4], sync[8], cycle[8];
+	const struct ect_slave *p = c->s;
 
 	if (!c->s->dc_supported || c->s->dc_delay_only)
 		return 0;
-	if (reg_read(d, c->s, EC_REG_DC_DIFF, diff, sizeof(diff)) ||
-	    reg_read(d, c->s, EC_REG_DC_CUC, sync, sizeof(sync)) ||
-	    reg_read(d, c->s, EC_REG_DC_CYCLE0, cycle, sizeof(cycle)))
+	if (reg_read(d, p, EC_REG_DC_DIFF, diff, sizeof(diff)) ||
+	    reg_read(d, p, EC_REG_DC_CUC, sync, sizeof(sync)) ||
+	    reg_read(d, p, EC_REG_DC_CYCLE0, cycle, sizeof(cycle)))
 		return 1;
 	out_object("registers");
 	out_i("difference_ns", ec_dc_diff(get_unaligned_le32(diff)),
@@ -173,7 +174,7 @@ static int registers(struct dev *d, const struct clock *c)
 	return 0;
 }
 
-static void header(struct dev *d, const struct master *m, const struct clock *c, size_t n)
+static void header(struct dev *d, const struct ect_master *m, const struct clock *c, size_t n)
 {
 	const struct clock *worst = NULL;
 
@@ -209,7 +210,7 @@ static void line(char *const cell[], const int *width, const char *name)
 
 static int rows(const struct tool *t, struct dev *d, struct clock *c, size_t n)
 {
-	char name[EC_UAPI_STRING];
+	char name[ECT_STRING];
 	int width[CELLS], ret = 0;
 	char *cell[CELLS];
 
@@ -239,7 +240,7 @@ static int rows(const struct tool *t, struct dev *d, struct clock *c, size_t n)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct master m;
+	struct ect_master m;
 	struct slaves sel;
 	struct clock *c;
 	int ret = 0;

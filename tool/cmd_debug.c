@@ -7,8 +7,7 @@ static u32 level;
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_debug arg = { .level = level };
-	int err = dev_ioctl(d, EC_IOC_DEBUG, &arg);
+	int err = ect_debug(d->h, level);
 
 	(void)t;
 	if (err)
@@ -22,7 +21,7 @@ static int each(const struct tool *t, struct dev *d)
 
 static int show(const struct tool *t, struct dev *d)
 {
-	struct master m;
+	struct ect_master m;
 
 	(void)t;
 	if (dev_master(d, &m))

@@ -16,7 +16,7 @@
 struct history {
 	const struct esi_texts *texts;
 	struct dev *d;
-	const struct slave *s;
+	const struct ect_slave *s;
 	unsigned int max;
 	unsigned int newest;
 	unsigned int ack;
@@ -33,21 +33,17 @@ struct seen {
 
 static int read_sub(struct history *h, u8 sub, size_t *size, u32 *abort)
 {
-	struct ec_ioc_sdo s = {
-		.slave = h->s->slave, .index = EC_DIAG_INDEX, .subindex = sub, .size = ROOM,
-		.data = (uintptr_t)h->buf,
-	};
-	int err = dev_ioctl(h->d, EC_IOC_SDO_UPLOAD, &s);
+	long n = ect_sdo_upload(h->d->h, h->s->device, EC_DIAG_INDEX, sub, 0, 0, h->buf, ROOM);
 
-	*size = err ? 0 : min(s.size, (u32)ROOM);
-	*abort = err ? s.abort_code : 0;
-	return err;
+	*size = n < 0 ? 0 : (size_t)n;
+	*abort = n < 0 ? ect_error_code(h->d->h) : 0;
+	return n < 0 ? (int)n : 0;
 }
 
 static int failed(struct history *h, int err, u32 abort, u8 sub)
 {
 	if (abort)
-		return fail_full(err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:%02x",
+		return fail_full(-err, NULL, abort, "Master%u slave %u: SDO upload 0x%04x:%02x",
 				 h->d->master, h->s->position, EC_DIAG_INDEX, sub);
 	return dev_fail(h->d, err, "Master%u slave %u: SDO upload 0x%04x:%02x", h->d->master,
 			h->s->position, EC_DIAG_INDEX, sub);
@@ -214,7 +210,7 @@ static int finish(const struct tool *t, struct history *h)
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct slave *s, bool several)
+		 const struct ect_slave *s, bool several)
 {
 	struct seen *seen = w->ctx;
 	struct history *h = calloc(1, sizeof(*h));
@@ -255,7 +251,7 @@ static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d
 	return ret;
 }
 
-static bool has_coe(const struct slave *s)
+static bool has_coe(const struct ect_slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
 }

@@ -7,11 +7,11 @@
 
 #define WIRE_NS_PER_BYTE	80	/* at 100 Mbit/s */
 
-static int fmmu(struct dev *d, const struct ec_ioc_domain *dom, unsigned int i, const char *in,
+static int fmmu(struct dev *d, const struct ect_domain *dom, unsigned int i, const char *in,
 		const u8 *data, size_t size)
 {
-	struct ec_ioc_domain_fmmu f = { .index = dom->index, .fmmu = i };
-	int err = dev_ioctl(d, EC_IOC_DOMAIN_FMMU, &f);
+	struct ect_fmmu f = { .struct_size = sizeof(f) };
+	int err = ect_domain_fmmu(d->h, dom->index, i, &f);
 	char indent[16];
 	size_t n;
 
@@ -35,16 +35,16 @@ static int fmmu(struct dev *d, const struct ec_ioc_domain *dom, unsigned int i, 
 }
 
 /* how the application wants it sent, and what became of that */
-static void layout(const struct tool *t, const char *in, const struct ec_ioc_domain *dom)
+static void layout(const struct tool *t, const char *in, const struct ect_domain *dom)
 {
 	static const struct {
-		__u32 bit;
+		u32 bit;
 		const char *key;
 		const char *text;
 	} options[] = {
-		{ EC_DOMAIN_OPT_OVERLAP, "overlap", "overlap" },
-		{ EC_DOMAIN_OPT_SEPARATE, "separate", "separate" },
-		{ EC_DOMAIN_OPT_OWN_FRAME, "own_frame", "own frame" },
+		{ ECT_DOMAIN_OVERLAP, "overlap", "overlap" },
+		{ ECT_DOMAIN_SEPARATE, "separate", "separate" },
+		{ ECT_DOMAIN_OWN_FRAME, "own_frame", "own frame" },
 	};
 	bool text = t->verbosity > 0;
 	const char *sep = ": ";
@@ -72,7 +72,7 @@ static void layout(const struct tool *t, const char *in, const struct ec_ioc_dom
 }
 
 /* A stale domain is marked in any case. */
-static void age(const struct tool *t, const char *in, const struct ec_ioc_domain *dom)
+static void age(const struct tool *t, const char *in, const struct ect_domain *dom)
 {
 	bool stale = dom->max_age && dom->age > dom->max_age;
 
@@ -87,11 +87,11 @@ static void age(const struct tool *t, const char *in, const struct ec_ioc_domain
 	out_text("%s\n", stale ? ": stale" : "");
 }
 
-static int show(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom)
+static int show(const struct tool *t, struct dev *d, const struct ect_domain *dom)
 {
 	/* by wrong working counters of datagrams; an older module does not know that */
 	bool cancelled = dom->working_counter == dom->expected &&
-			 dom->wc_state == EC_STATUS_WC_INCOMPLETE;
+			 dom->wc_state == ECT_WC_INCOMPLETE;
 	const char *in = d->selected > 1 ? "  " : "";
 	u8 *data = NULL;
 	size_t size = 0;

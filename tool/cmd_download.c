@@ -8,7 +8,7 @@
 static int download(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		    const struct ec_type *type, const char *text)
 {
-	struct slave s;
+	struct ect_slave s;
 	u32 abort = 0;
 	size_t size;
 	u8 *data;

@@ -2,7 +2,6 @@
 #include <stdio.h>
 #include <time.h>
 
-#include "../master/wire/emergency.h"
 #include "../master/wire/sii.h"
 #include "dev.h"
 #include "out.h"
@@ -12,10 +11,9 @@ struct found {
 	bool narrowed;		/* by -a or -p */
 };
 
-static void entry(u16 position, const struct ec_emergency *e, u32 profile)
+static void entry(u16 position, const struct ect_emergency *e)
 {
 	const time_t s = (time_t)(e->time_ns / 1000000000);
-	const char *about = ec_emergency_text(e->code, profile);
 	char when[32] = "?";
 	struct tm tm;
 
@@ -30,41 +28,41 @@ static void entry(u16 position, const struct ec_emergency *e, u32 profile)
 		 e->data[4]);
 	if (out_is_json())
 		out_hex("data_hex", e->data, sizeof(e->data), "");
-	out_str("text", about, "  %s\n", about);
+	out_str("text", e->text, "  %s\n", e->text);
 	out_end();
 }
 
-static bool has_coe(const struct slave *s)
+static bool has_coe(const struct ect_slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct slave *s, bool several)
+		 const struct ect_slave *s, bool several)
 {
-	struct ec_emergency last[EC_EMERGENCIES];
-	struct ec_ioc_emergencies i = {
-		.slave = s->slave, .size = sizeof(last), .data = (uintptr_t)last,
-	};
-	int err = dev_ioctl(d, EC_IOC_EMERGENCIES, &i);
-	unsigned int n = (unsigned int)(min((size_t)i.size, sizeof(last)) / sizeof(last[0]));
 	struct found *found = w->ctx;
+	struct ect_list *list;
+	unsigned int n;
+	u32 total;
+	int err = ect_emergencies_read(d->h, s->device, &total, &list);
 
 	(void)t, (void)several;
 	if (err)
 		return dev_fail(d, err, "Master%u slave %u: cannot read the emergencies",
 				d->master, s->position);
+	n = (unsigned int)ect_list_count(list);
 	out_object(NULL);
 	out_u("position", s->position, NULL);
-	out_u("total", i.total, NULL);
-	if (i.total > n)
-		out_text("%4u  the last %u of %u\n", s->position, n, i.total);
+	out_u("total", total, NULL);
+	if (total > n)
+		out_text("%4u  the last %u of %u\n", s->position, n, total);
 	out_array("emergencies");
 	for (unsigned int k = 0; k < n; k++)
-		entry(s->position, &last[k], i.profile);
+		entry(s->position, ect_list_get(list, k));
 	out_end();
 	out_end();
 	found->any |= n;
+	ect_list_free(list);
 	return 0;
 }
 

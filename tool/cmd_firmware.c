@@ -10,7 +10,7 @@
 #include "out.h"
 
 /* Can this slave be updated, now? */
-static int check(const struct tool *t, const struct dev *d, const struct slave *s)
+static int check(const struct tool *t, const struct dev *d, const struct ect_slave *s)
 {
 	u8 state = s->al_status & EC_AL_STATE_MASK;
 
@@ -26,16 +26,16 @@ static int check(const struct tool *t, const struct dev *d, const struct slave *
 	return 0;
 }
 
-static int to_state(const struct tool *t, struct dev *d, const struct slave *of, u8 state)
+static int to_state(const struct tool *t, struct dev *d, const struct ect_slave *of, u8 state)
 {
 	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : AL_WAIT_S);
-	struct slave s;
+	struct ect_slave s = *of;
 
-	return dev_slave_again(d, of, &s) || al_request(d, of, state, 0) ||
+	return dev_slave(d, &s) || al_request(d, of, state, 0) ||
 	       al_wait(d, &s, state, end);
 }
 
-static int to_boot(const struct tool *t, struct dev *d, const struct slave *s)
+static int to_boot(const struct tool *t, struct dev *d, const struct ect_slave *s)
 {
 	if ((s->al_status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_BOOT)
 		return 0;
@@ -45,7 +45,7 @@ static int to_boot(const struct tool *t, struct dev *d, const struct slave *s)
 
 static int update(const struct tool *t, struct dev *d, struct foe *f)
 {
-	struct slave s, now;
+	struct ect_slave s, now;
 	u8 back;
 
 	if (dev_select_single(d, t, &s) || check(t, d, &s))
@@ -59,7 +59,8 @@ static int update(const struct tool *t, struct dev *d, struct foe *f)
 			     s.position, ec_al_state_name(back));
 		return 1;
 	}
-	if (dev_slave_again(d, &s, &now))
+	now = s;
+	if (dev_slave(d, &now))
 		return 1;
 	if (foe_transfer(d, t, &s, f)) {
 		note("Master%u slave %u stays in BOOT; repeat the command", d->master, s.position);

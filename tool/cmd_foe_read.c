@@ -21,7 +21,7 @@ static int save(const char *path, const u8 *data, size_t size)
 
 static int foe_read(const struct tool *t, struct foe *f)
 {
-	struct slave s;
+	struct ect_slave s;
 	struct dev d;
 	int ret;
 

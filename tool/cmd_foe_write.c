@@ -7,7 +7,7 @@
 
 static int foe_write(const struct tool *t, struct foe *f)
 {
-	struct slave s;
+	struct ect_slave s;
 	struct dev d;
 	int ret;
 

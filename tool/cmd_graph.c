@@ -18,7 +18,7 @@ static void quoted(const char *s)
 		out_text(*s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
 }
 
-static void node(const struct slave *s, enum info info)
+static void node(const struct ect_slave *s, enum info info)
 {
 	out_object(NULL);
 	out_u("position", s->position, "\n\tslave%u [", s->position);
@@ -44,15 +44,15 @@ static void node(const struct slave *s, enum info info)
 	out_end();
 }
 
-/* @regs: NULL: not read */
-static void label(const char *attribute, const struct slave *s, unsigned int port,
-		  enum info info, const u8 *regs)
+/* @e: NULL: not read */
+static void label(const char *attribute, const struct ect_slave *s, unsigned int port,
+		  enum info info, const struct ect_errors *e)
 {
 	out_text(", %s=\"%u", attribute, port);
 	if (info == DC && slave_has_dc(s))
 		out_text(" [%u]", s->ports[port].delay_to_next_dc);
-	if (regs)
-		out_text(" [%u/%u]", err_rx(regs, port), err_fwd(regs, port));
+	if (e)
+		out_text(" [%u/%u]", err_rx(e, port), err_fwd(e, port));
 	out_text("\"");
 }
 
@@ -62,13 +62,13 @@ static void medium(unsigned int type)
 		port_type_text(type), type == TYPE_EBUS ? 5u : 1u);
 }
 
-static void edge(const struct slaves *all, const struct slave *s, unsigned int port,
-		 enum info info, const u8 *const *regs)
+static void edge(const struct slaves *all, const struct ect_slave *s, unsigned int port,
+		 enum info info, const struct ect_errors *const *regs)
 {
-	const struct slave *to = &all->v[s->ports[port].next_slave];
+	const struct ect_slave *to = &all->v[s->ports[port].next_slave];
 	unsigned int back;
 
-	for (back = 0; back < EC_UAPI_PORTS && to->ports[back].next_slave != s->position; back++)
+	for (back = 0; back < ECT_PORTS && to->ports[back].next_slave != s->position; back++)
 		;
 	out_object(NULL);
 	out_u("from", s->position, "\tslave%u", s->position);
@@ -76,7 +76,7 @@ static void edge(const struct slaves *all, const struct slave *s, unsigned int p
 	medium(s->ports[port].type);
 	label("taillabel", s, port, info, regs[s->position]);
 	out_u("from_port", port, NULL);
-	if (back < EC_UAPI_PORTS) {
+	if (back < ECT_PORTS) {
 		label("headlabel", to, back, info, regs[to->position]);
 		out_u("to_port", back, NULL);
 	}
@@ -85,15 +85,16 @@ static void edge(const struct slaves *all, const struct slave *s, unsigned int p
 }
 
 /* The open port behind which nobody is; slave 0 is not there if it hangs at a later one. */
-static void to_master(const struct slaves *all, enum info info, const u8 *const *regs)
+static void to_master(const struct slaves *all, enum info info,
+		      const struct ect_errors *const *regs)
 {
 	unsigned int at = 0, port = 0;
 
 	for (size_t i = all->n; i-- > 0;)
-		for (unsigned int p = EC_UAPI_PORTS; p-- > 0;) {
-			const struct ec_ioc_port *x = &all->v[i].ports[p];
+		for (unsigned int p = ECT_PORTS; p-- > 0;) {
+			const struct ect_port *x = &all->v[i].ports[p];
 
-			if (!x->signal || x->loop_closed || x->next_slave != EC_UAPI_NONE16)
+			if (!x->signal || x->loop_closed || x->next_slave != ECT_NONE16)
 				continue;
 			at = i;
 			port = p;
@@ -105,7 +106,7 @@ static void to_master(const struct slaves *all, enum info info, const u8 *const 
 	out_text("]\n");
 }
 
-static void draw(const struct slaves *all, enum info info, const u8 *const *regs)
+static void draw(const struct slaves *all, enum info info, const struct ect_errors *const *regs)
 {
 	out_text("/* ethercat graph | dot -Tsvg > bus.svg */\n\n");
 	out_text("strict graph bus {\n\trankdir=\"LR\"\n\tranksep=0.8\n\tnodesep=0.8\n"
@@ -121,7 +122,7 @@ static void draw(const struct slaves *all, enum info info, const u8 *const *regs
 		to_master(all, info, regs);
 	out_array("links");
 	for (size_t i = 0; i < all->n; i++)
-		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++) {
+		for (unsigned int p = 0; p < ECT_PORTS; p++) {
 			unsigned int next = all->v[i].ports[p].next_slave;
 
 			if (next > i && next < all->n)
@@ -134,8 +135,8 @@ static void draw(const struct slaves *all, enum info info, const u8 *const *regs
 /* One that does not reply is drawn without counters. */
 static int show(struct dev *d, enum info info, bool tree)
 {
-	u8 (*regs)[EC_ERRORS_SIZE];
-	const u8 **counters;
+	struct ect_errors *regs;
+	const struct ect_errors **counters;
 	struct slaves all;
 	int ret = 0;
 
@@ -148,10 +149,10 @@ static int show(struct dev *d, enum info info, bool tree)
 		goto out;
 	}
 	for (size_t i = 0; i < all.n && info == CRC; i++) {
-		if (errors_read(d, &all.v[i], regs[i]))
+		if (errors_read(d, &all.v[i], &regs[i]))
 			ret = 1;
 		else
-			counters[i] = regs[i];
+			counters[i] = &regs[i];
 	}
 	out_u("master", d->master, NULL);
 	if (tree)

@@ -3,31 +3,30 @@
 #include "ip.h"
 #include "out.h"
 
-static int ip(const struct tool *t, struct dev *d, struct ec_ip_params *p)
+static int ip(const struct tool *t, struct dev *d, struct ect_ip *p)
 {
-	struct ec_ioc_ip i = { .params = *p };
-	struct slave s;
+	bool set = p->which;
+	struct ect_slave s;
 	int err;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	i.slave = s.slave;
-	err = dev_ioctl(d, p->which ? EC_IOC_IP_SET : EC_IOC_IP_GET, &i);
+	err = set ? ect_ip_set(d->h, s.device, p) : ect_ip_get(d->h, s.device, p);
 	if (err)
 		return dev_fail(d, err, "Master%u slave %u: cannot %s IP parameters", d->master,
-				s.position, p->which ? "set" : "read");
+				s.position, set ? "set" : "read");
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
-	if (!p->which && !i.params.which)
+	if (!p->which)
 		out_text("None.\n");
-	if (!p->which || out_is_json())
-		ip_out(&i.params, "", true);
+	if (!set || out_is_json())
+		ip_out(p, "", true);
 	return 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	struct ec_ip_params p = { .which = 0 };
+	struct ect_ip p = { .struct_size = sizeof(p) };
 	struct dev d;
 	int ret;
 

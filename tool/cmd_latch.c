@@ -20,7 +20,7 @@ struct latches {
 	u8 times[INPUTS][16];	/* 0x09B0: rising, falling */
 };
 
-static int read_all(struct dev *d, const struct slave *s, struct latches *l)
+static int read_all(struct dev *d, const struct ect_slave *s, struct latches *l)
 {
 	if (reg_read(d, s, EC_REG_DC_CUC, &l->owner, 1) ||
 	    reg_read(d, s, EC_REG_DC_LATCH0_CTRL, l->control, INPUTS) ||
@@ -68,7 +68,7 @@ static void input(const struct latches *l, unsigned int i)
 }
 
 /* The mode of an input that the slave's own CPU has is not ours to change. */
-static int set_mode(struct dev *d, const struct slave *s, const char *mode)
+static int set_mode(struct dev *d, const struct ect_slave *s, const char *mode)
 {
 	const u8 v = !strcmp(mode, "single") ? BOTH : 0;
 	u8 owner;
@@ -84,7 +84,8 @@ static int set_mode(struct dev *d, const struct slave *s, const char *mode)
 			note("slave %u: latch %u is controlled by the slave; mode unchanged",
 			     s->position, i);
 		else
-			ret = reg_write(d, s, (u16)(EC_REG_DC_LATCH0_CTRL + i), &v, 1);
+			ret = reg_write(d, s, (u16)(EC_REG_DC_LATCH0_CTRL + i), &v, 1,
+					false);
 	}
 	return ret;
 }
@@ -92,7 +93,7 @@ static int set_mode(struct dev *d, const struct slave *s, const char *mode)
 static int show(const struct tool *t, struct dev *d, const char *mode)
 {
 	struct latches l = { 0 };
-	struct slave s;
+	struct ect_slave s;
 
 	if (dev_select_single(d, t, &s))
 		return 1;

@@ -6,12 +6,9 @@
 #include <unistd.h>
 
 #include "../master/wire/al.h"
-#include "../master/wire/event.h"
 #include "dev.h"
 #include "out.h"
 #include "sys.h"
-
-#define BATCH	64
 
 static void name_or_null(const char *key, const char *name)
 {
@@ -30,23 +27,23 @@ static const char *stall_key(u32 policy)
 }
 
 /* by the names that the other commands have */
-static void argument(const char *key, enum ec_event_arg type, u32 v)
+static void argument(const char *key, u32 type, u32 v)
 {
 	switch (type) {
-	case EC_ARG_I:
+	case ECT_ARG_SIGNED:
 		out_i(key, (s32)v, NULL);
 		break;
-	case EC_ARG_AL:
+	case ECT_ARG_AL_STATE:
 		name_or_null(key, v ? ec_al_state_name((u8)v) : NULL);
 		break;
-	case EC_ARG_STALL:
+	case ECT_ARG_STALL:
 		name_or_null(key, stall_key(v));
 		break;
-	case EC_ARG_LOCK:
+	case ECT_ARG_LOCK:
 		name_or_null(key, cycle_lock_key(v));
 		break;
-	case EC_ARG_SLAVE:
-		if (v == EC_EVENT_NONE) {
+	case ECT_ARG_SLAVE:
+		if (v == ECT_NONE32) {
 			out_null(key, NULL);
 			break;
 		}
@@ -56,26 +53,27 @@ static void argument(const char *key, enum ec_event_arg type, u32 v)
 	}
 }
 
-static void arguments(const struct ec_event *e, const struct ec_event_kind *k)
+static void arguments(const struct ect_event *e)
 {
-	if (e->kind == EC_EVENT_MISSED) {
-		out_u("count", (u64)e->arg[1] << 32 | e->arg[0], NULL);
+	const char *name;
+	u32 type = 0;
+
+	if (e->kind == ECT_EVENT_MISSED) {
+		out_u("count", e->missed, NULL);
 		return;
 	}
-	for (unsigned int i = 0; k && i < EC_EVENT_ARGS && k->arg[i].name; i++)
-		argument(k->arg[i].name, k->arg[i].type, e->arg[i]);
+	for (unsigned int i = 0; (name = ect_event_arg(e->kind, i, &type)); i++)
+		argument(name, type, e->arg[i]);
 }
 
-static void event(const struct dev *d, bool with_master, const struct ec_event *e)
+static void event(const struct dev *d, bool with_master, const struct ect_event *e)
 {
-	const struct ec_event_kind *k = ec_event_kind(e->kind);
 	const time_t s = (time_t)(e->wall_ns / 1000000000);
-	char when[32] = "?", text[200];
+	char when[32] = "?";
 	struct tm tm;
 
 	if (gmtime_r(&s, &tm))
 		strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", &tm);
-	ec_event_text(e, text, sizeof(text));
 	out_object(NULL);
 	if (with_master)
 		out_u("master", d->master, NULL);
@@ -85,18 +83,18 @@ static void event(const struct dev *d, bool with_master, const struct ec_event *
 	out_u("monotonic_ns", e->time_ns, "  [%6llu.%06llu]",
 	      (unsigned long long)(e->time_ns / 1000000000),
 	      (unsigned long long)(e->time_ns / 1000 % 1000000));
-	out_str("event", k ? k->name : "unknown", NULL);
-	if (e->slave != EC_EVENT_NO_SLAVE)
+	out_str("event", e->name, NULL);
+	if (e->slave != ECT_NONE32)
 		out_u("slave", e->slave, NULL);
-	arguments(e, k);
-	out_str("text", text, "  %s\n", text);
+	arguments(e);
+	out_str("text", e->text, "  %s\n", e->text);
 	out_end();
 }
 
 /* Wait for an event; false: stdout was closed, which no write shows while nothing happens. */
 static bool wait_event(const struct dev *d)
 {
-	struct pollfd p[] = { { .fd = d->fd, .events = POLLIN }, { .fd = STDOUT_FILENO } };
+	struct pollfd p[] = { { .fd = ect_fd(d->h), .events = POLLIN }, { .fd = STDOUT_FILENO } };
 	int n;
 
 	do
@@ -105,56 +103,53 @@ static bool wait_event(const struct dev *d)
 	return n < 0 || !(p[1].revents & POLLERR);
 }
 
-/* read the next events; how many, 0: there will be none, negative: was reported */
-static int more(struct dev *d, struct ec_event *e)
+/* one event up to number @end; false: it is the last */
+static bool shown(const struct dev *d, bool follow, u64 *at, u64 end, const struct ect_event *e)
 {
-	long n;
-
-	do
-		n = sys_read(d->fd, e, BATCH * sizeof(*e));
-	while (n < 0 && errno == EINTR);
-	if (n >= 0)
-		return (int)((size_t)n / sizeof(*e));
-	dev_fail(d, errno, "Master%u: cannot read events", d->master);
-	return -1;
+	if (!follow && *at >= end)
+		return false;
+	event(d, follow, e);
+	*at = e->number + 1;
+	if (e->kind == ECT_EVENT_MISSED)
+		*at += e->missed - 1;
+	return true;
 }
 
 /* events up to number @end, or for ever */
 static int print(struct dev *d, u64 at, u64 end, bool follow)
 {
-	struct ec_event e[BATCH];
-
 	while (follow || at < end) {
-		int n = !follow || wait_event(d) ? more(d, e) : 0;
+		struct ect_list *list;
+		size_t n;
+		int err;
 
-		if (n <= 0)
-			return n < 0;
-		for (int i = 0; i < n && (follow || at < end); i++) {
-			event(d, follow, &e[i]);
-			at = e[i].number + 1;
-			if (e[i].kind == EC_EVENT_MISSED)
-				at += ((u64)e[i].arg[1] << 32 | e[i].arg[0]) - 1;
-		}
+		if (follow && !wait_event(d))
+			return 0;
+		err = ect_events_read(d->h, &list);
+		if (err)
+			return dev_fail(d, err, "Master%u: cannot read events", d->master);
+		n = ect_list_count(list);
+		for (size_t i = 0; i < n && shown(d, follow, &at, end, ect_list_get(list, i)); i++)
+			;
+		ect_list_free(list);
 		/* the end of the command reports why stdout takes no more */
-		if (follow && fflush(stdout))
+		if (!n || (follow && fflush(stdout)))
 			return 0;
 	}
 	return 0;
 }
 
-static int begin(struct dev *d, struct ec_ioc_events *arg)
+static int begin(struct dev *d, u64 *first, u64 *next)
 {
-	int err;
+	int err = ect_events_begin(d->h, 0, first, next);
 
-	*arg = (struct ec_ioc_events){ .size = sizeof(struct ec_event) };
-	err = dev_ioctl(d, EC_IOC_EVENTS, arg);
 	return err ? dev_fail(d, err, "Master%u: cannot read events", d->master) : 0;
 }
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct ec_ioc_events arg;
-	int ret = begin(d, &arg);
+	u64 first, next;
+	int ret = begin(d, &first, &next);
 
 	(void)t;
 	if (ret)
@@ -164,7 +159,7 @@ static int each(const struct tool *t, struct dev *d)
 	out_object(NULL);
 	out_u("master", d->master, NULL);
 	out_array("events");
-	ret = print(d, arg.first, arg.next, false);
+	ret = print(d, first, next, false);
 	out_end();
 	out_end();
 	return ret;
@@ -172,7 +167,7 @@ static int each(const struct tool *t, struct dev *d)
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	struct ec_ioc_events arg;
+	u64 first, next;
 	struct dev d;
 	int ret;
 
@@ -186,7 +181,7 @@ static int run(struct tool *t, int argc, char **argv)
 	ret = dev_open_single(&d, t, false);
 	if (ret)
 		return ret;
-	ret = begin(&d, &arg) ?: print(&d, arg.first, 0, true);
+	ret = begin(&d, &first, &next) ?: print(&d, first, 0, true);
 	dev_close(&d);
 	return ret;
 }

@@ -11,18 +11,18 @@ static void rates(const char *label, const char *key, const double *v, int decim
 {
 	out_array(key);
 	out_text("      %-20s", label);
-	for (int i = 0; i < EC_UAPI_RATES; i++)
+	for (int i = 0; i < ECT_RATES; i++)
 		out_f("", v[i], " %6.*f", decimals, v[i]);
 	out_end();
 	out_text("\n");
 }
 
-static void byte_rates(const char *label, const char *key, const __u32 *bytes)
+static void byte_rates(const char *label, const char *key, const u32 *bytes)
 {
-	double kbyte[EC_UAPI_RATES];
+	double kbyte[ECT_RATES];
 
 	out_array(key);
-	for (int i = 0; i < EC_UAPI_RATES; i++) {
+	for (int i = 0; i < ECT_RATES; i++) {
 		out_u("", bytes[i], NULL);
 		kbyte[i] = bytes[i] / 1024.0;
 	}
@@ -30,22 +30,28 @@ static void byte_rates(const char *label, const char *key, const __u32 *bytes)
 	out_text("      %-20s %6.1f %6.1f %6.1f\n", label, kbyte[0], kbyte[1], kbyte[2]);
 }
 
-static void count_rates(const char *label, const char *key, const __u32 *v)
+static void count_rates(const char *label, const char *key, const u32 *v)
 {
-	double d[EC_UAPI_RATES] = { v[0], v[1], v[2] };
+	double d[ECT_RATES] = { v[0], v[1], v[2] };
 
 	rates(label, key, d, 0);
 }
 
-static void counters(const struct ec_ioc_device *d)
+/* "%llu" is not the format of u64 everywhere */
+static void big(const char *key, const char *fmt, u64 v)
 {
-	out_u("tx_frames", d->tx_frames, "      Tx frames:   %llu\n", d->tx_frames);
-	out_u("tx_bytes", d->tx_bytes, "      Tx bytes:    %llu\n", d->tx_bytes);
-	out_u("rx_frames", d->rx_frames, "      Rx frames:   %llu\n", d->rx_frames);
-	out_u("rx_bytes", d->rx_bytes, "      Rx bytes:    %llu\n", d->rx_bytes);
+	out_u(key, v, fmt, (unsigned long long)v);
 }
 
-static void all_rates(const struct ec_ioc_device *d)
+static void counters(const struct ect_device *d)
+{
+	big("tx_frames", "      Tx frames:   %llu\n", d->tx_frames);
+	big("tx_bytes", "      Tx bytes:    %llu\n", d->tx_bytes);
+	big("rx_frames", "      Rx frames:   %llu\n", d->rx_frames);
+	big("rx_bytes", "      Rx bytes:    %llu\n", d->rx_bytes);
+}
+
+static void all_rates(const struct ect_device *d)
 {
 	count_rates("Tx frame rate [1/s]:", "tx_frames_per_s", d->tx_frame_rate);
 	byte_rates("Tx rate [KByte/s]:", "tx_bytes_per_s", d->tx_byte_rate);
@@ -53,10 +59,10 @@ static void all_rates(const struct ec_ioc_device *d)
 	byte_rates("Rx rate [KByte/s]:", "rx_bytes_per_s", d->rx_byte_rate);
 }
 
-static void device(const char *label, const struct ec_ioc_device *d)
+static void device(const char *label, const struct ect_device *d)
 {
-	const __u8 *a = d->address;
-	bool attached = d->state == EC_DEVICE_ATTACHED;
+	const u8 *a = d->address;
+	bool attached = d->attached;
 	char mac[18];
 
 	snprintf(mac, sizeof(mac), "%02x:%02x:%02x:%02x:%02x:%02x", a[0], a[1], a[2], a[3], a[4],
@@ -68,7 +74,7 @@ static void device(const char *label, const struct ec_ioc_device *d)
 	out_str("interface", d->name, NULL);
 	out_bool("link_up", d->link_up, "      Link: %s\n", d->link_up ? "UP" : "DOWN");
 	counters(d);
-	out_u("tx_errors", d->tx_errors, "      Tx errors:   %llu\n", d->tx_errors);
+	big("tx_errors", "      Tx errors:   %llu\n", d->tx_errors);
 	all_rates(d);
 	out_u("slaves_responding", d->slaves, NULL);
 	out_u("lost_frames", d->lost, NULL);
@@ -78,7 +84,7 @@ static void device(const char *label, const struct ec_ioc_device *d)
 	out_end();
 }
 
-static void sum(struct ec_ioc_device *c, const struct ec_ioc_device *d)
+static void sum(struct ect_device *c, const struct ect_device *d)
 {
 	c->tx_frames += d->tx_frames;
 	c->tx_bytes += d->tx_bytes;
@@ -88,7 +94,7 @@ static void sum(struct ec_ioc_device *c, const struct ec_ioc_device *d)
 	c->late += d->late;
 	c->unmatched += d->unmatched;
 	c->foreign += d->foreign;
-	for (int i = 0; i < EC_UAPI_RATES; i++) {
+	for (int i = 0; i < ECT_RATES; i++) {
 		c->tx_frame_rate[i] += d->tx_frame_rate[i];
 		c->rx_frame_rate[i] += d->rx_frame_rate[i];
 		c->tx_byte_rate[i] += d->tx_byte_rate[i];
@@ -97,19 +103,20 @@ static void sum(struct ec_ioc_device *c, const struct ec_ioc_device *d)
 	}
 }
 
-static void common(const struct master *m)
+static void common(const struct ect_list *devices)
 {
-	struct ec_ioc_device c = { 0 };
-	double loss[EC_UAPI_RATES];
+	struct ect_device c = { 0 };
+	const struct ect_device *d;
+	double loss[ECT_RATES];
 
-	for (unsigned int i = 0; i < m->device_count; i++)
-		sum(&c, &m->devices[i]);
-	for (int i = 0; i < EC_UAPI_RATES; i++)
+	for (size_t i = 0; (d = ect_list_get(devices, i)); i++)
+		sum(&c, d);
+	for (int i = 0; i < ECT_RATES; i++)
 		loss[i] = c.tx_frame_rate[i] ? 100.0 * c.loss_rate[i] / c.tx_frame_rate[i] : 0;
 	out_object("common");
 	out_text("    Common:\n");
 	counters(&c);
-	out_u("lost_frames", c.lost, "      Lost frames: %llu\n", c.lost);
+	big("lost_frames", "      Lost frames: %llu\n", c.lost);
 	all_rates(&c);
 	count_rates("Loss rate [1/s]:", "lost_frames_per_s", c.loss_rate);
 	rates("Frame loss [%]:", "frame_loss_percent", loss, 1);
@@ -117,7 +124,7 @@ static void common(const struct master *m)
 }
 
 /* a cycle of the kernel that is synchronized to the reference clock */
-static void lock(const struct master *m)
+static void lock(const struct ect_master *m)
 {
 	static const char *const text[] = { "", "seeking", "locked", "holdover" };
 	const char *key = cycle_lock_key(m->cycle_lock);
@@ -133,7 +140,7 @@ static void lock(const struct master *m)
 	out_u("lock_losses", m->lock_losses, "lock losses %u\n", m->lock_losses);
 }
 
-static void clocks(const struct master *m)
+static void clocks(const struct ect_master *m)
 {
 	time_t s = (time_t)(m->app_time / 1000000000) + EPOCH_2000;
 	char text[32];
@@ -147,15 +154,16 @@ static void clocks(const struct master *m)
 	else
 		out_null("reference_clock", "    Reference clock:   None\n");
 	lock(m);
-	out_u("reference_time_ns", m->dc_ref_time, "    DC reference time: %llu\n", m->dc_ref_time);
-	out_u("application_time_ns", m->app_time, "    Application time:  %llu\n", m->app_time);
+	big("reference_time_ns", "    DC reference time: %llu\n", m->dc_ref_time);
+	big("application_time_ns", "    Application time:  %llu\n", m->app_time);
 	if (gmtime_r(&s, &tm) && strftime(text, sizeof(text), "%Y-%m-%d %H:%M:%S", &tm))
-		out_text("                       %s.%09llu\n", text, m->app_time % 1000000000);
+		out_text("                       %s.%09llu\n", text,
+			 (unsigned long long)m->app_time % 1000000000);
 	out_end();
 }
 
 /* Frames of the active application, and how long they occupy the wire. */
-static void cycle(const struct tool *t, const struct master *m)
+static void cycle(const struct tool *t, const struct ect_master *m)
 {
 	out_object("cycle");
 	out_u("interval_us", m->cycle_interval_us, NULL);
@@ -190,13 +198,36 @@ static const char *phase_text(unsigned int phase)
 	return phase < ARRAY_SIZE(text) ? text[phase] : "???";
 }
 
+/* --verbose */
+static void more(struct dev *d, const struct ect_master *m, const struct ect_list *devices)
+{
+	const struct ect_device *one;
+
+	out_text("  Module: %s, interface version %u\n", ect_version(d->h)->release,
+		 ect_version(d->h)->interface);
+	out_text("  Slaves responding: %u\n", m->slaves_responding);
+	out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m->scan_count,
+		 m->scan_busy ? "running" : "finished", m->scan_us,
+		 (unsigned long long)m->scan_frames);
+	for (size_t i = 0; (one = ect_list_get(devices, i)); i++)
+		out_text("  Late frames, %s device: %llu\n", i ? "backup" : "main",
+			 (unsigned long long)one->late);
+	out_text("  Acyclic frames of a send: at most %u (module parameter max_acyclic)\n",
+		 m->acyclic_max);
+	out_text("  EEPROM images in memory: %llu bytes, limit %u\n",
+		 (unsigned long long)m->sii_bytes, m->sii_limit);
+	out_text("  Debug level: %u\n", m->debug_level);
+}
+
 static int show(const struct tool *t, struct dev *d)
 {
 	static const char *const phase_key[] = { "waiting", "idle", "operation" };
 	static const char *const session_key[] = { "none", "reserved", "active", "detached" };
-	struct master m;
+	const struct ect_device *one;
+	struct ect_list *devices;
+	struct ect_master m;
 
-	if (dev_master(d, &m))
+	if (dev_master(d, &m) || dev_devices(d, &devices))
 		return 1;
 	out_object(NULL);
 	out_u("master", d->master, "Master%u\n", d->master);
@@ -205,15 +236,15 @@ static int show(const struct tool *t, struct dev *d)
 	out_bool("active", m.active, "  Active: %s\n", m.active ? "yes" : "no");
 	out_str("session", m.session < ARRAY_SIZE(session_key) ? session_key[m.session] : "unknown",
 		NULL);
-	if (m.session == EC_SESSION_DETACHED)
+	if (m.session == ECT_SESSION_DETACHED)
 		out_text("  Session: detached, without application\n");
 	out_u("slaves", m.slave_count, "  Slaves: %u\n", m.slave_count);
 	out_text("  Ethernet devices:\n");
 	out_array("devices");
-	for (unsigned int i = 0; i < m.device_count; i++)
-		device(i ? "Backup" : "Main", &m.devices[i]);
+	for (size_t i = 0; (one = ect_list_get(devices, i)); i++)
+		device(i ? "Backup" : "Main", one);
 	out_end();
-	common(&m);
+	common(devices);
 	out_u("frames_not_captured", m.not_captured, NULL);
 	if (m.not_captured)
 		out_text("    Frames not captured: %u\n", m.not_captured);
@@ -235,22 +266,10 @@ static int show(const struct tool *t, struct dev *d)
 	out_u("debug_level", m.debug_level, NULL);
 	out_u("configs", m.config_count, NULL);
 	out_u("domains", m.domain_count, NULL);
-	out_str("module_release", d->version.release, NULL);
-	if (t->verbosity > 0) {
-		out_text("  Module: %s, interface version %u\n", d->version.release,
-			 d->version.abi);
-		out_text("  Slaves responding: %u\n", m.slaves_responding);
-		out_text("  Bus scan: number %u, %s, %u us, %llu frames\n", m.scan_count,
-			 m.scan_busy ? "running" : "finished", m.scan_us, m.scan_frames);
-		for (unsigned int i = 0; i < m.device_count; i++)
-			out_text("  Late frames, %s device: %llu\n", i ? "backup" : "main",
-				 m.devices[i].late);
-		out_text("  Acyclic frames of a send: at most %u (module parameter max_acyclic)\n",
-			 m.acyclic_max);
-		out_text("  EEPROM images in memory: %llu bytes, limit %u\n", m.sii_bytes,
-			 m.sii_limit);
-		out_text("  Debug level: %u\n", m.debug_level);
-	}
+	out_str("module_release", ect_version(d->h)->release, NULL);
+	if (t->verbosity > 0)
+		more(d, &m, devices);
+	ect_list_free(devices);
 	out_end();
 	return 0;
 }

@@ -5,7 +5,7 @@
 #include "out.h"
 #include "pdos_coe.h"
 
-static void entry(const struct ec_ioc_pdo_entry *e)
+static void entry(const struct ect_pdo_entry *e)
 {
 	out_object(NULL);
 	out_u("index", e->index, "    PDO entry 0x%04x", e->index);
@@ -58,7 +58,7 @@ static void matlab_ports(const struct layout *l, bool output)
 
 		for (unsigned int k = 0; k < s->sm.pdo_count && layout_is_output(s) == output; k++)
 			for (unsigned int e = 0; e < s->pdos[k].pdo.entry_count; e++) {
-				const struct ec_ioc_pdo_entry *x = &s->pdos[k].entries[e];
+				const struct ect_pdo_entry *x = &s->pdos[k].entries[e];
 				const char *kind = output ? "input" : "output";
 
 				if (!x->index)
@@ -88,7 +88,7 @@ static void matlab_sm(const struct layout_sm *s)
 	out_text("        }}, ...\n");
 }
 
-static void matlab(const struct dev *d, const struct slave *s, const struct layout *l)
+static void matlab(const struct dev *d, const struct ect_slave *s, const struct layout *l)
 {
 	out_text("%%\n%% Master %u, Slave %u", d->master, s->position);
 	if (*s->order)
@@ -109,7 +109,7 @@ static void matlab(const struct dev *d, const struct slave *s, const struct layo
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct slave *s, bool several)
+		 const struct ect_slave *s, bool several)
 {
 	bool etherlab = t->skin && !strcmp(t->skin, "etherlab") && !out_is_json();
 	struct layout l;

@@ -8,7 +8,7 @@
 static int exchange(const struct tool *t, u16 address, const struct ec_type *type, u8 *data,
 		    size_t size)
 {
-	struct slave s;
+	struct ect_slave s;
 	struct dev d;
 	int ret;
 

@@ -8,7 +8,7 @@
 static int show(const struct tool *t, struct dev *d, u16 address, size_t size,
 		const struct ec_type *type)
 {
-	struct slave s;
+	struct ect_slave s;
 	u8 *data;
 	int ret;
 

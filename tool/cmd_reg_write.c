@@ -8,23 +8,23 @@
 #include "out.h"
 #include "reg.h"
 
-/* the slave in @s; with --emergency only its position */
-static int find(const struct tool *t, struct dev *d, struct slave *s)
+static int position(const struct tool *t, struct dev *d, struct ect_slave *s)
 {
 	unsigned int v;
 
-	if (!t->emergency)
-		return dev_select_single(d, t, s);
-	if (!list_single(&t->positions, &v) || v > 0xffff || t->aliases.given)
-		return usage_error("--emergency needs one ring position with -p and no -a");
-	s->position = (u16)v;
-	return 0;
+	if (t->emergency) {
+		if (!list_single(&t->positions, &v) || v > 0xffff || t->aliases.given)
+			return usage_error("--emergency needs one ring position with -p and no -a");
+		*s = (struct ect_slave){ .position = (u16)v };
+		return 0;
+	}
+	return dev_select_single(d, t, s);
 }
 
 static int put(const struct tool *t, u16 address, const u8 *data, size_t size)
 {
+	struct ect_slave s;
 	struct dev d;
-	struct slave s;
 	int ret;
 
 	if (address + size > REG_SPACE)
@@ -32,9 +32,7 @@ static int put(const struct tool *t, u16 address, const u8 *data, size_t size)
 				   size, address);
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = find(t, &d, &s) ||
-	      (t->emergency ? reg_write_emergency(&d, s.position, address, data, size) :
-			      reg_write(&d, &s, address, data, size));
+	ret = position(t, &d, &s) || reg_write(&d, &s, address, data, size, t->emergency);
 	if (!ret) {
 		out_u("master", d.master, NULL);
 		out_u("slave", s.position, NULL);

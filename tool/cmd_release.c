@@ -10,7 +10,7 @@ static int run(struct tool *t, int argc, char **argv)
 	(void)argc, (void)argv;
 	if (dev_open_single(&d, t, true))
 		return 1;
-	err = dev_ioctl(&d, EC_IOC_END_DETACHED, NULL);
+	err = ect_end_detached(d.h);
 	if (err)
 		dev_fail(&d, err, "Master%u: cannot end the session", d.master);
 	else

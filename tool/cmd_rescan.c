@@ -8,7 +8,7 @@
 static int wait_scan(const struct tool *t, struct dev *d, u32 before)
 {
 	double limit = t->wait_s >= 0 ? t->wait_s : WAIT_S, end = now_s() + limit;
-	struct master m;
+	struct ect_master m;
 
 	for (;;) {
 		if (dev_master(d, &m))
@@ -24,17 +24,16 @@ static int wait_scan(const struct tool *t, struct dev *d, u32 before)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct master m;
+	struct ect_master m;
 	char why[160];
 	int err;
 
-	if (dev_master(d, &m))
-		return 1;
 	/* without a link nothing is sent, so nothing would be done */
-	dev_why_empty(&m, why, sizeof(why));
+	if (dev_master(d, &m) || dev_why_empty(d, &m, why, sizeof(why)))
+		return 1;
 	if (*why && !m.scan_busy)
 		return fail("Master%u: cannot scan the bus: %s", d->master, why);
-	err = dev_ioctl(d, EC_IOC_RESCAN, NULL);
+	err = ect_rescan(d->h);
 	if (err)
 		return dev_fail(d, err, "Master%u: cannot scan the bus", d->master);
 	out_object(NULL);

@@ -17,23 +17,24 @@ static void value(const struct dict_entry *e)
 	} else if (v->data) {
 		out_text(", ");
 		out_object("value");
-		dict_value_out(e->type, v->data, v->size);
+		dict_value_out(e->d.type, v->data, v->size);
 		out_end();
 	}
 	out_text("\n");
 }
 
-static void limit(const char *name, const char **before, const struct dict_entry *e, const u8 *from)
+static void limit(const char *name, const char **before, const struct dict_entry *e, u32 which,
+		  const u8 *from)
 {
 	u8 data[8 + 1];
 
 	/* larger ones are texts, whose default is not worth a line */
-	if (!from || e->limits.size > 8)
+	if (!(e->d.values & which) || e->d.value_size > 8)
 		return;
-	memcpy(data, from, e->limits.size);
+	memcpy(data, from, e->d.value_size);
 	out_text("%s%s ", *before, name);
 	out_object(name);
-	dict_value_out(e->type, data, e->limits.size);
+	dict_value_out(e->d.type, data, e->d.value_size);
 	out_end();
 	*before = ", ";
 }
@@ -43,12 +44,12 @@ static void limits(const struct dict_entry *e)
 {
 	const char *before = "    ";
 
-	limit("default", &before, e, e->limits.def);
-	limit("minimum", &before, e, e->limits.min);
-	limit("maximum", &before, e, e->limits.max);
-	if (e->limits.info & EC_OD_INFO_UNIT) {
-		out_u("unit", e->limits.unit, "%sunit 0x%0*x", before, 2 * e->limits.unit_size,
-		      e->limits.unit);
+	limit("default", &before, e, ECT_VALUE_DEFAULT, e->d.initial);
+	limit("minimum", &before, e, ECT_VALUE_MIN, e->d.minimum);
+	limit("maximum", &before, e, ECT_VALUE_MAX, e->d.maximum);
+	if (e->d.values & ECT_VALUE_UNIT) {
+		out_u("unit", e->d.unit, "%sunit 0x%0*x", before, 2 * e->d.unit_size,
+		      e->d.unit);
 		before = ", ";
 	}
 	if (*before == ',')
@@ -60,21 +61,21 @@ static void entry(const struct dict_reader *r, const struct dict_entry *e)
 	char access[7], type[32];
 
 	(void)r;
-	dict_access_text(e->access, access);
-	dict_type_text(e->type, type, sizeof(type));
+	dict_access_text(e->d.access, access);
+	dict_type_text(e->d.type, type, sizeof(type));
 	out_object(NULL);
-	out_u("subindex", e->sub, "  0x%04x:%02x, ", e->index, e->sub);
+	out_u("subindex", e->d.subindex, "  0x%04x:%02x, ", e->d.index, e->d.subindex);
 	out_str("access", access, "%s, ", access);
 	out_str("type", type, "%s, ", type);
-	out_u("type_code", e->type, NULL);
-	out_u("size_bits", e->bits, "%u bit, ", e->bits);
-	out_str("name", e->name, "\"%s\"", e->name);
+	out_u("type_code", e->d.type, NULL);
+	out_u("size_bits", e->d.bits, "%u bit, ", e->d.bits);
+	out_str("name", e->d.name, "\"%s\"", e->d.name);
 	value(e);
 	limits(e);
 	out_end();
 }
 
-static void object(const struct dict_reader *r, const struct dict_object *o)
+static void object(const struct dict_reader *r, const struct ect_object *o)
 {
 	(void)r;
 	out_object(NULL);
@@ -82,7 +83,7 @@ static void object(const struct dict_reader *r, const struct dict_object *o)
 	out_str("name", o->name, "\"%s\"\n", o->name);
 	out_u("object_code", o->code, NULL);
 	out_u("type_code", o->type, NULL);
-	out_u("max_subindex", o->max_sub, NULL);
+	out_u("max_subindex", o->max_subindex, NULL);
 	if (r->entries)
 		out_array("entries");
 }
@@ -95,7 +96,7 @@ static void object_end(const struct dict_reader *r)
 }
 
 static int slave(const struct slave_walk *w, const struct tool *t, struct dev *d,
-		 const struct slave *s, bool several)
+		 const struct ect_slave *s, bool several)
 {
 	const struct dict_reader r = {
 		.entries = t->verbosity >= 0, .values = t->verbosity > 0,

@@ -84,7 +84,7 @@ static void show(const struct tool *t, const u8 *img, size_t size)
 
 static int run(struct tool *t, int argc, char **argv)
 {
-	struct slave s;
+	struct ect_slave s;
 	struct dev d;
 	size_t size;
 	u8 *img = NULL;

@@ -17,9 +17,9 @@ static int digits(unsigned int v)
 	return snprintf(NULL, 0, "%u", v);
 }
 
-static void row(const struct slave *s, const char *indent, const int *w)
+static void row(const struct ect_slave *s, const char *indent, const int *w)
 {
-	char state[16], name[EC_UAPI_STRING];
+	char state[16], name[ECT_STRING];
 
 	slave_state_text(s, state, sizeof(state));
 	slave_name(s, name, sizeof(name));
@@ -28,7 +28,7 @@ static void row(const struct slave *s, const char *indent, const int *w)
 }
 
 /* ring order, each slave once; the link to the next one may be cut */
-static void table(const struct slave *s, size_t n, const char *indent)
+static void table(const struct ect_slave *s, size_t n, const char *indent)
 {
 	int w[4] = { 0 };
 	char state[16];
@@ -49,7 +49,7 @@ static void table(const struct slave *s, size_t n, const char *indent)
 
 static int by_position(const void *a, const void *b)
 {
-	const struct slave *x = a, *y = b;
+	const struct ect_slave *x = a, *y = b;
 
 	return (x->position > y->position) - (x->position < y->position);
 }
@@ -66,7 +66,7 @@ static size_t sort_once(struct slaves *s)
 }
 
 /* on stderr: what makes the list another one than the bus */
-static void remark(const struct dev *d, const struct master *m)
+static void remark(struct dev *d, const struct ect_master *m)
 {
 	char why[160] = "";
 
@@ -77,7 +77,8 @@ static void remark(const struct dev *d, const struct master *m)
 		note("Master%u: the list of slaves is held until %s activates or releases the master%s",
 		     d->master, *m->owner ? m->owner : "the application", why);
 
-	dev_why_empty(m, why, sizeof(why));
+	if (dev_why_empty(d, m, why, sizeof(why)))
+		return;
 	if (m->scan_busy)
 		note("Master%u: a bus scan is running, the list may be incomplete (see --wait)",
 		     d->master);
@@ -91,10 +92,10 @@ static void missing(struct dev *d, unsigned int configs)
 	unsigned int n = 0;
 
 	for (unsigned int i = 0; i < configs; i++) {
-		struct ec_ioc_config c = { .index = i };
-		char why[EC_UAPI_REASON];
+		struct ect_config c = { .struct_size = sizeof(c) };
+		char why[ECT_TEXT];
 
-		if (dev_ioctl(d, EC_IOC_CONFIG, &c))
+		if (ect_config_read(d->h, i, &c))
 			break;	/* the application has gone meanwhile */
 		if (c.slave_position >= 0 || n++ >= MISSING_LINES)
 			continue;
@@ -110,15 +111,14 @@ static void missing(struct dev *d, unsigned int configs)
 static int wait_first(struct dev *d)
 {
 	double end = now_s() + FIRST_S;
-	struct master m;
+	struct ect_master m;
 	char why[160];
 
 	if (out_is_json() || !isatty(STDOUT_FILENO))
 		return 0;
 	for (;;) {
-		if (dev_master(d, &m))
+		if (dev_master(d, &m) || dev_why_empty(d, &m, why, sizeof(why)))
 			return 1;
-		dev_why_empty(&m, why, sizeof(why));
 		if (m.scan_count || (*why && !m.scan_busy) || now_s() >= end)
 			return 0;
 		sleep_ms(20);
@@ -127,7 +127,7 @@ static int wait_first(struct dev *d)
 
 static int each(const struct tool *t, struct dev *d)
 {
-	struct master m;
+	struct ect_master m;
 	struct slaves sel;
 
 	if (!t->wait && wait_first(d))

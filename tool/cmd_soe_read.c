@@ -7,30 +7,24 @@ static int soe_read(const struct tool *t, struct dev *d, const struct soe_addr *
 		    const struct ec_type *type)
 {
 	static u8 data[65536];
-	struct ec_ioc_soe soe = {
-		.idn = a->idn, .drive = a->drive, .size = sizeof(data), .data = (uintptr_t)data,
-		.timeout_ms = t->timeout_ms,
-	};
-	struct slave s;
+	struct ect_slave s;
 	const u8 *from = data;
-	int err;
+	long n;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	soe.slave = s.slave;
-	err = dev_ioctl(d, EC_IOC_SOE_READ, &soe);
-	if (err)
-		return soe_failed(d, err, &s, soe.error_code, a, "read");
-	soe.size = min(soe.size, (u32)sizeof(data));
+	n = ect_soe_read(d->h, s.device, a->drive, a->idn, t->timeout_ms, data, sizeof(data));
+	if (n < 0)
+		return soe_failed(d, (int)n, &s, a, "read");
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
 	soe_addr_out(a);
 	/* a text is a list: length and largest length, then the characters */
-	if (value_is_text(type) && soe.size >= 4 && get_unaligned_le16(data) == soe.size - 4) {
+	if (value_is_text(type) && n >= 4 && get_unaligned_le16(data) == n - 4) {
 		from += 4;
-		soe.size -= 4;
+		n -= 4;
 	}
-	return io_print(type, from, soe.size);
+	return io_print(type, from, (size_t)n);
 }
 
 static int run(struct tool *t, int argc, char **argv)

@@ -28,19 +28,14 @@ static int as_list(u8 **data, size_t *size)
 static int soe_write(const struct tool *t, struct dev *d, const struct soe_addr *a, u8 *data,
 		     size_t size)
 {
-	struct ec_ioc_soe soe = {
-		.idn = a->idn, .drive = a->drive, .size = (u32)size, .data = (uintptr_t)data,
-		.timeout_ms = t->timeout_ms,
-	};
-	struct slave s;
+	struct ect_slave s;
 	int err;
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	soe.slave = s.slave;
-	err = dev_ioctl(d, EC_IOC_SOE_WRITE, &soe);
+	err = ect_soe_write(d->h, s.device, a->drive, a->idn, t->timeout_ms, data, size);
 	if (err)
-		return soe_failed(d, err, &s, soe.error_code, a, "write");
+		return soe_failed(d, err, &s, a, "write");
 	out_u("master", d->master, NULL);
 	out_u("slave", s.position, NULL);
 	soe_addr_out(a);

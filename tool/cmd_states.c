@@ -34,7 +34,7 @@ static void measure(const struct slaves *s, int *w)
 	}
 }
 
-static void show_slave(const struct slave *s, const char *indent, const int *w)
+static void show_slave(const struct ect_slave *s, const char *indent, const int *w)
 {
 	char state[16], why[400];
 
@@ -79,7 +79,7 @@ static int each(const struct tool *t, struct dev *d)
 	measure(&sel, w);
 	for (size_t i = 0; i < sel.n; i++)
 		if (!wanted || (t->wait && out_is_json() &&
-				!dev_slave_again(d, &sel.v[i], &sel.v[i])))
+				!dev_slave(d, &sel.v[i])))
 			show_slave(&sel.v[i], d->selected > 1 ? "  " : "", w);
 	out_end();
 	out_end();

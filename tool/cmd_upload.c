@@ -29,7 +29,7 @@ static const struct ec_type *guess(const struct sdo_addr *a, size_t size)
 }
 
 /* NULL where the dictionary contradicts the data */
-static const struct ec_type *described(struct dev *d, const struct slave *s,
+static const struct ec_type *described(struct dev *d, const struct ect_slave *s,
 				       const struct sdo_addr *a, u32 timeout_ms, size_t size)
 {
 	u32 abort;
@@ -41,7 +41,7 @@ static const struct ec_type *described(struct dev *d, const struct slave *s,
 static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 		  const struct ec_type *type)
 {
-	struct slave s;
+	struct ect_slave s;
 	size_t size;
 	u8 *data;
 	int ret;

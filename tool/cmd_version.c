@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <string.h>
 
+#include "../include/ethercat-tools.h"
 #include "out.h"
 #include "tool.h"
 
@@ -17,7 +18,7 @@ static int run(struct tool *t, int argc, char **argv)
 	out_str("name", "EtherCAT master", "EtherCAT master ");
 	out_str("version", EC_TOOL_VERSION, both ? "%s " : NULL, EC_TOOL_VERSION);
 	out_str("revision", EC_TOOL_REVISION, "%s\n", EC_TOOL_REVISION);
-	out_u("abi", EC_UAPI_VERSION, NULL);
+	out_u("abi", ect_interface(), NULL);
 	return 0;
 }
 

@@ -3,10 +3,19 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "dev.h"
 #include "out.h"
-#include "why.h"
 
 #define S(n)	((n) == 1 ? "" : "s")
+
+/* all that was found on a master */
+struct report {
+	const struct dev *d;
+	struct ect_why *why;
+	const struct ect_list *findings;
+	const struct ect_list *configs;
+	const struct ect_checked *checked;
+};
 
 /* what -a, -p or SLAVE leave; nothing given: everything */
 struct chosen {
@@ -23,49 +32,70 @@ static bool is_chosen(const struct chosen *c, int slave)
 	return false;
 }
 
-static bool config_chosen(const struct chosen *c, const struct why_config *config)
+static bool config_chosen(const struct chosen *c, const struct ect_explained *e)
 {
-	if (config->c.slave_position >= 0)
-		return is_chosen(c, config->c.slave_position);
-	return select_config(&c->t->aliases, &c->t->positions, &config->c);
+	if (e->config.slave_position >= 0)
+		return is_chosen(c, e->config.slave_position);
+	return select_config(&c->t->aliases, &c->t->positions, &e->config);
+}
+
+static const struct ect_finding *finding(const struct report *r, size_t i)
+{
+	return ect_list_get(r->findings, i);
+}
+
+static const struct ect_explained *config(const struct report *r, size_t i)
+{
+	return ect_list_get(r->configs, i);
 }
 
 /* A finding without a place concerns everything. */
-static bool shown(const struct why *w, const struct chosen *c, size_t i)
+static bool shown(const struct report *r, const struct chosen *c, size_t i)
 {
-	const struct why_finding *f = &w->f[i];
+	const struct ect_finding *f = finding(r, i);
+	const struct ect_explained *e;
 
-	if (c->all || (f->slave == WHY_NONE && f->config == WHY_NONE))
+	if (c->all || (f->slave == ECT_NONE && f->config == ECT_NONE))
 		return true;
 	if (is_chosen(c, f->slave))
 		return true;
-	if (f->config != WHY_NONE && config_chosen(c, &w->configs[f->config]))
+	if (f->config != ECT_NONE && config_chosen(c, config(r, (size_t)f->config)))
 		return true;
-	for (size_t k = 0; k < w->n_configs; k++)
-		if (w->configs[k].finding == i + 1 && config_chosen(c, &w->configs[k]))
+	for (size_t k = 0; (e = config(r, k)); k++)
+		if (e->finding == i + 1 && config_chosen(c, e))
 			return true;
 	return false;
 }
 
-static void config_text(const struct why_config *c, char *buf, size_t size)
+static void config_text(const struct ect_explained *e, char *buf, size_t size)
 {
-	snprintf(buf, size, "%u:%u", c->c.alias, c->c.position);
+	snprintf(buf, size, "%u:%u", e->config.alias, e->config.position);
+}
+
+/* with its order number */
+static void place_text(const struct report *r, int slave)
+{
+	const struct ect_slave *s = ect_list_get(ect_why_slaves(r->why), (size_t)slave);
+
+	out_text("  Place: slave %d", slave);
+	if (s && s->order[0])
+		out_text(" (%s)", s->order);
 }
 
 static void number_or_null(const char *key, int v)
 {
-	if (v == WHY_NONE)
+	if (v == ECT_NONE)
 		out_null(key, NULL);
 	else
 		out_u(key, (unsigned int)v, NULL);
 }
 
-static void place(const struct why *w, const struct why_finding *f)
+static void place(const struct report *r, const struct ect_finding *f)
 {
-	char text[16] = "", name[96];
+	char text[16] = "";
 
-	if (f->config != WHY_NONE)
-		config_text(&w->configs[f->config], text, sizeof(text));
+	if (f->config != ECT_NONE)
+		config_text(config(r, (size_t)f->config), text, sizeof(text));
 	number_or_null("slave", f->slave);
 	number_or_null("port", f->port);
 	number_or_null("domain", f->domain);
@@ -73,30 +103,30 @@ static void place(const struct why *w, const struct why_finding *f)
 		out_str("config", text, NULL);
 	else
 		out_null("config", NULL);
-	if (f->slave != WHY_NONE)
-		out_text("  Place: %s", why_slave_name(w, (unsigned int)f->slave, name,
-						       sizeof(name)));
-	if (f->slave != WHY_NONE && f->port != WHY_NONE)
+	if (f->slave != ECT_NONE)
+		place_text(r, f->slave);
+	if (f->slave != ECT_NONE && f->port != ECT_NONE)
 		out_text(", port %d", f->port);
 	if (text[0])
-		out_text("%sconfiguration %s", f->slave != WHY_NONE ? ", " : "  Place: ", text);
-	if (f->slave != WHY_NONE || text[0])
+		out_text("%sconfiguration %s", f->slave != ECT_NONE ? ", " : "  Place: ", text);
+	if (f->slave != ECT_NONE || text[0])
 		out_text("\n");
 }
 
 /* slaves that do not reach OP because of the finding, without the one that it is about */
-static void affected(const struct why *w, size_t i)
+static void affected(const struct report *r, size_t i)
 {
 	const char *sep = "  Affected: ";
+	const struct ect_explained *e;
 	char text[16];
 
 	out_array("affected");
-	for (size_t k = 0; k < w->n_configs; k++) {
-		if (w->configs[k].finding != i + 1)
+	for (size_t k = 0; (e = config(r, k)); k++) {
+		if (e->finding != i + 1)
 			continue;
-		config_text(&w->configs[k], text, sizeof(text));
+		config_text(e, text, sizeof(text));
 		out_str("", text, NULL);
-		if (w->f[i].config == (int)k)
+		if (finding(r, i)->config == (int)k)
 			continue;
 		out_text("%s%s", sep, text);
 		sep = ", ";
@@ -107,42 +137,37 @@ static void affected(const struct why *w, size_t i)
 }
 
 /* in the order in which they are shown: faults first, as they explain more */
-enum level { FAULT, WAIT, WARNING, LEVELS };
+#define LEVELS	(ECT_WARNING + 1)
 
-static const char *const level_keys[] = { "fault", "under_way", "warning" };
-static const char *const level_names[] = { "Fault", "Under way", "Warning" };
+static const char *const level_keys[LEVELS] = { "fault", "under_way", "warning" };
+static const char *const level_names[LEVELS] = { "Fault", "Under way", "Warning" };
 
-static enum level level_of(const struct why_finding *f)
+static void show(const struct report *r, size_t i)
 {
-	return f->wait ? WAIT : f->warning ? WARNING : FAULT;
-}
-
-static void show(const struct why *w, size_t i)
-{
-	const struct why_finding *f = &w->f[i];
+	const struct ect_finding *f = finding(r, i);
 
 	out_object(NULL);
-	out_str("level", level_keys[level_of(f)], "%s: ", level_names[level_of(f)]);
+	out_str("level", level_keys[f->level], "%s: ", level_names[f->level]);
 	out_str("cause", f->cause, NULL);
-	out_str("text", f->what, "%s\n", f->what);
-	place(w, f);
+	out_str("text", f->text, "%s\n", f->text);
+	place(r, f);
 	if (f->code)
 		out_u("code", f->code, NULL);
 	else
 		out_null("code", NULL);
-	affected(w, i);
+	affected(r, i);
 	out_str("remedy", f->remedy, "  Remedy: %s\n", f->remedy);
 	out_end();
 }
 
-static const char *application(const struct why *w)
+static const char *application(const struct report *r)
 {
-	switch (w->m.session) {
-	case EC_SESSION_NONE:
+	switch (r->checked->session) {
+	case ECT_SESSION_NONE:
 		return "no application: no slave has to be in OP";
-	case EC_SESSION_RESERVED:
+	case ECT_SESSION_RESERVED:
 		return "an application has reserved the master and not activated it: no slave has to be in OP";
-	case EC_SESSION_DETACHED:
+	case ECT_SESSION_DETACHED:
 		return "detached session: the kernel runs the cycle, the application has exited";
 	default:
 		return "application active";
@@ -163,28 +188,26 @@ static void number(size_t n, const char *one, const char *more, const char *befo
 		out_text("%s%zu %s", before, n, n == 1 ? one : more);
 }
 
-static void checked(const struct why *w)
+static void checked(const struct report *r)
 {
-	size_t in_op = 0;
+	const struct ect_checked *c = r->checked;
 
-	for (size_t i = 0; i < w->n_configs; i++)
-		in_op += why_in_op(&w->configs[i]);
-	out_text("Checked: link, cycle, %zu slave%s, %zu configuration%s, %zu of them in OP, %u domain%s, emergencies, clocks%s; %s.\n",
-		 w->bus.n, S(w->bus.n), w->n_configs, S(w->n_configs), in_op, w->m.domain_count,
-		 S(w->m.domain_count),
-		 w->counters ? ", error counters of the ports" : "", application(w));
-	if (!w->counters)
+	out_text("Checked: link, cycle, %u slave%s, %u configuration%s, %u of them in OP, %u domain%s, emergencies, clocks%s; %s.\n",
+		 c->slaves, S(c->slaves), c->configs, S(c->configs), c->in_op, c->domains,
+		 S(c->domains), c->counters ? ", error counters of the ports" : "",
+		 application(r));
+	if (!c->counters)
 		out_text("Not checked: error counters of the ports; reading them needs write access to %s.\n",
-			 w->d->path);
-	if (w->silent)
-		out_text("Not checked: error counters of %zu slave%s without reply.\n",
-			 w->silent, S(w->silent));
+			 ect_path(r->d->h));
+	if (c->silent)
+		out_text("Not checked: error counters of %u slave%s without reply.\n", c->silent,
+			 S(c->silent));
 }
 
 /* Last: what was checked, so that silence means something. */
-static void summary(const struct why *w, const struct count *n)
+static void summary(const struct report *r, const struct count *n)
 {
-	bool well = !n->n[FAULT] && !n->n[WAIT];
+	bool well = !n->n[ECT_FAULT] && !n->n[ECT_UNDER_WAY];
 
 	/* what does not exist is neither well nor faulty */
 	if (n->nothing && well)
@@ -192,94 +215,102 @@ static void summary(const struct why *w, const struct count *n)
 	else
 		out_bool("well", well, NULL);
 	out_u("faults_elsewhere", n->elsewhere, NULL);
-	out_str("application", application(w), NULL);
-	out_bool("error_counters_read", w->counters && !w->silent, NULL);
+	out_str("application", application(r), NULL);
+	out_bool("error_counters_read", r->checked->counters && !r->checked->silent, NULL);
 	if (n->nothing && well)
 		return;
 	if (!well) {
-		number(n->n[FAULT], "fault", "faults", "");
-		number(n->n[WAIT], "under way", "under way", n->n[FAULT] ? ", " : "No fault, ");
-		number(n->n[WARNING], "warning", "warnings", ", ");
+		number(n->n[ECT_FAULT], "fault", "faults", "");
+		number(n->n[ECT_UNDER_WAY], "under way", "under way", n->n[ECT_FAULT] ? ", " : "No fault, ");
+		number(n->n[ECT_WARNING], "warning", "warnings", ", ");
 		out_text(". ");
 	} else {
 		out_text("%s well%s. ", n->elsewhere ? "The selection is" : "All is",
-			 n->n[WARNING] ? " except for the warnings" : "");
+			 n->n[ECT_WARNING] ? " except for the warnings" : "");
 	}
 	number(n->elsewhere, "fault elsewhere: 'ethercat why'. ",
 	       "faults elsewhere: 'ethercat why'. ", "");
-	if (w->unreachable)
+	if (r->checked->unreachable)
 		out_text("Checked: link; all else can be checked after the repair.\n");
 	else
-		checked(w);
+		checked(r);
 }
 
-static void rules(struct why *w)
+static int choose(const struct tool *t, const struct report *r, struct chosen *c,
+		  struct count *count)
 {
-	w->unreachable = why_bus(w);
-	if (w->unreachable)
-		return;
-	why_cycle(w);
-	why_late_frames(w);
-	why_absent(w);
-	why_slaves(w);
-	why_domains(w);
-	why_clocks(w);
-	why_counters(w);
-	why_emergencies(w);
-	why_lost_frames(w);
-}
-
-static int choose(const struct tool *t, const struct why *w, struct chosen *c, struct count *count)
-{
+	const struct ect_explained *e;
+	struct slaves bus;
 	size_t n;
 
 	*c = (struct chosen){ .t = t };
 	c->all = list_all(&t->aliases) && list_all(&t->positions);
-	if (select_slaves(&t->aliases, &t->positions, w->bus.v, w->bus.n, &c->slaves))
+	if (slaves_copy(&bus, ect_why_slaves(r->why)))
+		return 1;
+	n = (size_t)select_slaves(&t->aliases, &t->positions, bus.v, bus.n, &c->slaves);
+	slaves_free(&bus);
+	if (n)
 		return fail("out of memory");
 	n = c->slaves.n;
-	for (size_t i = 0; i < w->n_configs; i++)
-		n += config_chosen(c, &w->configs[i]);
+	for (size_t i = 0; (e = config(r, i)); i++)
+		n += config_chosen(c, e);
 	dev_selected("slave or configuration", !c->all, n);
 	count->nothing = !c->all && !n;
 	return 0;
 }
 
-static int each(const struct tool *t, struct dev *d)
+static void show_all(const struct report *r, const struct chosen *c, struct count *n)
+{
+	const struct ect_finding *f;
+
+	for (u32 level = ECT_FAULT; level < LEVELS; level++) {
+		for (size_t i = 0; (f = finding(r, i)); i++) {
+			if (f->level != level)
+				continue;
+			if (!shown(r, c, i)) {
+				n->elsewhere += level == ECT_FAULT;
+				continue;
+			}
+			n->n[level]++;
+			show(r, i);
+		}
+	}
+}
+
+static int report(const struct tool *t, const struct report *r)
 {
 	struct chosen c = { .all = true };
 	struct count n = { 0 };
-	struct why w;
 
-	if (why_read(&w, d) || choose(t, &w, &c, &n)) {
-		why_free(&w);
+	if (choose(t, r, &c, &n))
 		return 1;
-	}
-	rules(&w);
 	out_object(NULL);
-	out_u("master", d->master, NULL);
-	if (d->selected > 1)
-		out_text("Master%u\n", d->master);
+	out_u("master", r->d->master, NULL);
+	if (r->d->selected > 1)
+		out_text("Master%u\n", r->d->master);
 	out_array("findings");
-	for (enum level level = FAULT; level < LEVELS; level++) {
-		for (size_t i = 0; i < w.n; i++) {
-			if (level_of(&w.f[i]) != level)
-				continue;
-			if (!shown(&w, &c, i)) {
-				n.elsewhere += level == FAULT;
-				continue;
-			}
-			n.n[level]++;
-			show(&w, i);
-		}
-	}
+	show_all(r, &c, &n);
 	out_end();
-	summary(&w, &n);
+	summary(r, &n);
 	out_end();
 	numbers_free(&c.slaves);
-	n.n[FAULT] += w.failed;
-	why_free(&w);
-	return n.n[FAULT] || n.n[WAIT] ? 1 : 0;
+	return n.n[ECT_FAULT] || n.n[ECT_UNDER_WAY] ? 1 : 0;
+}
+
+static int each(const struct tool *t, struct dev *d)
+{
+	struct report r = { .d = d };
+	int ret = ect_why(d->h, &r.why);
+
+	if (ret)
+		return dev_fail(d, ret, "Master%u: cannot read what is known of the bus",
+				d->master);
+	r.findings = ect_why_findings(r.why);
+	r.configs = ect_why_configs(r.why);
+	r.checked = ect_why_checked(r.why);
+	ret = report(t, &r);
+	ect_why_free(r.why);
+	return ret;
 }
 
 static int run(struct tool *t, int argc, char **argv)

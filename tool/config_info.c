@@ -8,30 +8,27 @@
 #include "../master/wire/al.h"
 #include "ip.h"
 #include "out.h"
-#include "text.h"
 
 #define SMS		16
 #define SHOWN		1024	/* bytes of an SDO */
 
-static int failed(struct dev *d, int err, const struct ec_ioc_config *c)
+static int failed(struct dev *d, int err, const struct ect_config *c)
 {
 	return dev_fail(d, err, "Master%u: cannot read the state of configuration %u:%u", d->master,
 			c->alias, c->position);
 }
 
-static int entries(struct dev *d, const struct ec_ioc_config *c, const char *in,
-		   const struct ec_ioc_config_pdo *p)
+static int entries(struct dev *d, const struct ect_config *c, const char *in, unsigned int sm,
+		   unsigned int pdo, unsigned int count)
 {
-	for (unsigned int i = 0; i < p->entry_count; i++) {
-		struct ec_ioc_config_entry e = {
-			.index = c->index, .sm = p->sm, .pdo_pos = p->pdo_pos, .entry_pos = i,
-		};
-		int err = dev_ioctl(d, EC_IOC_CONFIG_ENTRY, &e);
+	for (unsigned int i = 0; i < count; i++) {
+		struct ect_pdo_entry e = { .struct_size = sizeof(e) };
+		int err = ect_config_entry(d->h, c->index, sm, pdo, i, &e);
 
 		if (err)
 			return failed(d, err, c);
 		out_object(NULL);
-		out_u("index", e.entry_index, "%s    PDO entry 0x%04x", in, e.entry_index);
+		out_u("index", e.index, "%s    PDO entry 0x%04x", in, e.index);
 		out_u("subindex", e.subindex, ":%02x", e.subindex);
 		out_u("size_bits", e.bits, ", %2u bit\n", e.bits);
 		out_end();
@@ -39,8 +36,8 @@ static int entries(struct dev *d, const struct ec_ioc_config *c, const char *in,
 	return 0;
 }
 
-static int sync_manager(struct dev *d, const struct ec_ioc_config *c, const char *in,
-			const struct ec_ioc_config_sm *s)
+static int sync_manager(struct dev *d, const struct ect_config *c, const char *in,
+			const struct ect_config_sm *s)
 {
 	static const char *const wd[] = { "Default", "Enable", "Disable" };
 	const char *watchdog = s->watchdog < ARRAY_SIZE(wd) ? wd[s->watchdog] : "???";
@@ -53,17 +50,17 @@ static int sync_manager(struct dev *d, const struct ec_ioc_config *c, const char
 	out_str("watchdog", watchdog, ", Watchdog: %s\n", watchdog);
 	out_array("pdos");
 	for (unsigned int i = 0; i < s->pdo_count && !ret; i++) {
-		struct ec_ioc_config_pdo p = { .index = c->index, .sm = s->sm, .pdo_pos = i };
-		int err = dev_ioctl(d, EC_IOC_CONFIG_PDO, &p);
+		struct ect_pdo p = { .struct_size = sizeof(p) };
+		int err = ect_config_pdo(d->h, c->index, s->sm, i, &p);
 
 		if (err) {
 			ret = failed(d, err, c);
 			break;
 		}
 		out_object(NULL);
-		out_u("index", p.pdo_index, "%s  PDO 0x%04x\n", in, p.pdo_index);
+		out_u("index", p.index, "%s  PDO 0x%04x\n", in, p.index);
 		out_array("entries");
-		ret = entries(d, c, in, &p);
+		ret = entries(d, c, in, s->sm, i, p.entry_count);
 		out_end();
 		out_end();
 	}
@@ -72,14 +69,14 @@ static int sync_manager(struct dev *d, const struct ec_ioc_config *c, const char
 	return ret;
 }
 
-static int sync_managers(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static int sync_managers(struct dev *d, const struct ect_config *c, const char *in)
 {
 	int ret = 0;
 
 	out_array("sync_managers");
 	for (unsigned int i = 0; i < SMS && !ret; i++) {
-		struct ec_ioc_config_sm s = { .index = c->index, .sm = (__u8)i };
-		int err = dev_ioctl(d, EC_IOC_CONFIG_SM, &s);
+		struct ect_config_sm s = { .struct_size = sizeof(s) };
+		int err = ect_config_sm(d->h, c->index, i, &s);
 
 		if (err)
 			ret = failed(d, err, c);
@@ -90,35 +87,33 @@ static int sync_managers(struct dev *d, const struct ec_ioc_config *c, const cha
 	return ret;
 }
 
-static int sdo(struct dev *d, const struct ec_ioc_config *c, const char *in, unsigned int pos)
+static int sdo(struct dev *d, const struct ect_config *c, const char *in, unsigned int pos)
 {
 	u8 data[SHOWN];
-	struct ec_ioc_config_sdo s = {
-		.index = c->index, .sdo_pos = pos, .size = sizeof(data), .data = (uintptr_t)data,
-	};
-	int err = dev_ioctl(d, EC_IOC_CONFIG_SDO, &s);
-	bool complete = s.flags & EC_SDO_FLAG_COMPLETE;
+	struct ect_startup s = { .struct_size = sizeof(s) };
+	int err = ect_config_sdo(d->h, c->index, pos, &s, data, sizeof(data));
+	bool complete = s.complete;
 	char indent[16];
 
 	if (err)
 		return failed(d, err, c);
 	snprintf(indent, sizeof(indent), "%s    ", in);
 	out_object(NULL);
-	out_u("index", s.sdo_index, "%s  0x%04x", in, s.sdo_index);
+	out_u("index", s.index, "%s  0x%04x", in, s.index);
 	if (complete)
 		out_text(" C");
 	else
 		out_u("subindex", s.subindex, ":%02x", s.subindex);
 	out_bool("complete_access", complete, NULL);
-	out_u("size_bytes", s.size, ", %u byte\n", s.size);
-	out_hex("data_hex", data, min(s.size, (u32)SHOWN), indent);
-	if (s.size > SHOWN)
+	out_u("size_bytes", s.bytes, ", %u byte\n", s.bytes);
+	out_hex("data_hex", data, min(s.bytes, (u32)SHOWN), indent);
+	if (s.bytes > SHOWN)
 		out_text("%s...\n", indent);
 	out_end();
 	return 0;
 }
 
-static int sdos(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static int sdos(struct dev *d, const struct ect_config *c, const char *in)
 {
 	int ret = 0;
 
@@ -132,43 +127,40 @@ static int sdos(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	return ret;
 }
 
-static void idn(const struct ec_ioc_config_idn *i, const u8 *data, const char *in)
+static void idn(const struct ect_startup *i, const u8 *data, const char *in)
 {
 	char indent[16], name[12];
 
-	snprintf(name, sizeof(name), "%c-%u-%04u", i->idn & 0x8000 ? 'P' : 'S', i->idn >> 12 & 7u,
-		 i->idn & 0xfffu);
+	snprintf(name, sizeof(name), "%c-%u-%04u", i->index & 0x8000 ? 'P' : 'S',
+		 i->index >> 12 & 7u, i->index & 0xfffu);
 	snprintf(indent, sizeof(indent), "%s    ", in);
 	out_object(NULL);
-	out_u("drive", i->drive, "%s  Drive %u, ", in, i->drive);
-	out_u("idn", i->idn, NULL);
+	out_u("drive", i->subindex, "%s  Drive %u, ", in, i->subindex);
+	out_u("idn", i->index, NULL);
 	out_str("name", name, "%s, ", name);
 	out_str("state", ec_al_state_name(i->state), NULL);
-	out_u("size_bytes", i->size, "%u byte", i->size);
+	out_u("size_bytes", i->bytes, "%u byte", i->bytes);
 	/* scripts know the line of an IDN that is written in PREOP */
 	if (i->state != EC_AL_PREOP)
 		out_text(", in %s", ec_al_state_name(i->state));
 	out_text("\n");
-	out_hex("data_hex", data, min(i->size, (u32)SHOWN), indent);
-	if (i->size > SHOWN)
+	out_hex("data_hex", data, min(i->bytes, (u32)SHOWN), indent);
+	if (i->bytes > SHOWN)
 		out_text("%s...\n", indent);
 	out_end();
 }
 
 /* An older module does not show them: nothing is claimed then. */
-static int idns(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static int idns(struct dev *d, const struct ect_config *c, const char *in)
 {
 	unsigned int pos;
 
 	for (pos = 0;; pos++) {
 		u8 data[SHOWN];
-		struct ec_ioc_config_idn i = {
-			.index = c->index, .idn_pos = pos, .size = sizeof(data),
-			.data = (uintptr_t)data,
-		};
-		int err = dev_ioctl(d, EC_IOC_CONFIG_IDN, &i);
+		struct ect_startup i = { .struct_size = sizeof(i) };
+		int err = ect_config_idn(d->h, c->index, pos, &i, data, sizeof(data));
 
-		if (err == ENOTTY) {
+		if (err == -ENOTTY) {
 			out_null("idns", NULL);
 			return 0;
 		}
@@ -176,7 +168,7 @@ static int idns(struct dev *d, const struct ec_ioc_config *c, const char *in)
 			out_text("%sIDN configuration:\n", in);
 			out_array("idns");
 		}
-		if (err && err != ENOENT)
+		if (err && err != -ENOENT)
 			return failed(d, err, c);
 		if (err)
 			break;
@@ -188,17 +180,16 @@ static int idns(struct dev *d, const struct ec_ioc_config *c, const char *in)
 	return 0;
 }
 
-static int flags(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static int flags(struct dev *d, const struct ect_config *c, const char *in)
 {
 	out_text("%sFeature flags:\n", in);
 	out_array("flags");
 	for (unsigned int i = 0; i < c->flag_count; i++) {
-		struct ec_ioc_config_flag f = { .index = c->index, .flag_pos = i };
-		int err = dev_ioctl(d, EC_IOC_CONFIG_FLAG, &f);
+		struct ect_flag f = { .struct_size = sizeof(f) };
+		int err = ect_config_flag(d->h, c->index, i, &f);
 
 		if (err)
 			return failed(d, err, c);
-		string_clean(f.key, sizeof(f.key));
 		out_object(NULL);
 		out_str("key", f.key, "%s  %s", in, f.key);
 		out_i("value", f.value, ": %d\n", f.value);
@@ -211,30 +202,30 @@ static int flags(struct dev *d, const struct ec_ioc_config *c, const char *in)
 }
 
 /* only when there are any */
-static int ip(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static int ip(struct dev *d, const struct ect_config *c, const char *in)
 {
-	struct ec_ioc_sc_ip i = { .config = c->index };
-	int err = dev_ioctl(d, EC_IOC_CONFIG_IP, &i);
+	struct ect_ip i = { .struct_size = sizeof(i) };
+	int err = ect_config_ip(d->h, c->index, &i);
 	char indent[16];
 
 	/* a module that is older than the command */
-	if (err == ENOTTY)
-		i.params.which = 0;
+	if (err == -ENOTTY)
+		i.which = 0;
 	else if (err)
 		return failed(d, err, c);
-	if (!i.params.which) {
+	if (!i.which) {
 		out_null("eoe_ip", NULL);
 		return 0;
 	}
 	snprintf(indent, sizeof(indent), "%s  ", in);
 	out_text("%sEoE IP parameters:\n", in);
 	out_object("eoe_ip");
-	ip_out(&i.params, indent, true);
+	ip_out(&i, indent, true);
 	out_end();
 	return 0;
 }
 
-static void dc(const struct ec_ioc_config *c, const char *in)
+static void dc(const struct ect_config *c, const char *in)
 {
 	out_text("%sDC configuration:\n", in);
 	if (!c->dc_assign_activate) {
@@ -264,7 +255,7 @@ static void number_or_default(const char *key, unsigned int v, const char *in, c
 		out_null(key, "%s%s: (Default)\n", in, label);
 }
 
-static void attached(const struct ec_ioc_config *c, const char *in)
+static void attached(const struct ect_config *c, const char *in)
 {
 	char state[16];
 
@@ -278,9 +269,9 @@ static void attached(const struct ec_ioc_config *c, const char *in)
 	out_str("state", ec_al_state_name((u8)c->al_status), " (%s)\n", state);
 }
 
-static void reason(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static void reason(struct dev *d, const struct ect_config *c, const char *in)
 {
-	char text[EC_UAPI_REASON];
+	char text[ECT_TEXT];
 
 	dev_config_why(d, c->index, text, sizeof(text));
 	if (text[0])
@@ -290,15 +281,12 @@ static void reason(struct dev *d, const struct ec_ioc_config *c, const char *in)
 }
 
 /* What is not certain of the process data, also in OP. */
-static void warning(struct dev *d, const struct ec_ioc_config *c, const char *in)
+static void warning(struct dev *d, const struct ect_config *c, const char *in)
 {
-	struct ec_ioc_slave_why s = {
-		.slave = { .kind = EC_ADDRESS_DEVICE, .device = c->device },
-	};
+	struct ect_slave s = { .struct_size = sizeof(s) };
 
-	if (!c->device || dev_ioctl(d, EC_IOC_SLAVE_WHY, &s))
+	if (c->slave_position < 0 || ect_slave_at(d->h, (unsigned int)c->slave_position, &s))
 		s.warning[0] = '\0';
-	string_clean(s.warning, sizeof(s.warning));
 	if (s.warning[0])
 		out_str("warning", s.warning, "%sWarning: %s\n", in, s.warning);
 	else
@@ -306,7 +294,7 @@ static void warning(struct dev *d, const struct ec_ioc_config *c, const char *in
 }
 
 /* Return: 0, or 1 after printing the error. */
-int config_info(struct dev *d, const struct ec_ioc_config *c, const char *in)
+int config_info(struct dev *d, const struct ect_config *c, const char *in)
 {
 	int ret;
 

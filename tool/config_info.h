@@ -4,6 +4,6 @@
 
 #include "dev.h"
 
-int config_info(struct dev *d, const struct ec_ioc_config *c, const char *indent);
+int config_info(struct dev *d, const struct ect_config *c, const char *indent);
 
 #endif

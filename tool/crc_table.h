@@ -7,7 +7,7 @@
 #include "errors.h"
 
 void crc_table_head(void);
-void crc_table_row(const struct tool *t, const struct slave *s, const u8 *regs);
+void crc_table_row(const struct tool *t, const struct ect_slave *s, const struct ect_errors *e);
 
 /* crc_watch.c */
 int crc_watch(const struct tool *t, struct dev *d);

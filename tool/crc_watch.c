@@ -18,7 +18,7 @@
  * @all: slaves of the master
  * @shown: whether a slave is selected and replies, by ring position
  * @mute: whether its counters could not be read
- * @begin: registers EC_REG_ERRORS of each slave
+ * @begin: counters of each slave
  * @end: likewise, later
  * @seconds: between them
  * @frames: sent by the master between them
@@ -27,8 +27,8 @@ struct span {
 	struct slaves all;
 	bool *shown;
 	bool *mute;
-	u8 (*begin)[EC_ERRORS_SIZE];
-	u8 (*end)[EC_ERRORS_SIZE];
+	struct ect_errors *begin;
+	struct ect_errors *end;
 	double seconds;
 	u64 frames;
 };
@@ -53,7 +53,7 @@ static unsigned int grown(u8 begin, u8 end)
 
 static struct growth growth(const struct span *w, u32 slave, unsigned int port)
 {
-	const u8 *b = w->begin[slave], *e = w->end[slave];
+	const struct ect_errors *b = &w->begin[slave], *e = &w->end[slave];
 
 	if (w->mute[slave])
 		return (struct growth){ 0 };
@@ -68,7 +68,7 @@ static struct growth growth(const struct span *w, u32 slave, unsigned int port)
 static void end_of_segment(const char *slave_key, const char *port_key, u32 slave,
 			   unsigned int port)
 {
-	if (slave == TOPO_MASTER) {
+	if (slave == ECT_NONE32) {
 		out_null(slave_key, "the master");
 		out_null(port_key, NULL);
 		return;
@@ -85,11 +85,11 @@ static void counts(const struct growth *g)
 }
 
 /* between a slave and what is upstream of it; the counters of both ends are about one cable */
-static bool segment(const struct span *w, const struct topo_node *n, u32 slave)
+static bool segment(const struct span *w, const struct ect_node *n, u32 slave)
 {
 	struct growth g = growth(w, slave, n->port);
 
-	if (n->parent != TOPO_MASTER) {
+	if (n->parent != ECT_NONE32) {
 		struct growth up = growth(w, n->parent, n->parent_port);
 
 		g.crc += up.crc;
@@ -111,10 +111,10 @@ static bool segment(const struct span *w, const struct topo_node *n, u32 slave)
 /* whether @port of a slave has a cable to another one or to the master */
 static bool connected(const struct span *w, const struct topo *t, u32 slave, unsigned int port)
 {
-	unsigned int peer_port;
-	u32 peer;
+	u32 peer, peer_port;
 
-	return port == t->node[slave].port || topo_peer(&w->all, slave, port, &peer, &peer_port);
+	return port == t->node[slave]->port ||
+	       ect_peer(w->all.list, slave, port, &peer, &peer_port);
 }
 
 static bool open_end(const struct span *w, u32 slave, unsigned int port)
@@ -140,10 +140,11 @@ static unsigned int segments(const struct span *w, const struct topo *t)
 
 	out_array("segments");
 	for (size_t i = 0; i < t->n; i++) {
-		u32 at = t->order[i];
+		const struct ect_node *node = ect_list_get(t->order, i);
+		u32 at = node->slave;
 
-		n += segment(w, &t->node[at], at);
-		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++)
+		n += segment(w, node, at);
+		for (unsigned int p = 0; p < ECT_PORTS; p++)
 			if (!connected(w, t, at, p))
 				n += open_end(w, at, p);
 	}
@@ -152,18 +153,20 @@ static unsigned int segments(const struct span *w, const struct topo *t)
 }
 
 /* the port at which a frame arrives first of those with new forwarded errors */
-static const struct topo_rx *first_forwarded(const struct span *w, const struct topo *t)
+static const struct ect_arrival *first_forwarded(const struct span *w, const struct topo *t)
 {
-	for (size_t i = 0; i < t->rx_n; i++)
-		if (growth(w, t->rx[i].slave, t->rx[i].port).fwd)
-			return &t->rx[i];
+	const struct ect_arrival *a;
+
+	for (size_t i = 0; (a = ect_list_get(t->way, i)); i++)
+		if (growth(w, a->slave, a->port).fwd)
+			return a;
 	return NULL;
 }
 
 static void verdict(const struct span *w, const struct topo *t)
 {
 	unsigned int n = segments(w, t);
-	const struct topo_rx *rx = first_forwarded(w, t);
+	const struct ect_arrival *rx = first_forwarded(w, t);
 
 	if (n > 1)
 		out_text("Repair the first of these %u segments first: a frame passes it first.\n", n);
@@ -185,14 +188,14 @@ static void verdict(const struct span *w, const struct topo *t)
 static void doubts(const struct dev *d, const struct span *w)
 {
 	for (size_t i = 0; i < w->all.n; i++) {
+		const struct ect_errors *b = &w->begin[i], *e = &w->end[i];
 		bool full = false, cleared = false;
 
-		for (unsigned int p = 0; p < EC_UAPI_PORTS; p++) {
-			full |= err_rx(w->begin[i], p) == FULL || err_phy(w->begin[i], p) == FULL ||
-				err_fwd(w->begin[i], p) == FULL || err_lost(w->begin[i], p) == FULL;
-			cleared |= err_rx(w->end[i], p) < err_rx(w->begin[i], p) ||
-				   err_phy(w->end[i], p) < err_phy(w->begin[i], p) ||
-				   err_fwd(w->end[i], p) < err_fwd(w->begin[i], p);
+		for (unsigned int p = 0; p < ECT_PORTS; p++) {
+			full |= err_rx(b, p) == FULL || err_phy(b, p) == FULL ||
+				err_fwd(b, p) == FULL || err_lost(b, p) == FULL;
+			cleared |= err_rx(e, p) < err_rx(b, p) || err_phy(e, p) < err_phy(b, p) ||
+				   err_fwd(e, p) < err_fwd(b, p);
 		}
 		if (w->mute[i])
 			continue;
@@ -206,12 +209,12 @@ static void doubts(const struct dev *d, const struct span *w)
 }
 
 /* One that does not reply may be what is wrong: the others count nevertheless. */
-static int read_all(struct dev *d, struct span *w, u8 (*regs)[EC_ERRORS_SIZE])
+static int read_all(struct dev *d, struct span *w, struct ect_errors *regs)
 {
 	bool any = false;
 
 	for (size_t i = 0; i < w->all.n; i++) {
-		if (!w->mute[i] && errors_read(d, &w->all.v[i], regs[i])) {
+		if (!w->mute[i] && errors_read(d, &w->all.v[i], &regs[i])) {
 			w->mute[i] = true;
 			w->shown[i] = false;
 		}
@@ -229,7 +232,7 @@ static int any_mute(const struct span *w)
 }
 
 static void table(const struct tool *t, const struct span *w, const char *key,
-		  u8 (*regs)[EC_ERRORS_SIZE])
+		  struct ect_errors *regs)
 {
 	if (t->verbosity < 0 && !out_is_json())
 		return;
@@ -237,7 +240,7 @@ static void table(const struct tool *t, const struct span *w, const char *key,
 	out_array(key);
 	for (size_t i = 0; i < w->all.n; i++)
 		if (w->shown[i])
-			crc_table_row(t, &w->all.v[i], regs[i]);
+			crc_table_row(t, &w->all.v[i], &regs[i]);
 	out_end();
 }
 
@@ -253,7 +256,7 @@ static int unchanged(struct dev *d, const struct slaves *before)
 		ret = fail("Master%u: %zu slave(s) before, %zu after; repeat the command",
 			   d->master, before->n, now.n);
 	for (size_t i = 0; i < now.n && !ret; i++) {
-		const struct slave *a = &before->v[i], *b = &now.v[i];
+		const struct ect_slave *a = &before->v[i], *b = &now.v[i];
 
 		if (a->station != b->station || a->vendor_id != b->vendor_id ||
 		    a->product_code != b->product_code || a->serial_number != b->serial_number)
@@ -264,29 +267,35 @@ static int unchanged(struct dev *d, const struct slaves *before)
 	return ret;
 }
 
-static u64 sent(const struct master *m)
+/* frames that the master has sent */
+static int sent(struct dev *d, u64 *n)
 {
-	u64 n = 0;
+	const struct ect_device *i;
+	struct ect_list *devices;
 
-	for (unsigned int i = 0; i < m->device_count && i < EC_UAPI_DEVICES; i++)
-		n += m->devices[i].tx_frames;
-	return n;
+	if (dev_devices(d, &devices))
+		return 1;
+	*n = 0;
+	for (size_t k = 0; (i = ect_list_get(devices, k)); k++)
+		*n += i->tx_frames;
+	ect_list_free(devices);
+	return 0;
 }
 
 /* until the time is over or the user ends it */
 static int pass(struct dev *d, double seconds, struct span *w)
 {
-	struct master before, after;
 	double from = now_s();
+	u64 before, after;
 
-	if (dev_master(d, &before))
+	if (sent(d, &before))
 		return 1;
 	while (!interrupted && now_s() < from + seconds)
 		sleep_ms(20);
-	if (dev_master(d, &after))
+	if (sent(d, &after))
 		return 1;
 	w->seconds = now_s() - from;
-	w->frames = sent(&after) - sent(&before);
+	w->frames = after - before;
 	return 0;
 }
 

@@ -2,16 +2,13 @@
 #include "dev.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <time.h>
-#include <unistd.h>
 
 #include "../master/wire/al.h"
 #include "out.h"
-#include "sys.h"
 
 double now_s(void)
 {
@@ -28,19 +25,6 @@ void sleep_ms(unsigned int ms)
 	nanosleep(&ts, NULL);
 }
 
-static int open_error(struct dev *d, int err)
-{
-	const char *hint = NULL;
-
-	if ((err == ENOENT || err == ENXIO) && !access("/sys/module/ec_master", F_OK))
-		hint = "ec_master is loaded without this master: 'ethercatctl restart', or 'rmmod ec_master' and load it with main_devices=...";
-	else if (err == ENOENT || err == ENXIO || err == ENODEV)
-		hint = "start the masters: 'ethercatctl start', or 'modprobe ec_master main_devices=...' with the address of the card";
-	else if (err == EACCES || err == EPERM)
-		hint = "members of the group that owns the file may use it (see ls -l)";
-	return fail_full(err, hint, 0, "Failed to open %s", d->path);
-}
-
 /**
  * dev_open() - open the device file of a master
  * @d: result, to be closed with dev_close()
@@ -52,40 +36,28 @@ static int open_error(struct dev *d, int err)
 int dev_open(struct dev *d, unsigned int master, bool write)
 {
 	const char *dir = getenv("EC_DEVICE_DIR");
+	char path[256];
+	int ret;
 
-	*d = (struct dev){ .fd = -1, .master = master, .selected = 1 };
-	snprintf(d->path, sizeof(d->path), "%s/EtherCAT%u", dir ? dir : "/dev", master);
-	d->fd = sys_open(d->path, write ? O_RDWR : O_RDONLY);
-	if (d->fd < 0)
-		return open_error(d, errno);
-	d->version.abi = EC_UAPI_VERSION;
-	if (!sys_ioctl(d->fd, EC_IOC_VERSION, &d->version))
+	*d = (struct dev){ .h = ect_new(), .master = master, .selected = 1 };
+	if (!d->h)
+		return fail("out of memory");
+	snprintf(path, sizeof(path), "%s/EtherCAT%u", dir ? dir : "/dev", master);
+	ret = ect_open_path(d->h, path, write ? ECT_OPEN_WRITE : 0);
+	if (!ret)
 		return 0;
-	if (errno == ENOTTY || errno == EINVAL)
-		fail("%s: not a device of this EtherCAT master (interface version %u), or of an older module: update it",
-		     d->path, EC_UAPI_VERSION);
+	if (ret == -EPROTO)
+		fail("%s: %s", path, ect_reason(d->h));
 	else
-		dev_fail(d, errno, "%s: cannot read the version of the module", d->path);
+		fail_full(-ret, ect_reason(d->h), 0, "Failed to open %s", path);
 	dev_close(d);
 	return 1;
 }
 
 void dev_close(struct dev *d)
 {
-	if (d->fd >= 0)
-		sys_close(d->fd);
-	d->fd = -1;
-}
-
-/* Return: 0 or the errno */
-int dev_ioctl(struct dev *d, unsigned long request, void *arg)
-{
-	int ret;
-
-	do
-		ret = sys_ioctl(d->fd, request, arg);
-	while (ret < 0 && errno == EINTR);
-	return ret < 0 ? errno : 0;
+	ect_free(d->h);
+	d->h = NULL;
 }
 
 static unsigned int master_count(void)
@@ -95,7 +67,7 @@ static unsigned int master_count(void)
 
 	if (dev_open(&d, 0, false))
 		return 0;
-	n = max(d.version.master_count, 1U);
+	n = max(ect_version(d.h)->masters, 1U);
 	dev_close(&d);
 	return n;
 }
@@ -173,6 +145,89 @@ static int each_master(const struct tool *t, bool write,
 int dev_each(const struct tool *t, bool write, int (*fn)(const struct tool *t, struct dev *d))
 {
 	return each_master(t, write, fn, NULL);
+}
+
+int dev_master(struct dev *d, struct ect_master *m)
+{
+	int err;
+
+	m->struct_size = sizeof(*m);
+	err = ect_master_read(d->h, m);
+	return err ? dev_fail(d, err, "Master%u: cannot read master state", d->master) : 0;
+}
+
+int dev_devices(struct dev *d, struct ect_list **list)
+{
+	int err = ect_devices_read(d->h, list);
+
+	return err ? dev_fail(d, err, "Master%u: cannot read master state", d->master) : 0;
+}
+
+int dev_slave_at(struct dev *d, unsigned int position, struct ect_slave *s)
+{
+	int err;
+
+	s->struct_size = sizeof(*s);
+	err = ect_slave_at(d->h, position, s);
+	return err ? dev_fail(d, err, "Master%u slave %u: cannot read slave state", d->master,
+			position) : 0;
+}
+
+int dev_slave(struct dev *d, struct ect_slave *s)
+{
+	unsigned int position = s->position;
+	int err = ect_slave_read(d->h, s->device, s);
+
+	return err ? dev_fail(d, err, "Master%u slave %u: cannot read slave state", d->master,
+			position) : 0;
+}
+
+void dev_config_why(struct dev *d, unsigned int config, char *buf, size_t size)
+{
+	struct ect_config_why w = { .struct_size = sizeof(w) };
+
+	if (ect_config_why(d->h, config, &w))
+		w.text[0] = '\0';
+	snprintf(buf, size, "%s", w.text);
+}
+
+void slaves_free(struct slaves *s)
+{
+	ect_list_free(s->list);
+	free(s->v);
+	*s = (struct slaves){ 0 };
+}
+
+int slaves_copy(struct slaves *to, const struct ect_list *list)
+{
+	*to = (struct slaves){ .n = ect_list_count(list) };
+	to->v = calloc(to->n + 1, sizeof(*to->v));
+	if (!to->v)
+		return fail("out of memory");
+	/* those of a newer library are longer */
+	for (size_t i = 0; i < to->n; i++) {
+		const struct ect_slave *s = ect_list_get(list, i);
+
+		memcpy(&to->v[i], s, min(sizeof(*s), (size_t)s->struct_size));
+		to->v[i].struct_size = sizeof(*s);
+	}
+	return 0;
+}
+
+int dev_slaves(struct dev *d, struct slaves *all)
+{
+	struct ect_list *list = NULL;
+	int err = ect_slaves_read(d->h, &list);
+
+	*all = (struct slaves){ 0 };
+	if (err)
+		return dev_fail(d, err, "Master%u: cannot read the slaves", d->master);
+	if (slaves_copy(all, list)) {
+		ect_list_free(list);
+		return 1;
+	}
+	all->list = list;
+	return 0;
 }
 
 /* Single positions that the ring does not have, beside others that it has. */
@@ -257,17 +312,27 @@ int dev_each_slave(const struct tool *t, const struct slave_walk *w)
 	return ret;
 }
 
-void dev_why_empty(const struct master *m, char *buf, size_t size)
+/* Return: 0, or 1 after printing an error */
+int dev_why_empty(struct dev *d, const struct ect_master *m, char *buf, size_t size)
 {
-	const struct ec_ioc_device *i = &m->devices[0];
+	const struct ect_device *i;
+	struct ect_list *devices;
+	bool up = false;
 
 	*buf = 0;
-	if (m->phase == EC_PHASE_WAITING)
-		snprintf(buf, size, "no network interface yet, waiting for %s", i->name);
-	else if (!m->links_up)
-		snprintf(buf, size, "%s has no link, check the cable", i->name);
+	if (dev_devices(d, &devices))
+		return 1;
+	for (size_t k = 0; (i = ect_list_get(devices, k)); k++)
+		up |= i->link_up;
+	i = ect_list_get(devices, 0);
+	if (m->phase == ECT_PHASE_WAITING)
+		snprintf(buf, size, "no network interface yet, waiting for %s", i ? i->name : "");
+	else if (!up)
+		snprintf(buf, size, "%s has no link, check the cable", i ? i->name : "");
 	else if (m->scan_busy)
 		snprintf(buf, size, "a bus scan is running");
+	ect_list_free(devices);
+	return 0;
 }
 
 /* what -a, -p and -d have selected so far, on all masters */
@@ -302,16 +367,15 @@ int dev_nothing_selected(void)
 /* the failure of a command that has no slave to work on */
 int dev_none_present(struct dev *d)
 {
-	struct master m;
+	struct ect_master m;
 	char why[160];
 
-	if (dev_master(d, &m))
+	if (dev_master(d, &m) || dev_why_empty(d, &m, why, sizeof(why)))
 		return 1;
-	dev_why_empty(&m, why, sizeof(why));
 	return fail("Master%u: no slaves%s%s", d->master, *why ? ": " : "", why);
 }
 
-int dev_select_single(struct dev *d, const struct tool *t, struct slave *s)
+int dev_select_single(struct dev *d, const struct tool *t, struct ect_slave *s)
 {
 	struct slaves sel;
 	size_t all;
@@ -335,11 +399,11 @@ int dev_wait_scan(struct dev *d, double timeout_s)
 	double end = now_s() + timeout_s;
 
 	for (;;) {
-		struct master m;
+		struct ect_master m;
 
 		if (dev_master(d, &m))
 			return 1;
-		if (!m.scan_busy && m.phase != EC_PHASE_WAITING)
+		if (!m.scan_busy && m.phase != ECT_PHASE_WAITING)
 			return 0;
 		if (now_s() >= end)
 			return fail("Master%u: %s after %g s", d->master,
@@ -349,7 +413,7 @@ int dev_wait_scan(struct dev *d, double timeout_s)
 	}
 }
 
-void slave_name(const struct slave *s, char *buf, size_t size)
+void slave_name(const struct ect_slave *s, char *buf, size_t size)
 {
 	if (s->name[0])
 		snprintf(buf, size, "%s", s->name);
@@ -372,7 +436,7 @@ void al_state_text(unsigned int al_status, char *buf, size_t size)
 }
 
 /* second number of "alias:relative" */
-unsigned int slave_alias_pos(const struct slave *s)
+unsigned int slave_alias_pos(const struct ect_slave *s)
 {
 	return s->alias_group ? s->alias_pos : s->position;
 }

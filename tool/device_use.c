@@ -89,15 +89,15 @@ static int name_for_master(const struct tool *t, const char *name, char *buf, si
 
 int device_use(const struct tool *t, const char *name)
 {
-	struct ec_ioc_device_use arg = { 0 };
+	char own[ECT_STRING];
 	struct dev d;
 	int err;
 
 	if (t->boot)
 		return usage_error("use has no --boot; write main_devices= of ec_master into /etc/modprobe.d");
-	if (name_for_master(t, name, arg.name, sizeof(arg.name)) || dev_open_single(&d, t, true))
+	if (name_for_master(t, name, own, sizeof(own)) || dev_open_single(&d, t, true))
 		return 1;
-	err = dev_ioctl(&d, EC_IOC_DEVICE_USE, &arg);
+	err = ect_device_use(d.h, own);
 	if (err)
 		dev_fail(&d, err, "Master%u: cannot use %s", d.master, name);
 	dev_close(&d);

@@ -6,50 +6,39 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../lib/tools/text.h"
 #include "../master/wire/sii.h"
 #include "io.h"
 #include "out.h"
 #include "progress.h"
-#include "text.h"
-
-#define ROOM		(64u << 10)	/* the largest answer the kernel passes on */
-#define REFUSED		(-1)
 
 /* reading the dictionary of one slave */
 struct dict {
 	const struct dict_reader *r;
 	struct dev *d;
-	const struct slave *s;
+	const struct ect_slave *s;
 	struct progress progress;
 	size_t done;	/* objects */
 	size_t all;
-	u8 *buf;	/* answers, then values */
-	u8 *limits;	/* descriptions with limits */
+	u8 *buf;	/* values */
 };
 
 /* Does the slave describe its objects, as far as its EEPROM says? */
-bool dict_described(const struct slave *s)
+bool dict_described(const struct ect_slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE &&
 	       (!s->coe_details || s->coe_details & EC_SII_COE_SDO_INFO);
 }
 
-/* 0, or errno; REFUSED with @quiet: no error is printed */
-static int ask(struct dict *x, u8 what, u16 index, u8 sub, size_t *size, bool quiet)
+/* what the slave does not describe is left out: 0; any other failure is reported */
+static int failed(struct dict *x, int err, bool quiet)
 {
-	struct ec_ioc_sdo_info i = {
-		.slave = x->s->slave, .index = index, .subindex = sub, .what = what,
-		.size = ROOM, .data = (uintptr_t)x->buf,
-	};
-	int err = dev_ioctl(x->d, EC_IOC_SDO_INFO, &i);
+	u32 abort = ect_error_code(x->d->h);
 
-	*size = min(i.size, ROOM);
-	if (!err)
+	if (quiet && (abort || err == -EBADMSG))
 		return 0;
-	if (quiet && i.abort_code)
-		return REFUSED;
-	if (i.abort_code)
-		fail_full(err, NULL, i.abort_code,
+	if (abort)
+		fail_full(-err, NULL, abort,
 			  "Master%u slave %u: cannot read the object dictionary", x->d->master,
 			  x->s->position);
 	else
@@ -66,96 +55,45 @@ static void progress(struct dict *x)
 	progress_step(&x->progress, what, x->done, x->all, "objects");
 }
 
-static void name_of(char to[DICT_NAME], const char *name, size_t len)
-{
-	snprintf(to, DICT_NAME, "%.*s", (int)min(len, (size_t)DICT_NAME - 1), name);
-	string_clean(to, DICT_NAME);
-}
-
-/* What the slave does not give is no error; nor is an older module, which knows no limits. */
-static void read_limits(struct dict *x, struct dict_entry *e, size_t plain)
-{
-	struct ec_ioc_sdo_info i = {
-		.slave = x->s->slave, .index = e->index, .subindex = e->sub,
-		.what = EC_SDO_INFO_ENTRY, .value_info = EC_SDO_VALUE_ALL,
-		.size = ROOM, .data = (uintptr_t)x->limits,
-	};
-
-	if (dev_ioctl(x->d, EC_IOC_SDO_INFO, &i) ||
-	    ec_od_values_decode(x->limits, min(i.size, ROOM), plain, &e->limits))
-		e->limits = (struct ec_od_values){ 0 };
-}
-
 static void read_value(struct dict *x, struct dict_entry *e)
 {
-	struct ec_ioc_sdo s = {
-		.slave = x->s->slave, .index = e->index, .subindex = e->sub, .size = ROOM,
-		.data = (uintptr_t)x->buf,
-	};
-	int err = dev_ioctl(x->d, EC_IOC_SDO_UPLOAD, &s);
+	long n = ect_sdo_upload(x->d->h, x->s->device, e->d.index, e->d.subindex, 0, 0, x->buf,
+				ECT_SDO_MAX);
 
-	if (err && s.abort_code)
-		e->value.abort = s.abort_code;
-	else if (err)
-		e->value.err = err;
+	if (n < 0 && ect_error_code(x->d->h))
+		e->value.abort = ect_error_code(x->d->h);
+	else if (n < 0)
+		e->value.err = -(int)n;
 	else
-		e->value = (struct dict_value){ .data = x->buf, .size = min(s.size, ROOM) };
+		e->value = (struct dict_value){ .data = x->buf, .size = (size_t)n };
 }
 
-static void entry(struct dict *x, const struct ec_od_entry *d, size_t plain)
+static int entry(struct dict *x, u16 index, u8 sub)
 {
-	struct dict_entry e = {
-		.index = d->index, .sub = d->sub, .type = d->type, .bits = d->bits,
-		.access = d->access,
-	};
+	struct dict_entry e = { .d.struct_size = sizeof(e.d) };
+	int err = ect_entry_read(x->d->h, x->s->device, index, sub,
+				 x->r->limits ? ECT_VALUE_ALL : 0, 0, &e.d);
 
-	/* the buffer takes the value next */
-	name_of(e.name, d->name, d->name_len);
-	/* optional fields that come without request leave the size of the rest unknown */
-	if (x->r->limits && !(d->info & EC_OD_INFO_VALUES))
-		read_limits(x, &e, plain);
+	if (err)
+		return failed(x, err, true);
 	/* only what can be read in some state */
-	if (x->r->values && e.access & EC_OD_READ)
+	if (x->r->values && e.d.access & EC_OD_READ)
 		read_value(x, &e);
 	x->r->entry(x->r, &e);
 	progress(x);
-}
-
-static int entries(struct dict *x, u16 index, u8 max_sub)
-{
-	int err = 0;
-
-	for (unsigned int sub = 0; sub <= max_sub && !err; sub++) {
-		struct ec_od_entry e;
-		size_t size;
-
-		err = ask(x, EC_SDO_INFO_ENTRY, index, (u8)sub, &size, true);
-		if (!err && !ec_od_entry_decode(x->buf, size, &e))
-			entry(x, &e, size);
-		else if (err == REFUSED)
-			err = 0;
-	}
-	return err;
+	return 0;
 }
 
 static int object(struct dict *x, u16 index)
 {
-	struct dict_object o = { .index = index };
-	struct ec_od_object d;
-	size_t size;
-	int err = ask(x, EC_SDO_INFO_OBJECT, index, 0, &size, true);
+	struct ect_object o = { .struct_size = sizeof(o) };
+	int err = ect_object_read(x->d->h, x->s->device, index, 0, &o);
 
 	if (err)
-		return err == REFUSED ? 0 : err;
-	if (ec_od_object_decode(x->buf, size, &d))
-		return 0;
-	o.type = d.type;
-	o.max_sub = d.max_sub;
-	o.code = d.code;
-	name_of(o.name, d.name, d.name_len);
+		return failed(x, err, true);
 	x->r->object(x->r, &o);
-	if (x->r->entries)
-		err = entries(x, index, o.max_sub);
+	for (unsigned int sub = 0; x->r->entries && sub <= o.max_subindex && !err; sub++)
+		err = entry(x, index, (u8)sub);
 	if (x->r->object_end)
 		x->r->object_end(x->r);
 	return err;
@@ -163,24 +101,23 @@ static int object(struct dict *x, u16 index)
 
 static int dictionary(struct dict *x)
 {
-	size_t size;
-	int err = ask(x, EC_SDO_INFO_LIST, 1, 0, &size, false);
-	u8 *list;
+	struct ect_list *list;
+	int err = ect_objects_read(x->d->h, x->s->device, 0, &list);
 
-	if (err)
+	if (err) {
+		failed(x, err, false);
 		return 1;
-	list = malloc(size + 1);
-	if (!list)
-		return fail("out of memory");
-	memcpy(list, x->buf, size);
-	x->all = size / 2;
+	}
+	x->all = ect_list_count(list);
 	while (x->done < x->all && !err) {
-		err = object(x, get_unaligned_le16(list + 2 * x->done));
+		const struct ect_object *o = ect_list_get(list, x->done);
+
+		err = object(x, o->index);
 		x->done++;
 		progress(x);
 	}
 	progress_end(&x->progress);
-	free(list);
+	ect_list_free(list);
 	return err ? 1 : 0;
 }
 
@@ -195,21 +132,19 @@ static int dictionary(struct dict *x)
  *
  * Return: 0, or 1 after printing why it ended.
  */
-int dict_read(const struct tool *t, struct dev *d, const struct slave *s,
+int dict_read(const struct tool *t, struct dev *d, const struct ect_slave *s,
 	      const struct dict_reader *r)
 {
 	struct dict x = {
-		.r = r, .d = d, .s = s, .buf = malloc(ROOM + 1),
-		.limits = malloc(ROOM),
+		.r = r, .d = d, .s = s, .buf = malloc(ECT_SDO_MAX + 1),
 	};
 	int ret;
 
 	progress_begin(&x.progress, t);
 	if (r->listing && isatty(STDOUT_FILENO))
 		x.progress.wanted = false;
-	ret = x.buf && x.limits ? dictionary(&x) : fail("out of memory");
+	ret = x.buf ? dictionary(&x) : fail("out of memory");
 	free(x.buf);
-	free(x.limits);
 	return ret;
 }
 

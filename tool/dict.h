@@ -3,10 +3,7 @@
 #ifndef EC_TOOL_DICT_H
 #define EC_TOOL_DICT_H
 
-#include "../master/wire/sdoinfo.h"
 #include "dev.h"
-
-#define DICT_NAME	256
 
 /**
  * struct dict_value - value of an entry
@@ -23,33 +20,13 @@ struct dict_value {
 };
 
 /**
- * struct dict_entry - entry as the slave describes it
- * @index: object
- * @sub: subindex
- * @type: data type
- * @bits: length
- * @access: EC_OD_READ_PREOP...
- * @name: for a terminal
- * @limits: unit, default, minimum and maximum; without them @limits.info is 0
+ * struct dict_entry - entry of an object
+ * @d: as the slave describes it
  * @value: now
  */
 struct dict_entry {
-	u16 index;
-	u8 sub;
-	u16 type;
-	u16 bits;
-	u16 access;
-	char name[DICT_NAME];
-	struct ec_od_values limits;
+	struct ect_entry d;
 	struct dict_value value;
-};
-
-struct dict_object {
-	u16 index;
-	u16 type;
-	u8 max_sub;
-	u8 code;
-	char name[DICT_NAME];
 };
 
 /**
@@ -68,14 +45,14 @@ struct dict_reader {
 	bool values;
 	bool limits;
 	bool listing;
-	void (*object)(const struct dict_reader *r, const struct dict_object *o);
+	void (*object)(const struct dict_reader *r, const struct ect_object *o);
 	void (*entry)(const struct dict_reader *r, const struct dict_entry *e);
 	void (*object_end)(const struct dict_reader *r);
 	void *ctx;
 };
 
-bool dict_described(const struct slave *s);
-int dict_read(const struct tool *t, struct dev *d, const struct slave *s,
+bool dict_described(const struct ect_slave *s);
+int dict_read(const struct tool *t, struct dev *d, const struct ect_slave *s,
 	      const struct dict_reader *r);
 
 void dict_access_text(u16 access, char to[7]);

@@ -13,8 +13,8 @@ static int by_number(const void *a, const void *b)
 {
 	const struct dict_entry *x = a, *y = b;
 
-	return x->index != y->index ? (x->index > y->index) - (x->index < y->index) :
-	       (x->sub > y->sub) - (x->sub < y->sub);
+	return x->d.index != y->d.index ? (x->d.index > y->d.index) - (x->d.index < y->d.index) :
+	       (x->d.subindex > y->d.subindex) - (x->d.subindex < y->d.subindex);
 }
 
 static void sort(struct dict_image *i)
@@ -46,7 +46,7 @@ static void side(const char *key, const char *name, const struct dict_entry *e)
 	else if (v->err)
 		out_str("error", strerror(v->err), "%s", strerror(v->err));
 	else if (v->data)
-		dict_value_out(e->type, v->data, v->size);
+		dict_value_out(e->d.type, v->data, v->size);
 	else
 		out_bool("not_readable", true, "cannot be read");
 	out_text("\n");
@@ -59,15 +59,15 @@ static void show(const struct comparison *c, const struct dict_entry *a,
 	const struct dict_entry *e = a ? a : b;
 	char access[7], type[32];
 
-	dict_access_text(e->access, access);
-	dict_type_text(e->type, type, sizeof(type));
+	dict_access_text(e->d.access, access);
+	dict_type_text(e->d.type, type, sizeof(type));
 	out_object(NULL);
 	out_str("kind", kind, NULL);
-	out_u("index", e->index, "  0x%04x", e->index);
-	out_u("subindex", e->sub, ":%02x, ", e->sub);
+	out_u("index", e->d.index, "  0x%04x", e->d.index);
+	out_u("subindex", e->d.subindex, ":%02x, ", e->d.subindex);
 	out_str("access", access, "%s, ", access);
 	out_str("type", type, "%s, ", type);
-	out_str("name", e->name, "\"%s\"\n", e->name);
+	out_str("name", e->d.name, "\"%s\"\n", e->d.name);
 	side("left", c->left, a);
 	side("right", c->right, b);
 	out_end();
@@ -126,7 +126,7 @@ static int no_answer(const struct dict_image *i, const char *name)
 	return fail("%s: %zu value(s) could not be transferred; read again", name, i->failures);
 }
 
-static int with_file(const struct tool *t, struct dev *d, const struct slave *s)
+static int with_file(const struct tool *t, struct dev *d, const struct ect_slave *s)
 {
 	struct comparison c = { .right = t->compare };
 	struct dict_image a = { 0 }, b = { 0 };
@@ -142,15 +142,15 @@ static int with_file(const struct tool *t, struct dev *d, const struct slave *s)
 	return ret;
 }
 
-static int with_slave(const struct tool *t, struct dev *d, const struct slave *s)
+static int with_slave(const struct tool *t, struct dev *d, const struct ect_slave *s)
 {
 	struct dict_image a = { 0 }, b = { 0 };
 	char left[32], right[32];
 	struct comparison c = { .left = left, .right = right };
-	struct slave other;
+	struct ect_slave other;
 	int ret;
 
-	if (dev_slave(d, (unsigned int)t->compare_slave, &other))
+	if (dev_slave_at(d, (unsigned int)t->compare_slave, &other))
 		return 1;
 	snprintf(left, sizeof(left), "slave %u", s->position);
 	snprintf(right, sizeof(right), "slave %u", other.position);
@@ -161,7 +161,7 @@ static int with_slave(const struct tool *t, struct dev *d, const struct slave *s
 	return ret;
 }
 
-static int save(const struct tool *t, struct dev *d, const struct slave *s)
+static int save(const struct tool *t, struct dev *d, const struct ect_slave *s)
 {
 	struct dict_image i = { 0 };
 	size_t refused = 0, values = 0;
@@ -187,9 +187,9 @@ static int save(const struct tool *t, struct dev *d, const struct slave *s)
 }
 
 static int single(const struct tool *t,
-		  int (*fn)(const struct tool *t, struct dev *d, const struct slave *s))
+		  int (*fn)(const struct tool *t, struct dev *d, const struct ect_slave *s))
 {
-	struct slave s;
+	struct ect_slave s;
 	struct dev d;
 	int ret;
 

@@ -10,11 +10,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/tools/text.h"
 #include "io.h"
 #include "json.h"
 #include "out.h"
 #include "save.h"
-#include "text.h"
 
 #define FORMAT		"ethercat sdos"
 #define VERSION		1
@@ -41,7 +41,6 @@ static int append(struct dict_image *i, const struct dict_entry *e)
 	}
 	to = &i->v[i->n];
 	*to = *e;
-	to->limits = (struct ec_od_values){ 0 };
 	if (e->value.data) {
 		to->value.data = malloc(e->value.size + 1);
 		if (!to->value.data)
@@ -52,7 +51,7 @@ static int append(struct dict_image *i, const struct dict_entry *e)
 	return 0;
 }
 
-static void object(const struct dict_reader *r, const struct dict_object *o)
+static void object(const struct dict_reader *r, const struct ect_object *o)
 {
 	(void)r, (void)o;
 }
@@ -75,7 +74,7 @@ static void entry(const struct dict_reader *r, const struct dict_entry *e)
  *
  * Return: 0, or 1 after printing what failed.
  */
-int dict_image_read(const struct tool *t, struct dev *d, const struct slave *s,
+int dict_image_read(const struct tool *t, struct dev *d, const struct ect_slave *s,
 		    struct dict_image *i)
 {
 	const struct dict_reader r = {
@@ -98,18 +97,18 @@ static void save_entry(FILE *f, const struct dict_entry *e)
 {
 	char access[7], type[32], *text;
 
-	dict_access_text(e->access, access);
-	dict_type_text(e->type, type, sizeof(type));
-	fprintf(f, "{\"object\": \"0x%04x:%02x\", \"name\": ", e->index, e->sub);
-	out_json_string(f, e->name);
+	dict_access_text(e->d.access, access);
+	dict_type_text(e->d.type, type, sizeof(type));
+	fprintf(f, "{\"object\": \"0x%04x:%02x\", \"name\": ", e->d.index, e->d.subindex);
+	out_json_string(f, e->d.name);
 	fprintf(f, ", \"access\": %u, \"access_text\": \"%s\", \"type_code\": %u, \"type\": \"%s\", \"size_bits\": %u",
-		e->access, access, e->type, type, e->bits);
+		e->d.access, access, e->d.type, type, e->d.bits);
 	if (e->value.data) {
 		fputs(", \"data_hex\": \"", f);
 		for (size_t k = 0; k < e->value.size; k++)
 			fprintf(f, "%02x", e->value.data[k]);
 		fputs("\", \"value\": ", f);
-		text = dict_value_text(e->type, e->value.data, e->value.size);
+		text = dict_value_text(e->d.type, e->value.data, e->value.size);
 		out_json_string(f, text ? text : "");
 		free(text);
 	} else if (e->value.abort) {
@@ -183,13 +182,13 @@ static bool load_entry(const struct json *j, struct dict_image *i)
 	    where[used] || !json_u(j, "access", 0xffff, &access) ||
 	    !json_u(j, "type_code", 0xffff, &type) || !json_u(j, "size_bits", 0xffff, &bits))
 		return false;
-	e.index = (u16)index;
-	e.sub = (u8)sub;
-	e.access = (u16)access;
-	e.type = (u16)type;
-	e.bits = (u16)bits;
-	snprintf(e.name, sizeof(e.name), "%s", name);
-	string_clean(e.name, sizeof(e.name));
+	e.d.index = (u16)index;
+	e.d.subindex = (u8)sub;
+	e.d.access = (u16)access;
+	e.d.type = (u16)type;
+	e.d.bits = (u16)bits;
+	snprintf(e.d.name, sizeof(e.d.name), "%s", name);
+	string_clean(e.d.name, sizeof(e.d.name));
 	if (json_u(j, "abort_code", 0xffffffff, &number))
 		e.value.abort = (u32)number;
 	else if (json_u(j, "errno", 0xffff, &number))

@@ -25,7 +25,7 @@ struct dict_image {
 	bool no_memory;
 };
 
-int dict_image_read(const struct tool *t, struct dev *d, const struct slave *s,
+int dict_image_read(const struct tool *t, struct dev *d, const struct ect_slave *s,
 		    struct dict_image *i);
 int dict_image_load(const char *path, struct dict_image *i);
 int dict_image_save(const char *path, const struct dict_image *i);

@@ -5,9 +5,9 @@
 #include <stdlib.h>
 
 int domain_each(struct dev *d, const struct tool *t,
-		int (*fn)(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom))
+		int (*fn)(const struct tool *t, struct dev *d, const struct ect_domain *dom))
 {
-	struct master m;
+	struct ect_master m;
 	struct numbers sel;
 	int ret = 0;
 
@@ -17,10 +17,10 @@ int domain_each(struct dev *d, const struct tool *t,
 		return fail("out of memory");
 	dev_selected("domain", !list_all(&t->domains), sel.n);
 	for (size_t i = 0; i < sel.n && !ret; i++) {
-		struct ec_ioc_domain dom = { .index = sel.v[i] };
-		int err = dev_ioctl(d, EC_IOC_DOMAIN, &dom);
+		struct ect_domain dom = { .struct_size = sizeof(dom) };
+		int err = ect_domain_read(d->h, sel.v[i], &dom);
 
-		if (err == ENOENT)
+		if (err == -ENOENT)
 			break;	/* the application has exited */
 		if (err)
 			ret = dev_fail(d, err, "Master%u: cannot read the state of domain %u",
@@ -32,22 +32,20 @@ int domain_each(struct dev *d, const struct tool *t,
 	return ret;
 }
 
-int domain_data(struct dev *d, const struct ec_ioc_domain *dom, u8 **data, size_t *size)
+int domain_data(struct dev *d, const struct ect_domain *dom, u8 **data, size_t *size)
 {
-	struct ec_ioc_domain_data arg = { .index = dom->index, .size = dom->size };
 	u8 *buf = calloc(1, dom->size + 1u);
-	int err;
+	long n;
 
 	if (!buf)
 		return fail("out of memory");
-	arg.data = (uintptr_t)buf;
-	err = dev_ioctl(d, EC_IOC_DOMAIN_DATA, &arg);
-	if (err) {
+	n = ect_domain_data(d->h, dom->index, buf, dom->size);
+	if (n < 0) {
 		free(buf);
-		return dev_fail(d, err, "Master%u: cannot read the data of domain %u", d->master,
+		return dev_fail(d, (int)n, "Master%u: cannot read the data of domain %u", d->master,
 				dom->index);
 	}
 	*data = buf;
-	*size = min(arg.size, dom->size);
+	*size = (size_t)n;
 	return 0;
 }

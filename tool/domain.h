@@ -6,8 +6,8 @@
 
 /* calls @fn for each domain that -d selects; its value is the largest returned */
 int domain_each(struct dev *d, const struct tool *t,
-		int (*fn)(const struct tool *t, struct dev *d, const struct ec_ioc_domain *dom));
+		int (*fn)(const struct tool *t, struct dev *d, const struct ect_domain *dom));
 /* the process image, to be freed */
-int domain_data(struct dev *d, const struct ec_ioc_domain *dom, u8 **data, size_t *size);
+int domain_data(struct dev *d, const struct ect_domain *dom, u8 **data, size_t *size);
 
 #endif

@@ -1,32 +1,31 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Error counters of a slave's ports, registers 0x0300 to 0x0313. */
+/* Error counters of a slave's ports. */
 #ifndef EC_TOOL_ERRORS_H
 #define EC_TOOL_ERRORS_H
 
 #include "../master/wire/regs.h"
 #include "reg.h"
 
-int errors_try(struct dev *d, const struct slave *s, u8 *regs);
-int errors_read(struct dev *d, const struct slave *s, u8 *regs);
+int errors_read(struct dev *d, const struct ect_slave *s, struct ect_errors *e);
 
-static inline u8 err_rx(const u8 *regs, unsigned int port)
+static inline u8 err_rx(const struct ect_errors *e, unsigned int port)
 {
-	return regs[EC_REG_ERR_RX(port) - EC_REG_ERRORS];
+	return e->ports[port].invalid;
 }
 
-static inline u8 err_phy(const u8 *regs, unsigned int port)
+static inline u8 err_phy(const struct ect_errors *e, unsigned int port)
 {
-	return regs[EC_REG_ERR_PHY(port) - EC_REG_ERRORS];
+	return e->ports[port].receiver;
 }
 
-static inline u8 err_fwd(const u8 *regs, unsigned int port)
+static inline u8 err_fwd(const struct ect_errors *e, unsigned int port)
 {
-	return regs[EC_REG_ERR_FWD(port) - EC_REG_ERRORS];
+	return e->ports[port].forwarded;
 }
 
-static inline u8 err_lost(const u8 *regs, unsigned int port)
+static inline u8 err_lost(const struct ect_errors *e, unsigned int port)
 {
-	return regs[EC_REG_ERR_LOST(port) - EC_REG_ERRORS];
+	return e->ports[port].lost_link;
 }
 
 #endif

@@ -10,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/tools/text.h"
 #include "io.h"
-#include "text.h"
 
 #define ENGLISH	"1033"
 

@@ -6,11 +6,11 @@
 #include <string.h>
 #include <strings.h>
 
+#include "../lib/tools/text.h"
 #include "../master/wire/foe.h"
 #include "io.h"
 #include "out.h"
 #include "progress.h"
-#include "text.h"
 
 /* what the thread shows that watches a transfer */
 struct watch {
@@ -96,34 +96,34 @@ int foe_password(int argc, char **argv, struct foe *f)
 	return 0;
 }
 
-static int failed(struct dev *d, int err, const struct slave *s, const struct ec_ioc_foe *i,
-		  bool write)
+static int failed(struct dev *d, int err, const struct ect_slave *s, const struct foe *f)
 {
-	const char *text = ec_foe_error_text(i->error_code) ?: "unknown code", *own;
-	char name[EC_FOE_NAME + 1] = "", reason[EC_UAPI_REASON];
-	const char *verb = write ? "write" : "read";
+	u32 code = ect_error_code(d->h);
+	const char *text = ec_foe_error_text(code) ?: "unknown code", *own;
+	const char *verb = f->write ? "write" : "read", *reason;
+	char name[ECT_FOE_NAME + 1];
 
-	memcpy(name, i->name, EC_FOE_NAME);
+	snprintf(name, sizeof(name), "%s", f->name);
 	string_clean(name, sizeof(name));
-	if (!i->error_code)
+	if (!code)
 		return dev_fail(d, err, "Master%u slave %u: cannot %s file '%s'", d->master,
 				s->position, verb, name);
-	dev_reason(d, err, reason, sizeof(reason));
+	reason = ect_reason(d->h);
 	own = strstr(reason, "; text of the slave: ");
 	if (own && !strcasecmp(strchr(own, ':') + 2, text))
 		own = NULL;
-	return fail_cause(err, reason, own ? own + 2 : NULL,
+	return fail_cause(-err, reason, own ? own + 2 : NULL,
 			  "Master%u slave %u: cannot %s file '%s': 0x%08x: %s", d->master,
-			  s->position, verb, name, i->error_code, text);
+			  s->position, verb, name, code, text);
 }
 
 int foe_check_name(const char *name)
 {
 	size_t n = strlen(name), i;
 
-	if (!n || n > EC_FOE_NAME)
+	if (!n || n > ECT_FOE_NAME)
 		return usage_error("invalid file name '%s': expected 1 to %u characters", name,
-				   EC_FOE_NAME);
+				   ECT_FOE_NAME);
 	for (i = 0; i < n; i++)
 		if (name[i] < ' ' || name[i] > '~')
 			return usage_error("invalid file name: expected printable characters; name the file on the slave with -o");
@@ -131,27 +131,26 @@ int foe_check_name(const char *name)
 }
 
 /* A read sets @f->size to what has come. */
-int foe_transfer(struct dev *d, const struct tool *t, const struct slave *s, struct foe *f)
+int foe_transfer(struct dev *d, const struct tool *t, const struct ect_slave *s, struct foe *f)
 {
 	struct watch w = { .f = f };
-	struct ec_ioc_foe i = {
-		.password = f->password, .size = f->size, .data = (uintptr_t)f->data,
-		.done = (uintptr_t)&w.done, .slave = s->slave,
-	};
 	pthread_t thread;
 	double begin;
 	bool watched;
-	int err;
+	long n;
 
-	memcpy(i.name, f->name, strlen(f->name));
 	begin = now_s();
 	watched = watch_begin(&w, t, &thread);
-	err = dev_ioctl(d, f->write ? EC_IOC_FOE_WRITE : EC_IOC_FOE_READ, &i);
+	if (f->write)
+		n = ect_foe_write(d->h, s->device, f->name, f->password, f->data, f->size, &w.done);
+	else
+		n = ect_foe_read(d->h, s->device, f->name, f->password, f->data, f->size, &w.done);
 	if (watched)
 		watch_end(&w, thread);
-	if (err)
-		return failed(d, err, s, &i, f->write);
-	f->size = min(i.size, f->size);
+	if (n < 0)
+		return failed(d, (int)n, s, f);
+	if (!f->write)
+		f->size = (u32)n;
 	if (t->verbosity > 0)
 		fprintf(stderr, "%u bytes in %.2f s\n", f->size, now_s() - begin);
 	out_u("master", d->master, NULL);

@@ -27,6 +27,6 @@ const char *base_name(const char *path);
 int foe_password(int argc, char **argv, struct foe *f);
 /* The name must be one the kernel takes. */
 int foe_check_name(const char *name);
-int foe_transfer(struct dev *d, const struct tool *t, const struct slave *s, struct foe *f);
+int foe_transfer(struct dev *d, const struct tool *t, const struct ect_slave *s, struct foe *f);
 
 #endif

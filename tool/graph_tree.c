@@ -5,9 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/tools/text.h"
 #include "out.h"
 #include "slave_info.h"
-#include "text.h"
 #include "topology.h"
 
 #define MAX_DEPTH	16	/* deeper branches are not indented further */
@@ -29,7 +29,7 @@ static int columns(const char *s)
 	return n;
 }
 
-static int levels(const struct topo_node *n)
+static int levels(const struct ect_node *n)
 {
 	return (int)min(n->depth, (u32)MAX_DEPTH) + 1;
 }
@@ -42,24 +42,24 @@ struct widths {
 
 static struct widths measure(const struct topo *t, const struct slaves *all)
 {
-	char name[EC_UAPI_STRING], state[16];
+	char name[ECT_STRING], state[16];
 	struct widths w = { 0 };
 
 	for (size_t i = 0; i < all->n; i++) {
 		slave_name(&all->v[i], name, sizeof(name));
 		al_state_text(all->v[i].al_status, state, sizeof(state));
-		w.name = max(w.name, levels(&t->node[i]) * INDENT + columns(name));
+		w.name = max(w.name, levels(t->node[i]) * INDENT + columns(name));
 		w.state = max(w.state, (int)strlen(state));
 	}
 	return w;
 }
 
 /* "0 1 - -": a number is an open port, x one that is closed despite its link */
-static void ports(const struct slave *s)
+static void ports(const struct ect_slave *s)
 {
 	out_text("  ports");
-	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++) {
-		const struct ec_ioc_port *p = &s->ports[i];
+	for (unsigned int i = 0; i < ECT_PORTS; i++) {
+		const struct ect_port *p = &s->ports[i];
 		char c = !p->loop_closed && p->signal ? (char)('0' + i) :
 			 !p->loop_closed ? '?' : p->link_up ? 'x' : '-';
 
@@ -75,47 +75,47 @@ static void counter(const char *name, unsigned int v, const char **sep)
 	*sep = ", ";
 }
 
-static void errors_text(const u8 *regs)
+static void errors_text(const struct ect_errors *e)
 {
-	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++) {
+	for (unsigned int i = 0; i < ECT_PORTS; i++) {
 		const char *sep = " ";
 
-		if (!err_rx(regs, i) && !err_phy(regs, i) && !err_fwd(regs, i) &&
-		    !err_lost(regs, i))
+		if (!err_rx(e, i) && !err_phy(e, i) && !err_fwd(e, i) &&
+		    !err_lost(e, i))
 			continue;
 		out_text("  port %u:", i);
-		counter("CRC", err_rx(regs, i), &sep);
-		counter("PHY", err_phy(regs, i), &sep);
-		counter("FWD", err_fwd(regs, i), &sep);
-		counter("lost links", err_lost(regs, i), &sep);
+		counter("CRC", err_rx(e, i), &sep);
+		counter("PHY", err_phy(e, i), &sep);
+		counter("FWD", err_fwd(e, i), &sep);
+		counter("lost links", err_lost(e, i), &sep);
 	}
 }
 
-static void ports_json(const struct slave *s, const u8 *regs)
+static void ports_json(const struct ect_slave *s, const struct ect_errors *e)
 {
 	out_array("ports");
-	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++) {
-		const struct ec_ioc_port *p = &s->ports[i];
+	for (unsigned int i = 0; i < ECT_PORTS; i++) {
+		const struct ect_port *p = &s->ports[i];
 
 		out_object(NULL);
 		out_str("type", port_type_text(p->type), NULL);
 		out_bool("link_up", p->link_up, NULL);
 		out_bool("loop_closed", p->loop_closed, NULL);
 		out_bool("signal", p->signal, NULL);
-		if (regs) {
-			out_u("crc_errors", err_rx(regs, i), NULL);
-			out_u("phy_errors", err_phy(regs, i), NULL);
-			out_u("forwarded_errors", err_fwd(regs, i), NULL);
-			out_u("lost_links", err_lost(regs, i), NULL);
+		if (e) {
+			out_u("crc_errors", err_rx(e, i), NULL);
+			out_u("phy_errors", err_phy(e, i), NULL);
+			out_u("forwarded_errors", err_fwd(e, i), NULL);
+			out_u("lost_links", err_lost(e, i), NULL);
 		}
 		out_end();
 	}
 	out_end();
 }
 
-static void upstream(const struct topo_node *n)
+static void upstream(const struct ect_node *n)
 {
-	if (n->parent == TOPO_MASTER) {
+	if (n->parent == ECT_NONE32) {
 		out_null("upstream", NULL);
 		out_null("upstream_port", NULL);
 		out_text("  %u  ", n->port);
@@ -127,11 +127,12 @@ static void upstream(const struct topo_node *n)
 	out_u("port", n->port, NULL);
 }
 
-static void row(const struct topo *t, const struct slave *s, struct widths w, const u8 *regs)
+static void row(const struct topo *t, const struct ect_slave *s, struct widths w,
+		const struct ect_errors *e)
 {
-	const struct topo_node *n = &t->node[s->position];
+	const struct ect_node *n = t->node[s->position];
 	const char *medium = port_type_text(s->ports[n->port].type);
-	char name[EC_UAPI_STRING], state[16];
+	char name[ECT_STRING], state[16];
 
 	slave_name(s, name, sizeof(name));
 	al_state_text(s->al_status, state, sizeof(state));
@@ -146,41 +147,41 @@ static void row(const struct topo *t, const struct slave *s, struct widths w, co
 	out_str("medium", medium, "  %-4s", medium);
 	out_str("state", state, "  %-*s", w.state, state);
 	ports(s);
-	ports_json(s, regs);
+	ports_json(s, e);
 	if (slave_has_dc(s))
 		out_u("dc_delay_ns", s->transmission_delay, "  %u ns", s->transmission_delay);
 	else
 		out_null("dc_delay_ns", "  no DC");
-	if (regs)
-		errors_text(regs);
+	if (e)
+		errors_text(e);
 	out_text("\n");
 	out_end();
 }
 
-static void heading(struct dev *d, const struct master *m, bool backup)
+static void heading(struct dev *d, const struct ect_list *devices, unsigned int backup)
 {
-	const struct ec_ioc_device *dev = &m->devices[backup];
+	const struct ect_device *dev = ect_list_get(devices, backup);
 
-	out_text("Master%u: %s device %.*s, link %s\n", d->master, backup ? "backup" : "main",
-		 EC_UAPI_STRING, dev->name, dev->link_up ? "up" : "down");
+	out_text("Master%u: %s device %s, link %s\n", d->master, backup ? "backup" : "main",
+		 dev ? dev->name : "", dev && dev->link_up ? "up" : "down");
 }
 
 /**
  * graph_tree() - print the tree of a master
  * @d: open file of the master
  * @all: its slaves
- * @errors: registers EC_REG_ERRORS of each, or NULL: without error counters
+ * @errors: counters of each, or NULL: without error counters
  *
  * Return: 0, or 1 after printing an error.
  */
-int graph_tree(struct dev *d, const struct slaves *all, const u8 *const *errors)
+int graph_tree(struct dev *d, const struct slaves *all, const struct ect_errors *const *errors)
 {
-	struct master m;
+	struct ect_list *devices;
 	struct widths w;
 	struct topo t;
 	int ret = 0;
 
-	if (dev_master(d, &m))
+	if (dev_devices(d, &devices))
 		return 1;
 	if (topo_build(&t, all)) {
 		ret = 1;
@@ -188,17 +189,18 @@ int graph_tree(struct dev *d, const struct slaves *all, const u8 *const *errors)
 	}
 	w = measure(&t, all);
 	if (!all->n)
-		heading(d, &m, false);
+		heading(d, devices, 0);
 	out_array("slaves");
 	for (size_t i = 0; i < all->n; i++) {
-		u32 at = t.order[i];
+		const struct ect_node *n = ect_list_get(t.order, i);
 
-		if (t.node[at].parent == TOPO_MASTER)
-			heading(d, &m, t.node[at].device);
-		row(&t, &all->v[at], w, errors[at]);
+		if (n->parent == ECT_NONE32)
+			heading(d, devices, n->device);
+		row(&t, &all->v[n->slave], w, errors[n->slave]);
 	}
 	out_end();
 out:
+	ect_list_free(devices);
 	topo_free(&t);
 	return ret;
 }

@@ -5,6 +5,6 @@
 #include "dev.h"
 #include "errors.h"
 
-int graph_tree(struct dev *d, const struct slaves *all, const u8 *const *errors);
+int graph_tree(struct dev *d, const struct slaves *all, const struct ect_errors *const *errors);
 
 #endif

@@ -62,14 +62,15 @@ void soe_addr_out(const struct soe_addr *a)
 }
 
 /* Return: 1 */
-int soe_failed(struct dev *d, int err, const struct slave *s, u32 error,
-	       const struct soe_addr *a, const char *verb)
+int soe_failed(struct dev *d, int err, const struct ect_slave *s, const struct soe_addr *a,
+	       const char *verb)
 {
-	const char *text = ec_soe_error_text((u16)error);
+	u32 code = ect_error_code(d->h);
+	const char *text = ec_soe_error_text((u16)code);
 
-	if (error)
+	if (code)
 		return fail("Master%u slave %u: cannot %s %s of drive %u: 0x%04x: %s", d->master,
-			    s->position, verb, a->text, a->drive, error,
+			    s->position, verb, a->text, a->drive, code,
 			    text ? text : "unknown code");
 	return dev_fail(d, err, "Master%u slave %u: cannot %s %s of drive %u", d->master,
 			s->position, verb, a->text, a->drive);

@@ -14,7 +14,7 @@ struct soe_addr {
 
 int soe_addr_parse(struct soe_addr *a, const char *drive, const char *idn);
 void soe_addr_out(const struct soe_addr *a);
-int soe_failed(struct dev *d, int err, const struct slave *s, u32 error,
-	       const struct soe_addr *a, const char *verb);
+int soe_failed(struct dev *d, int err, const struct ect_slave *s, const struct soe_addr *a,
+	       const char *verb);
 
 #endif

@@ -10,20 +10,20 @@
 #include <strings.h>
 #include <sys/socket.h>
 
+#include "../lib/tools/text.h"
 #include "out.h"
-#include "text.h"
 
 /* keywords of both lines of the field's tool, and what they mean */
 static const struct {
 	const char *word;
 	u32 which;
 } words[] = {
-	{ "mac_address", EC_IP_MAC }, { "link", EC_IP_MAC },
-	{ "ip_address", EC_IP_ADDRESS }, { "addr", EC_IP_ADDRESS },
-	{ "subnet_mask", EC_IP_MASK }, { "mask", EC_IP_MASK },
-	{ "default_gateway", EC_IP_GATEWAY }, { "default", EC_IP_GATEWAY },
-	{ "dns_address", EC_IP_DNS }, { "dns_adress", EC_IP_DNS }, { "dns", EC_IP_DNS },
-	{ "hostname", EC_IP_HOSTNAME }, { "name", EC_IP_HOSTNAME },
+	{ "mac_address", ECT_IP_MAC }, { "link", ECT_IP_MAC },
+	{ "ip_address", ECT_IP_ADDRESS }, { "addr", ECT_IP_ADDRESS },
+	{ "subnet_mask", ECT_IP_MASK }, { "mask", ECT_IP_MASK },
+	{ "default_gateway", ECT_IP_GATEWAY }, { "default", ECT_IP_GATEWAY },
+	{ "dns_address", ECT_IP_DNS }, { "dns_adress", ECT_IP_DNS }, { "dns", ECT_IP_DNS },
+	{ "hostname", ECT_IP_HOSTNAME }, { "name", ECT_IP_HOSTNAME },
 };
 
 static int hex(char c)
@@ -99,7 +99,7 @@ static int parse_mask(u8 mask[4], const char *text)
 }
 
 /* ADDRESS or ADDRESS/PREFIX, which also gives the mask */
-static int parse_address(struct ec_ip_params *p, const char *text)
+static int parse_address(struct ect_ip *p, const char *text)
 {
 	const char *slash = strchr(text, '/');
 	char host[256], *end;
@@ -114,25 +114,25 @@ static int parse_address(struct ec_ip_params *p, const char *text)
 	bits = strtoul(slash + 1, &end, 10);
 	if (!isdigit((unsigned char)slash[1]) || *end || bits > 32)
 		return usage_error("invalid prefix '%s': expected 0 to 32", slash + 1);
-	if (p->which & EC_IP_MASK)
+	if (p->which & ECT_IP_MASK)
 		return usage_error("'%s' and subnet_mask exclude each other", text);
 	mask = bits ? htonl(~0u << (32 - bits)) : 0;
 	memcpy(p->mask, &mask, 4);
-	p->which |= EC_IP_MASK;
+	p->which |= ECT_IP_MASK;
 	return 0;
 }
 
 static int parse_name(char *name, const char *text)
 {
-	if (!*text || strlen(text) >= EC_IP_NAME)
+	if (!*text || strlen(text) >= ECT_IP_NAME)
 		return usage_error("invalid host name '%s': expected 1 to %d bytes", text,
-				   EC_IP_NAME - 1);
-	memset(name, 0, EC_IP_NAME);
+				   ECT_IP_NAME - 1);
+	memset(name, 0, ECT_IP_NAME);
 	memcpy(name, text, strlen(text));
 	return 0;
 }
 
-int ip_parse(struct ec_ip_params *p, const char *key, const char *value)
+int ip_parse(struct ect_ip *p, const char *key, const char *value)
 {
 	u32 which = 0;
 
@@ -143,17 +143,17 @@ int ip_parse(struct ec_ip_params *p, const char *key, const char *value)
 		return usage_error("'%s': this parameter is given already", key);
 	p->which |= which;
 	switch (which) {
-	case EC_IP_MAC:
+	case ECT_IP_MAC:
 		return parse_mac(p->mac, value);
-	case EC_IP_ADDRESS:
+	case ECT_IP_ADDRESS:
 		return parse_address(p, value);
-	case EC_IP_MASK:
+	case ECT_IP_MASK:
 		return parse_mask(p->mask, value);
-	case EC_IP_GATEWAY:
+	case ECT_IP_GATEWAY:
 		return parse_host(p->gateway, value);
-	case EC_IP_DNS:
+	case ECT_IP_DNS:
 		return parse_host(p->dns, value);
-	case EC_IP_HOSTNAME:
+	case ECT_IP_HOSTNAME:
 		return parse_name(p->name, value);
 	default:
 		return usage_error("unknown keyword '%s': expected mac_address, ip_address, subnet_mask, default_gateway, dns_address or hostname",
@@ -175,7 +175,7 @@ static const char *dotted(const u8 a[4], char buf[16])
 	return inet_ntop(AF_INET, a, buf, 16);
 }
 
-void ip_out(struct ec_ip_params *p, const char *indent, bool all)
+void ip_out(struct ect_ip *p, const char *indent, bool all)
 {
 	char mac[18], buf[16];
 	const u8 *m = p->mac;
@@ -183,12 +183,12 @@ void ip_out(struct ec_ip_params *p, const char *indent, bool all)
 	snprintf(mac, sizeof(mac), "%02x:%02x:%02x:%02x:%02x:%02x", m[0], m[1], m[2], m[3], m[4],
 		 m[5]);
 	string_clean(p->name, sizeof(p->name));
-	line(p->which & EC_IP_MAC, all, "mac_address", mac, indent, "MAC address");
-	line(p->which & EC_IP_ADDRESS, all, "ip_address", dotted(p->ip, buf), indent, "IP address");
-	line(p->which & EC_IP_MASK, all, "subnet_mask", dotted(p->mask, buf), indent,
+	line(p->which & ECT_IP_MAC, all, "mac_address", mac, indent, "MAC address");
+	line(p->which & ECT_IP_ADDRESS, all, "ip_address", dotted(p->ip, buf), indent, "IP address");
+	line(p->which & ECT_IP_MASK, all, "subnet_mask", dotted(p->mask, buf), indent,
 	     "Subnet mask");
-	line(p->which & EC_IP_GATEWAY, all, "default_gateway", dotted(p->gateway, buf), indent,
+	line(p->which & ECT_IP_GATEWAY, all, "default_gateway", dotted(p->gateway, buf), indent,
 	     "Default gateway");
-	line(p->which & EC_IP_DNS, all, "dns_address", dotted(p->dns, buf), indent, "DNS address");
-	line(p->which & EC_IP_HOSTNAME, all, "hostname", p->name, indent, "Hostname");
+	line(p->which & ECT_IP_DNS, all, "dns_address", dotted(p->dns, buf), indent, "DNS address");
+	line(p->which & ECT_IP_HOSTNAME, all, "hostname", p->name, indent, "Hostname");
 }

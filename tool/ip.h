@@ -6,8 +6,8 @@
 #include "tool.h"
 
 /* one pair; 0, or 1 after printing what is wrong */
-int ip_parse(struct ec_ip_params *p, const char *key, const char *value);
+int ip_parse(struct ect_ip *p, const char *key, const char *value);
 /* one line each, behind @indent; @all: also those not set, as null (JSON only) */
-void ip_out(struct ec_ip_params *p, const char *indent, bool all);
+void ip_out(struct ect_ip *p, const char *indent, bool all);
 
 #endif

@@ -4,7 +4,6 @@
 #include <errno.h>
 #include <stdlib.h>
 
-#include "text.h"
 
 #define CONTROL_WRITE	0x04	/* direction bit of the SM's control byte */
 
@@ -13,44 +12,35 @@ bool layout_is_output(const struct layout_sm *sm)
 	return sm->sm.control & CONTROL_WRITE;
 }
 
-static int read_entries(struct dev *d, struct layout_pdo *p)
+static int read_entries(struct dev *d, const struct ect_slave *s, unsigned int sm, unsigned int pdo,
+			struct layout_pdo *p)
 {
 	p->entries = calloc(p->pdo.entry_count + 1u, sizeof(*p->entries));
 	if (!p->entries)
-		return ENOMEM;
+		return -ENOMEM;
 	for (unsigned int i = 0; i < p->pdo.entry_count; i++) {
-		struct ec_ioc_pdo_entry *e = &p->entries[i];
 		int err;
 
-		e->slave = p->pdo.slave;
-		e->sm = p->pdo.sm;
-		e->pdo_pos = p->pdo.pdo_pos;
-		e->entry_pos = (__u16)i;
-		err = dev_ioctl(d, EC_IOC_PDO_ENTRY, e);
+		p->entries[i].struct_size = sizeof(*p->entries);
+		err = ect_pdo_entry_read(d->h, s->device, sm, pdo, i, &p->entries[i]);
 		if (err)
 			return err;
-		string_clean(e->name, sizeof(e->name));
 	}
 	return 0;
 }
 
-static int read_pdos(struct dev *d, struct layout_sm *sm)
+static int read_pdos(struct dev *d, const struct ect_slave *s, struct layout_sm *sm)
 {
 	sm->pdos = calloc(sm->sm.pdo_count + 1u, sizeof(*sm->pdos));
 	if (!sm->pdos)
-		return ENOMEM;
+		return -ENOMEM;
 	for (unsigned int i = 0; i < sm->sm.pdo_count; i++) {
 		struct layout_pdo *p = &sm->pdos[i];
 		int err;
 
-		p->pdo.slave = sm->sm.slave;
-		p->pdo.sm = sm->sm.sm;
-		p->pdo.pdo_pos = (__u16)i;
-		err = dev_ioctl(d, EC_IOC_PDO, &p->pdo);
-		if (err)
-			return err;
-		string_clean(p->pdo.name, sizeof(p->pdo.name));
-		err = read_entries(d, p);
+		p->pdo.struct_size = sizeof(p->pdo);
+		err = ect_pdo_read(d->h, s->device, sm->sm.sm, i, &p->pdo);
+		err = err ? err : read_entries(d, s, sm->sm.sm, i, p);
 		if (err)
 			return err;
 	}
@@ -65,7 +55,7 @@ static int read_pdos(struct dev *d, struct layout_sm *sm)
  *
  * Return: 0, or 1 after printing the error.
  */
-int layout_read(struct dev *d, const struct slave *s, struct layout *l)
+int layout_read(struct dev *d, const struct ect_slave *s, struct layout *l)
 {
 	int err = 0;
 
@@ -75,12 +65,11 @@ int layout_read(struct dev *d, const struct slave *s, struct layout *l)
 	for (unsigned int i = 0; i < s->sm_count && !err; i++) {
 		struct layout_sm *sm = &l->sms[i];
 
-		sm->sm.slave = s->slave;
-		sm->sm.sm = (__u8)i;
-		err = dev_ioctl(d, EC_IOC_SM, &sm->sm);
+		sm->sm.struct_size = sizeof(sm->sm);
+		err = ect_sm_read(d->h, s->device, i, &sm->sm);
 		if (!err) {
 			l->n++;
-			err = read_pdos(d, sm);
+			err = read_pdos(d, s, sm);
 		}
 	}
 	if (!err)

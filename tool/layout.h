@@ -6,12 +6,12 @@
 #include "dev.h"
 
 struct layout_pdo {
-	struct ec_ioc_pdo pdo;
-	struct ec_ioc_pdo_entry *entries;	/* pdo.entry_count */
+	struct ect_pdo pdo;
+	struct ect_pdo_entry *entries;	/* pdo.entry_count */
 };
 
 struct layout_sm {
-	struct ec_ioc_sm sm;
+	struct ect_sm sm;
 	struct layout_pdo *pdos;		/* sm.pdo_count */
 };
 
@@ -20,7 +20,7 @@ struct layout {
 	struct layout_sm *sms;
 };
 
-int layout_read(struct dev *d, const struct slave *s, struct layout *l);
+int layout_read(struct dev *d, const struct ect_slave *s, struct layout *l);
 void layout_free(struct layout *l);
 /* written by the master: an RxPDO of the slave */
 bool layout_is_output(const struct layout_sm *sm);

@@ -3,6 +3,7 @@
 #include <string.h>
 
 #include "out.h"
+#include "../lib/tools/text.h"
 #include "tool.h"
 
 /* the letters of @text in order; a repeated letter may match the same one */
@@ -62,30 +63,6 @@ int cmd_lookup(const char *text, const struct cmd **found)
 	return n;
 }
 
-/* letters that differ, are missing, too many, or exchanged with the next one */
-size_t typing_errors(const char *a, const char *b)
-{
-	enum { MOST = 32 };
-	size_t rows[3][MOST + 1], n = strlen(b);
-
-	if (strlen(a) > MOST || n > MOST)
-		return MOST;
-	for (size_t j = 0; j <= n; j++)
-		rows[0][j] = j;
-	for (size_t i = 1; a[i - 1]; i++) {
-		size_t *row = rows[i % 3], *up = rows[(i - 1) % 3];
-
-		row[0] = i;
-		for (size_t j = 1; j <= n; j++) {
-			row[j] = min(up[j], row[j - 1]) + 1;
-			row[j] = min(row[j], up[j - 1] + (a[i - 1] != b[j - 1]));
-			if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
-				row[j] = min(row[j], rows[(i - 2) % 3][j - 2] + 1);
-		}
-	}
-	return rows[strlen(a) % 3][n];
-}
-
 /* the long option that @word, without "--", nearly is, or NULL */
 const char *opt_nearest(const char *word)
 {
@@ -93,7 +70,7 @@ const char *opt_nearest(const char *word)
 	const char *nearest = NULL;
 
 	for (const struct opt *o = opts; o->letter; o++) {
-		size_t n = typing_errors(word, o->name);
+		size_t n = text_typos(word, o->name);
 
 		if (n <= least && (!nearest || n < least)) {
 			least = n;
@@ -111,7 +88,7 @@ int cmd_unknown(const char *text)
 	const char *nearest = NULL;
 
 	for (const struct cmd *const *c = cmds; *c; c++) {
-		size_t n = typing_errors(text, (*c)->name);
+		size_t n = text_typos(text, (*c)->name);
 
 		if (exists(*c) && n <= least && (!nearest || n < least)) {
 			least = n;

@@ -7,7 +7,7 @@
 #include <string.h>
 #include <unistd.h>
 
-#include "text.h"
+#include "../lib/tools/text.h"
 #include "tool.h"
 
 #define DEPTH 16

@@ -5,11 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/tools/text.h"
 #include "../master/wire/sii.h"
 #include "out.h"
 #include "sdo.h"
 #include "sii_image.h"
-#include "text.h"
 
 #define NAME		256
 #define ASSIGN		0x1c10	/* of SyncManager 0 */
@@ -27,7 +27,7 @@ struct live_pdo {
 /* one slave */
 struct reading {
 	struct dev *d;
-	const struct slave *s;
+	const struct ect_slave *s;
 	u8 *img;
 	size_t size;
 	bool quiet;
@@ -43,7 +43,7 @@ const char *pdo_entry_text(u16 index, const char *name)
 	return index || *name ? name : "Gap";
 }
 
-bool pdos_coe_has(const struct slave *s)
+bool pdos_coe_has(const struct ect_slave *s)
 {
 	return s->mbox_protocols & EC_SII_PROTO_COE;
 }
@@ -52,24 +52,21 @@ bool pdos_coe_has(const struct slave *s)
 static int upload(struct reading *r, u16 index, u8 sub, u32 *v, u32 *abort)
 {
 	u8 data[4] = { 0 };
-	struct ec_ioc_sdo s = {
-		.slave = r->s->slave, .index = index, .subindex = sub, .size = sizeof(data),
-		.data = (uintptr_t)data,
-	};
-	int err = dev_ioctl(r->d, EC_IOC_SDO_UPLOAD, &s);
+	long ret = ect_sdo_upload(r->d->h, r->s->device, index, sub, 0, 0, data, sizeof(data));
+	u32 code = ret < 0 ? ect_error_code(r->d->h) : 0;
 
 	*v = get_unaligned_le32(data);
-	if (!err)
+	if (ret >= 0)
 		return 0;
-	if (s.abort_code && abort)
-		*abort = s.abort_code;
-	else if (s.abort_code)
-		fail_full(err, NULL, s.abort_code, "Master%u slave %u: SDO upload 0x%04x:%02x",
+	if (code && abort)
+		*abort = code;
+	else if (code)
+		fail_full(-(int)ret, NULL, code, "Master%u slave %u: SDO upload 0x%04x:%02x",
 			  r->d->master, r->s->position, index, sub);
 	else
-		dev_fail(r->d, err, "Master%u slave %u: SDO upload 0x%04x:%02x", r->d->master,
-			 r->s->position, index, sub);
-	return err;
+		dev_fail(r->d, (int)ret, "Master%u slave %u: SDO upload 0x%04x:%02x",
+			 r->d->master, r->s->position, index, sub);
+	return -(int)ret;
 }
 
 /* The number of entries, which is subindex 0 of both kinds of objects. */
@@ -263,14 +260,14 @@ static int sync_manager(struct reading *r)
 	return err;
 }
 
-static int sync_managers(struct reading *r, const struct slave *s)
+static int sync_managers(struct reading *r, const struct ect_slave *s)
 {
 	int err = 0;
 
 	for (unsigned int i = FIRST_SM; i < s->sm_count && !err; i++) {
-		struct ec_ioc_sm sm = { .slave = s->slave, .sm = (u8)i };
+		struct ect_sm sm = { .struct_size = sizeof(sm) };
 
-		err = dev_ioctl(r->d, EC_IOC_SM, &sm);
+		err = ect_sm_read(r->d->h, s->device, i, &sm);
 		if (err)
 			return dev_fail(r->d, err, "Master%u slave %u: cannot read SM%u",
 					r->d->master, s->position, i);
@@ -292,7 +289,7 @@ static int sync_managers(struct reading *r, const struct slave *s)
  * Return: 0, or 1 after printing what failed.
  */
 int pdos_coe(const struct slave_walk *w, const struct tool *t, struct dev *d,
-	     const struct slave *s, bool several)
+	     const struct ect_slave *s, bool several)
 {
 	struct reading *r = calloc(1, sizeof(*r));
 	int ret;

@@ -1,55 +1,55 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "reg.h"
 
-#define CHUNK	1024
-
-static int transfer(struct dev *d, unsigned long request, u32 flags, unsigned int position,
-		    struct ec_ioc_address slave, u16 address, u8 *data, size_t size)
+static int failed(struct dev *d, int err, const char *verb, const struct ect_slave *s,
+		  size_t address)
 {
-	for (size_t done = 0; done < size; done += CHUNK) {
-		struct ec_ioc_reg r = {
-			.flags = flags,
-			.slave = slave,
-			.address = (u16)(address + done),
-			.size = (u32)min(size - done, (size_t)CHUNK),
-			.data = (uintptr_t)(data + done),
-		};
-		int err = dev_ioctl(d, request, &r);
+	return dev_fail(d, err, "Master%u slave %u: cannot %s register 0x%04x", d->master,
+			s->position, verb, (u16)address);
+}
+
+/* one datagram after the other, so that the error names the one that failed */
+int reg_read(struct dev *d, const struct ect_slave *s, u16 address, u8 *data, size_t size)
+{
+	for (size_t i = 0; i < size; i += ECT_REG_MAX) {
+		int err = ect_reg_read(d->h, s->device, (u16)(address + i), data + i,
+				       min(size - i, (size_t)ECT_REG_MAX));
 
 		if (err)
-			return dev_fail(d, err, "Master%u slave %u: cannot %s register 0x%04x",
-					d->master, position,
-					request == EC_IOC_REG_READ ? "read" :
-					request == EC_IOC_REG_WRITE ? "write" : "exchange",
-					r.address);
+			return failed(d, err, "read", s, address + i);
 	}
 	return 0;
 }
 
-int reg_read(struct dev *d, const struct slave *s, u16 address, u8 *data, size_t size)
+static int put(struct dev *d, const struct ect_slave *s, u16 address, const u8 *data, size_t size,
+	       bool emergency)
 {
-	return transfer(d, EC_IOC_REG_READ, 0, s->position, s->slave, address, data, size);
+	if (emergency)
+		return ect_reg_write_emergency(d->h, s->position, address, data, size);
+	return ect_reg_write(d->h, s->device, address, data, size);
 }
 
-int reg_write(struct dev *d, const struct slave *s, u16 address, const u8 *data, size_t size)
+int reg_write(struct dev *d, const struct ect_slave *s, u16 address, const u8 *data, size_t size,
+	      bool emergency)
 {
-	return transfer(d, EC_IOC_REG_WRITE, 0, s->position, s->slave, address,
-			(u8 *)(uintptr_t)data, size);
-}
+	for (size_t i = 0; i < size; i += ECT_REG_MAX) {
+		int err = put(d, s, (u16)(address + i), data + i,
+			      min(size - i, (size_t)ECT_REG_MAX), emergency);
 
-/* by ring position, also while the bus is not scanned */
-int reg_write_emergency(struct dev *d, u16 position, u16 address, const u8 *data, size_t size)
-{
-	return transfer(d, EC_IOC_REG_WRITE, EC_REG_FLAG_EMERGENCY, position,
-			(struct ec_ioc_address){ .position = position }, address,
-			(u8 *)(uintptr_t)data, size);
+		if (err)
+			return failed(d, err, "write", s, address + i);
+	}
+	return 0;
 }
 
 /* one datagram: @data is written, and what was there before is in it afterwards */
-int reg_rdwr(struct dev *d, const struct slave *s, u16 address, u8 *data, size_t size)
+int reg_rdwr(struct dev *d, const struct ect_slave *s, u16 address, u8 *data, size_t size)
 {
-	if (size > CHUNK)
+	int err;
+
+	if (size > ECT_REG_MAX)
 		return usage_error("invalid size %zu: one datagram takes 1 to %u bytes", size,
-				   CHUNK);
-	return transfer(d, EC_IOC_REG_RDWR, 0, s->position, s->slave, address, data, size);
+				   ECT_REG_MAX);
+	err = ect_reg_exchange(d->h, s->device, address, data, size);
+	return err ? failed(d, err, "exchange", s, address) : 0;
 }

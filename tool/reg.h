@@ -6,9 +6,9 @@
 
 #define REG_SPACE	0x10000u
 
-int reg_rdwr(struct dev *d, const struct slave *s, u16 address, u8 *data, size_t size);
-int reg_read(struct dev *d, const struct slave *s, u16 address, u8 *data, size_t size);
-int reg_write(struct dev *d, const struct slave *s, u16 address, const u8 *data, size_t size);
-int reg_write_emergency(struct dev *d, u16 position, u16 address, const u8 *data, size_t size);
+int reg_rdwr(struct dev *d, const struct ect_slave *s, u16 address, u8 *data, size_t size);
+int reg_read(struct dev *d, const struct ect_slave *s, u16 address, u8 *data, size_t size);
+int reg_write(struct dev *d, const struct ect_slave *s, u16 address, const u8 *data, size_t size,
+	      bool emergency);
 
 #endif

@@ -3,12 +3,12 @@
 #include <ctype.h>
 #include <dirent.h>
 #include <errno.h>
-#include <linux/ethtool.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "attr.h"
+#include "../lib/tools/attr.h"
+#include "dev.h"
 #include "nic.h"
 #include "rt.h"
 #include "sys.h"
@@ -166,17 +166,15 @@ void rt_check_interrupts(struct rt *r)
 	nics_free(&all);
 }
 
-/* @question: struct ethtool_*, answered; false after a finding */
-static bool ask(struct rt *r, const struct nic *n, const char *check, void *question)
+/* whether a setting is known, whose @error the driver has; else there is a finding */
+static bool known(struct rt *r, const struct nic *n, const char *check, int error)
 {
-	int ret = sys_ethtool(n->name, question);
-
-	if (ret == -EOPNOTSUPP)
+	if (error == -EOPNOTSUPP)
 		rt_find(r, check, RT_OK, NULL, "%s: the driver %s has no such setting", n->name,
 			n->driver);
-	else if (ret)
-		rt_find(r, check, RT_UNKNOWN, NULL, "%s: %s", n->name, strerror(-ret));
-	return !ret;
+	else if (error)
+		rt_find(r, check, RT_UNKNOWN, NULL, "%s: %s", n->name, strerror(-error));
+	return !error;
 }
 
 /* Their 1 to 3 select a rate by load: at 100 Mbit/s up to 250 us between two interrupts. */
@@ -190,50 +188,47 @@ static bool adapts(const struct nic *n, u32 usecs)
 	return false;
 }
 
-static void check_coalescing(struct rt *r, const struct nic *n)
+static void check_coalescing(struct rt *r, const struct nic *n, const struct ect_card_settings *c)
 {
-	struct ethtool_coalesce c = { .cmd = ETHTOOL_GCOALESCE };
 	char fix[96];
 
 	attr_path(fix, sizeof(fix), "ethtool -C %s rx-usecs 0", n->name);
-	if (!ask(r, n, "coalescing", &c))
+	if (!known(r, n, "coalescing", c->coalesce_error))
 		return;
 	/* 1 is off for other drivers */
-	if (adapts(n, c.rx_coalesce_usecs))
+	if (adapts(n, c->rx_usecs))
 		rt_find(r, "coalescing", RT_ERROR, fix,
 			"%s: received frames wait by load (rx-usecs %u), up to 250 us", n->name,
-			c.rx_coalesce_usecs);
-	else if (c.rx_coalesce_usecs > 1 || c.use_adaptive_rx_coalesce)
+			c->rx_usecs);
+	else if (c->rx_usecs > 1 || c->adaptive_rx)
 		rt_find(r, "coalescing", RT_ERROR, fix, "%s: received frames wait %u us%s", n->name,
-			c.rx_coalesce_usecs, c.use_adaptive_rx_coalesce ? ", adaptive" : "");
+			c->rx_usecs, c->adaptive_rx ? ", adaptive" : "");
 	else
 		rt_find(r, "coalescing", RT_OK, NULL, "%s: received frames do not wait", n->name);
 }
 
-static void check_eee(struct rt *r, const struct nic *n)
+static void check_eee(struct rt *r, const struct nic *n, const struct ect_card_settings *c)
 {
-	struct ethtool_eee e = { .cmd = ETHTOOL_GEEE };
 	char fix[96];
 
 	attr_path(fix, sizeof(fix), "ethtool --set-eee %s eee off", n->name);
-	if (!ask(r, n, "energy", &e))
+	if (!known(r, n, "energy", c->eee_error))
 		return;
-	if (e.eee_enabled)
+	if (c->eee)
 		rt_find(r, "energy", RT_WARNING, fix, "%s: the link falls asleep between frames",
 			n->name);
 	else
 		rt_find(r, "energy", RT_OK, NULL, "%s: the link does not fall asleep", n->name);
 }
 
-static void check_pause(struct rt *r, const struct nic *n)
+static void check_pause(struct rt *r, const struct nic *n, const struct ect_card_settings *c)
 {
-	struct ethtool_pauseparam p = { .cmd = ETHTOOL_GPAUSEPARAM };
 	char fix[96];
 
 	attr_path(fix, sizeof(fix), "ethtool -A %s rx off tx off autoneg off", n->name);
-	if (!ask(r, n, "pause frames", &p))
+	if (!known(r, n, "pause frames", c->pause_error))
 		return;
-	if (p.rx_pause || p.tx_pause)
+	if (c->pause_rx || c->pause_tx)
 		rt_find(r, "pause frames", RT_WARNING, fix, "%s: they may hold frames back",
 			n->name);
 	else
@@ -255,6 +250,21 @@ static void check_power(struct rt *r, const struct nic *n)
 			n->name, text);
 }
 
+static void check_settings(struct rt *r, const struct nic *n)
+{
+	struct ect_card_settings c = { .struct_size = sizeof(c) };
+	struct ect_handle *h = ect_new();
+
+	if (h && !ect_card_settings(h, n->name, &c)) {
+		check_coalescing(r, n, &c);
+		check_eee(r, n, &c);
+		check_pause(r, n, &c);
+	} else {
+		r->failed |= !!fail("out of memory");
+	}
+	ect_free(h);
+}
+
 static void check_card(struct rt *r, const struct nic *n)
 {
 	char fix[128];
@@ -274,9 +284,7 @@ static void check_card(struct rt *r, const struct nic *n)
 		rt_find(r, "card", RT_WARNING, fix,
 			"%s: %s with the driver %s and its interrupts; a native driver can have it",
 			n->by, n->name, n->driver);
-	check_coalescing(r, n);
-	check_eee(r, n);
-	check_pause(r, n);
+	check_settings(r, n);
 	check_power(r, n);
 }
 

@@ -8,7 +8,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
-#include "attr.h"
+#include "../lib/tools/attr.h"
 #include "rt.h"
 #include "sys.h"
 

@@ -5,13 +5,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../master/wire/sdoinfo.h"
 #include "../master/wire/sii.h"
 #include "out.h"
 
 #define DESCRIBE_MS	1000	/* for a type that can be given as well */
 #define MOST_MS	60000u
-#define ROOM	(64u << 10)	/* the largest object the kernel transfers */
 
 /**
  * sdo_addr_parse() - parse what names an SDO
@@ -65,18 +63,19 @@ int sdo_timeout_check(const struct tool *t)
 	return 0;
 }
 
-static int failed(struct dev *d, int err, unsigned int position, u32 abort,
-		  const struct sdo_addr *a, const char *verb)
+static int failed(struct dev *d, int err, const struct ect_slave *s, const struct sdo_addr *a,
+		  const char *verb)
 {
+	u32 abort = ect_error_code(d->h);
 	char hint[48] = "";
 
 	if (abort == SDO_NO_OBJECT && *a->meant)
 		snprintf(hint, sizeof(hint), ", in decimal %u (did you mean %s?)", a->index,
 			 a->meant);
 	if (abort)
-		return fail_full(err, NULL, abort, "Master%u slave %u: SDO %s %s%s",
-				 d->master, position, verb, a->text, hint);
-	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, position, verb,
+		return fail_full(-err, NULL, abort, "Master%u slave %u: SDO %s %s%s", d->master,
+				 s->position, verb, a->text, hint);
+	return dev_fail(d, err, "Master%u slave %u: SDO %s %s", d->master, s->position, verb,
 			a->text);
 }
 
@@ -93,68 +92,46 @@ static int failed(struct dev *d, int err, unsigned int position, u32 abort,
  * Return: type, or NULL without an error message: complete access, or the slave or this command
  * has no type for it.
  */
-const struct ec_type *sdo_described_type(struct dev *d, const struct slave *s,
+const struct ec_type *sdo_described_type(struct dev *d, const struct ect_slave *s,
 					 const struct sdo_addr *a, u32 timeout_ms, u32 *abort)
 {
-	u8 *buf = malloc(ROOM);
-	struct ec_ioc_sdo_info i = {
-		.slave = s->slave, .index = a->index, .subindex = a->sub,
-		.what = EC_SDO_INFO_ENTRY, .size = ROOM, .data = (uintptr_t)buf,
-		.timeout_ms = timeout_ms ?: DESCRIBE_MS,
-	};
-	const struct ec_type *type = NULL;
-	struct ec_od_entry e;
+	struct ect_entry e = { .struct_size = sizeof(e) };
 
-	if (buf && !a->complete && s->mbox_protocols & EC_SII_PROTO_COE &&
-	    s->coe_details & EC_SII_COE_SDO_INFO && !dev_ioctl(d, EC_IOC_SDO_INFO, &i) &&
-	    !ec_od_entry_decode(buf, min(i.size, (u32)ROOM), &e))
-		type = ec_type_by_code(e.type);
-	free(buf);
-	*abort = i.abort_code;
-	return type;
+	*abort = 0;
+	if (a->complete || !(s->mbox_protocols & EC_SII_PROTO_COE) ||
+	    !(s->coe_details & EC_SII_COE_SDO_INFO))
+		return NULL;
+	if (!ect_entry_read(d->h, s->device, a->index, a->sub, 0, timeout_ms ?: DESCRIBE_MS, &e))
+		return ec_type_by_code(e.type);
+	*abort = ect_error_code(d->h);
+	return NULL;
 }
 
 /* @data is to be freed */
-int sdo_upload(struct dev *d, const struct slave *s, const struct sdo_addr *a, u32 timeout_ms,
+int sdo_upload(struct dev *d, const struct ect_slave *s, const struct sdo_addr *a, u32 timeout_ms,
 	       u8 **data, size_t *size)
 {
-	u8 *buf = malloc(ROOM);
-	struct ec_ioc_sdo i = {
-		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
-		.slave = s->slave,
-		.index = a->index,
-		.subindex = a->sub,
-		.size = ROOM,
-		.timeout_ms = timeout_ms,
-		.data = (uintptr_t)buf,
-	};
-	int err;
+	u8 *buf = malloc(ECT_SDO_MAX);
+	long n;
 
 	if (!buf)
 		return fail("out of memory");
-	err = dev_ioctl(d, EC_IOC_SDO_UPLOAD, &i);
-	if (err) {
+	n = ect_sdo_upload(d->h, s->device, a->index, a->sub, a->complete ? ECT_SDO_COMPLETE : 0,
+			   timeout_ms, buf, ECT_SDO_MAX);
+	if (n < 0) {
 		free(buf);
-		return failed(d, err, s->position, i.abort_code, a, "upload");
+		return failed(d, (int)n, s, a, "upload");
 	}
 	*data = buf;
-	*size = min(i.size, (u32)ROOM);
+	*size = (size_t)n;
 	return 0;
 }
 
-int sdo_download(struct dev *d, const struct slave *s, const struct sdo_addr *a, u32 timeout_ms,
-		 u8 *data, size_t size)
+int sdo_download(struct dev *d, const struct ect_slave *s, const struct sdo_addr *a,
+		 u32 timeout_ms, const u8 *data, size_t size)
 {
-	struct ec_ioc_sdo i = {
-		.flags = a->complete ? EC_SDO_FLAG_COMPLETE : 0,
-		.slave = s->slave,
-		.index = a->index,
-		.subindex = a->sub,
-		.size = (u32)size,
-		.timeout_ms = timeout_ms,
-		.data = (uintptr_t)data,
-	};
-	int err = dev_ioctl(d, EC_IOC_SDO_DOWNLOAD, &i);
+	int err = ect_sdo_download(d->h, s->device, a->index, a->sub,
+				   a->complete ? ECT_SDO_COMPLETE : 0, timeout_ms, data, size);
 
-	return err ? failed(d, err, s->position, i.abort_code, a, "download") : 0;
+	return err ? failed(d, err, s, a, "download") : 0;
 }

@@ -22,11 +22,11 @@ void sdo_addr_out(const struct sdo_addr *a);
 /* the largest --timeout that the kernel takes; 1 after an error message */
 int sdo_timeout_check(const struct tool *t);
 /* @timeout_ms: of each reply, 0: default */
-const struct ec_type *sdo_described_type(struct dev *d, const struct slave *s,
+const struct ec_type *sdo_described_type(struct dev *d, const struct ect_slave *s,
 					 const struct sdo_addr *a, u32 timeout_ms, u32 *abort);
-int sdo_upload(struct dev *d, const struct slave *s, const struct sdo_addr *a, u32 timeout_ms,
+int sdo_upload(struct dev *d, const struct ect_slave *s, const struct sdo_addr *a, u32 timeout_ms,
 	       u8 **data, size_t *size);
-int sdo_download(struct dev *d, const struct slave *s, const struct sdo_addr *a, u32 timeout_ms,
-		 u8 *data, size_t size);
+int sdo_download(struct dev *d, const struct ect_slave *s, const struct sdo_addr *a,
+		 u32 timeout_ms, const u8 *data, size_t size);
 
 #endif

@@ -6,7 +6,6 @@
 #include <string.h>
 
 #include "../master/wire/env.h"
-#include "dev.h"
 
 /* decimal only; values beyond any bus are clamped, they select nothing */
 static bool number(const char **p, unsigned int *value)
@@ -173,7 +172,7 @@ bool list_single(const struct list *l, unsigned int *value)
 	return true;
 }
 
-static int select_group(const struct list *positions, const struct slave *slaves,
+static int select_group(const struct list *positions, const struct ect_slave *slaves,
 			size_t count, size_t first, struct numbers *out)
 {
 	struct numbers k;
@@ -190,7 +189,7 @@ static int select_group(const struct list *positions, const struct slave *slaves
 }
 
 /* by alias: 1 + position of the first slave with it, 0: nobody; to be freed */
-static u32 *first_with(const struct slave *slaves, size_t count)
+static u32 *first_with(const struct ect_slave *slaves, size_t count)
 {
 	u32 *first = calloc(0x10000, sizeof(*first));
 
@@ -215,7 +214,7 @@ static u32 *first_with(const struct slave *slaves, size_t count)
  * Return: 0, or -ENOMEM.
  */
 int select_slaves(const struct list *aliases, const struct list *positions,
-		  const struct slave *slaves, size_t count, struct numbers *out)
+		  const struct ect_slave *slaves, size_t count, struct numbers *out)
 {
 	struct numbers a;
 	u32 *first;
@@ -259,7 +258,7 @@ static bool listed(const struct list *l, unsigned int v)
  * Return: true if so.
  */
 bool select_config(const struct list *aliases, const struct list *positions,
-		   const struct ec_ioc_config *config)
+		   const struct ect_config *config)
 {
 	if (!list_all(aliases))
 		return listed(aliases, config->alias) && listed(positions, config->position);

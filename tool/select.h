@@ -6,9 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-#include "../include/uapi/ethercat.h"
-
-struct slave;
+#include "../include/ethercat-tools.h"
 
 #define LIST_OPEN	0xffffffffU	/* "up to the highest present" */
 #define LIST_ITEMS	1024
@@ -45,8 +43,8 @@ bool list_single(const struct list *l, unsigned int *value);
 void numbers_free(struct numbers *n);
 
 int select_slaves(const struct list *aliases, const struct list *positions,
-		  const struct slave *slaves, size_t count, struct numbers *out);
+		  const struct ect_slave *slaves, size_t count, struct numbers *out);
 bool select_config(const struct list *aliases, const struct list *positions,
-		   const struct ec_ioc_config *config);
+		   const struct ect_config *config);
 
 #endif

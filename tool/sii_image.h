@@ -4,6 +4,6 @@
 
 #include "dev.h"
 
-int sii_load(struct dev *d, const struct slave *s, u8 **img, size_t *size);
+int sii_load(struct dev *d, const struct ect_slave *s, u8 **img, size_t *size);
 
 #endif

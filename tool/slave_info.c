@@ -13,7 +13,7 @@ static const char *yes(bool v)
 	return v ? "yes" : "no";
 }
 
-bool slave_has_dc(const struct slave *s)
+bool slave_has_dc(const struct ect_slave *s)
 {
 	return s->dc_supported || s->dc_delay_only;
 }
@@ -25,7 +25,7 @@ const char *port_type_text(unsigned int type)
 	return text[type & 3];
 }
 
-static void identity(const struct slave *s)
+static void identity(const struct ect_slave *s)
 {
 	out_text("Identity:\n");
 	out_u("vendor_id", s->vendor_id, "  Vendor Id:       0x%08x\n", s->vendor_id);
@@ -35,7 +35,7 @@ static void identity(const struct slave *s)
 	out_u("serial_number", s->serial_number, "  Serial number:   0x%08x\n", s->serial_number);
 }
 
-static void data_link(const struct slave *s)
+static void data_link(const struct ect_slave *s)
 {
 	static const char *const key[] = { "none", "32 bit", "64 bit", "delay measurement only" };
 	static const char *const text[] = { "no", "yes, 32 bit", "yes, 64 bit",
@@ -50,7 +50,7 @@ static void data_link(const struct slave *s)
 		out_u("dc_delay_ns", s->transmission_delay,
 		      "  DC system time transmission delay: %u ns\n", s->transmission_delay);
 	if (dc && dc < 3) {
-		bool off = s->dc_diff > EC_UAPI_DC_WINDOW_NS || s->dc_diff < -EC_UAPI_DC_WINDOW_NS;
+		bool off = s->dc_diff > ECT_DC_WINDOW || s->dc_diff < -ECT_DC_WINDOW;
 		unsigned int state = s->dc_odd ? 3 : !s->dc_set ? 0 : off ? 2 : 1;
 		static const char *const word[] = { "not_set", "in_step", "off",
 						    "delay_uncertain" };
@@ -70,18 +70,18 @@ static void data_link(const struct slave *s)
 }
 
 /* usually port 0; what a closed one has latched is old */
-static const struct ec_ioc_port *first_open(const struct slave *s)
+static const struct ect_port *first_open(const struct ect_slave *s)
 {
 	unsigned int i;
 
-	for (i = 0; i < EC_UAPI_PORTS - 1 && s->ports[i].loop_closed; i++)
+	for (i = 0; i < ECT_PORTS - 1 && s->ports[i].loop_closed; i++)
 		;
 	return &s->ports[i];
 }
 
-static void port(const struct slave *s, unsigned int i)
+static void port(const struct ect_slave *s, unsigned int i)
 {
-	const struct ec_ioc_port *p = &s->ports[i];
+	const struct ect_port *p = &s->ports[i];
 	s32 diff = (s32)(p->receive_time - first_open(s)->receive_time);
 	bool open = !p->loop_closed;
 
@@ -90,7 +90,7 @@ static void port(const struct slave *s, unsigned int i)
 	out_bool("link_up", p->link_up, "  %-4s", p->link_up ? "up" : "down");
 	out_bool("loop_closed", p->loop_closed, "  %-6s", open ? "open" : "closed");
 	out_bool("signal", p->signal, "  %-6s", yes(p->signal));
-	if (p->next_slave != EC_UAPI_NONE16)
+	if (p->next_slave != ECT_NONE16)
 		out_u("next_slave", p->next_slave, "  %9u", p->next_slave);
 	else
 		out_null("next_slave", "  %9s", "-");
@@ -105,17 +105,17 @@ static void port(const struct slave *s, unsigned int i)
 	out_end();
 }
 
-static void ports(const struct slave *s)
+static void ports(const struct ect_slave *s)
 {
 	out_text("Port  Type  Link  Loop    Signal  NextSlave%s\n",
 		 slave_has_dc(s) ? "  RxTime [ns]  Diff [ns]   NextDc [ns]" : "");
 	out_array("ports");
-	for (unsigned int i = 0; i < EC_UAPI_PORTS; i++)
+	for (unsigned int i = 0; i < ECT_PORTS; i++)
 		port(s, i);
 	out_end();
 }
 
-static void mailboxes(const struct slave *s)
+static void mailboxes(const struct ect_slave *s)
 {
 	static const char *const name[] = { "AoE", "EoE", "CoE", "FoE", "SoE", "VoE" };
 	const char *sep = "";
@@ -169,7 +169,7 @@ static void coe_details(unsigned int bits)
 	out_end();
 }
 
-static void general(const struct slave *s)
+static void general(const struct ect_slave *s)
 {
 	bool safeop = s->general_flags & EC_SII_FLAG_SAFEOP;
 	bool no_lrw = s->general_flags & EC_SII_FLAG_NO_LRW;
@@ -194,7 +194,7 @@ static void general(const struct slave *s)
 }
 
 /* lines the historic output does not have, behind all of those it has */
-static void diagnosis(const struct slave *s)
+static void diagnosis(const struct ect_slave *s)
 {
 	out_text("Diagnosis:\n");
 	out_u("station_address", s->station, "  Station address: 0x%04x\n", s->station);
@@ -217,15 +217,15 @@ static void diagnosis(const struct slave *s)
 	out_str("warning", s->warning, NULL);
 }
 
-char slave_flag(const struct slave *s)
+char slave_flag(const struct ect_slave *s)
 {
 	return s->error ? 'E' : s->differs ? '!' : '+';
 }
 
 /* The text of config -v. */
-static void reason(struct dev *d, const struct slave *s)
+static void reason(struct dev *d, const struct ect_slave *s)
 {
-	char text[EC_UAPI_REASON] = "";
+	char text[ECT_TEXT] = "";
 
 	if (s->config)
 		dev_config_why(d, s->config - 1, text, sizeof(text));
@@ -236,13 +236,13 @@ static void reason(struct dev *d, const struct slave *s)
 		out_null("not_in_op", NULL);
 }
 
-static bool is_lost(const struct slave *s)
+static bool is_lost(const struct ect_slave *s)
 {
-	return s->cause.kind == EC_CAUSE_SILENT;
+	return s->cause.kind == ECT_CAUSE_SILENT;
 }
 
 /* a slave that was lost has no AL state */
-void slave_state_text(const struct slave *s, char *buf, size_t size)
+void slave_state_text(const struct ect_slave *s, char *buf, size_t size)
 {
 	if (is_lost(s))
 		snprintf(buf, size, "LOST");
@@ -250,9 +250,9 @@ void slave_state_text(const struct slave *s, char *buf, size_t size)
 		al_state_text(s->al_status, buf, size);
 }
 
-void slave_info(struct dev *d, const struct slave *s)
+void slave_info(struct dev *d, const struct ect_slave *s)
 {
-	char state[16], name[EC_UAPI_STRING];
+	char state[16], name[ECT_STRING];
 
 	slave_state_text(s, state, sizeof(state));
 	slave_name(s, name, sizeof(name));

@@ -126,7 +126,6 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 const struct cmd *cmd_exact(const char *name);
 int cmd_lookup(const char *text, const struct cmd **found);
 int cmd_unknown(const char *text);
-size_t typing_errors(const char *a, const char *b);
 const char *opt_nearest(const char *word);
 int cmd_ambiguous(const char *text, const struct cmd **found, int n);
 

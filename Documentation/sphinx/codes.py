@@ -5,7 +5,7 @@
 The remedy of an AL status code is that of "ethercat why", if it has one. The others are in
 remedies.txt: kind, code (? is any digit, * any rest; the first row that matches counts), remedy.
 A code without remedy is an error, and a row that matches no code.
-usage: codes.py SOURCES [--remedies]    SOURCES: the folder with master/ and tool/; writes
+usage: codes.py SOURCES [--remedies]    SOURCES: the folder with master/ and lib/; writes
                                         reStructuredText to stdout, or only the remedies
 """
 import re
@@ -85,7 +85,7 @@ def code(numbers, digits):
 def own(folder):
     """Remedies of "ethercat why"."""
     names = {}
-    return {code(n, 4): t for n, t in rows(folder / "tool/why_slave.c", "al_remedies", names)}
+    return {code(n, 4): t for n, t in rows(folder / "lib/tools/why_codes.c", "al_remedies", names)}
 
 
 def read_remedies():

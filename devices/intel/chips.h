@@ -1,4 +1,4 @@
-/* SPDX-License-Identifier: GPL-2.0-only */
+/* SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later */
 /*
  * Intel network controllers by PCI device ID, for the driver and for 'ethercat devices':
  * EC_CHIP(device ID, name, class, the tests run it in QEMU), and EC_CHIP_ME for those whose PHY

@@ -66,6 +66,7 @@ programs() {	# programs COMPILER
 	local vars=(CC="$1-gcc" AR="$1-ar" CFLAGS="$warn")
 
 	make -s -C lib O="$out/$1/lib" "${vars[@]}" all &&
+	make -s -C lib/tools O="$out/$1/tools" "${vars[@]}" all &&
 	make -s -C tool O="$out/$1/tool" "${vars[@]}" &&
 	make -s -C tool/sim O="$out/$1/tool" "${vars[@]}" &&
 	make -s -C examples O="$out/$1/examples" LIB="$out/$1/lib" "${vars[@]}" all
@@ -73,8 +74,9 @@ programs() {	# programs COMPILER
 
 # libatomic, for example, is not on each machine
 libc_only() {
-	! readelf -d "$out/$1/lib/libethercat.so" "$out/$1/tool/ethercat" | grep NEEDED |
-		grep -v 'libc\.so\|ld-linux\|ld64\.so'
+	! readelf -d "$out/$1/lib/libethercat.so" "$out/$1/tools/libethercat-tools.so" \
+		"$out/$1/tool/ethercat" | grep NEEDED |
+		grep -v 'libc\.so\|ld-linux\|ld64\.so\|libethercat-tools\.so\.1'
 }
 
 for c in $compilers; do

@@ -187,6 +187,7 @@ t "ec_master exports ecrt.h" exports_ecrt
 # --- userspace -------------------------------------------------------------------
 flags="-O2 -Wall -Wextra -Werror"
 t "library without a warning" make -s -C lib O="$tmp/lib" CFLAGS="$flags" all
+t "library of the tools without a warning" make -s -C lib/tools O="$tmp/libtools" CFLAGS="$flags" all
 t "tool without a warning" make -s -C tool O="$tmp/tool" CFLAGS="$flags"
 t "simulator without a warning" make -s -C tool/sim O="$tmp/sim" CFLAGS="$flags"
 t "demo without a warning" make -s -C tests/apps O="$tmp/apps" LIB="$tmp/lib" CFLAGS="$flags" all
@@ -227,6 +228,13 @@ expected() {
 	.$prefix/lib/cmake/ethercat/ethercat-config-version.cmake
 	.$prefix/lib/cmake/ethercat/ethercat-config.cmake
 	.$prefix/lib/pkgconfig/libethercat.pc
+	.$prefix/lib/libethercat-tools.a
+	.$prefix/lib/libethercat-tools.so
+	.$prefix/lib/libethercat-tools.so.1
+	.$prefix/lib/libethercat-tools.so.1.0.0
+	.$prefix/lib/pkgconfig/libethercat-tools.pc
+	.$prefix/include/ethercat-tools.h
+	$(cd include && printf ".$prefix/include/%s\n" ethercat-tools/*.h)
 	./usr/local/lib/udev/rules.d/60-ethercat.rules
 	.$prefix/share/bash-completion/completions/ethercat
 	.$prefix/share/man/man8/ethercat.8
@@ -262,19 +270,35 @@ int main(void)
 }
 END
 
-# app_runs COMPILER STANDARD LANGUAGE
+cat >"$tmp/app-tools.c" <<'END'
+#include <ethercat-tools.h>
+
+int main(void)
+{
+	struct ect_handle *h = ect_new();
+	int wrong = !h || ect_fd(h) != -1;
+
+	ect_free(h);
+	return wrong;
+}
+END
+
+# app_runs COMPILER STANDARD LANGUAGE [LIBRARY]
 app_runs() {
+	local lib=${4:-libethercat} app=$tmp/app${4:+-tools}.c
 	local pc="env PKG_CONFIG_LIBDIR=$root$prefix/lib/pkgconfig PKG_CONFIG_SYSROOT_DIR=$root pkg-config"
 	local cflags libs
 
-	cflags=$($pc --cflags libethercat) && libs=$($pc --libs libethercat) || return 1
+	cflags=$($pc --cflags "$lib") && libs=$($pc --libs "$lib") || return 1
 	# shellcheck disable=SC2086
-	$1 -std=$2 -Wall -Wextra -pedantic -Werror $cflags -x $3 -o "$tmp/app" "$tmp/app.c" -x none $libs &&
+	$1 -std=$2 -Wall -Wextra -pedantic -Werror $cflags -x $3 -o "$tmp/app" "$app" -x none $libs &&
 		LD_LIBRARY_PATH=$root$prefix/lib "$tmp/app"
 }
 
 t "an application in C99 with pkg-config" app_runs gcc c99 c
 t "an application in C++11 with pkg-config" app_runs g++ c++11 c++
+t "a program with libethercat-tools in C99" app_runs gcc c99 c libethercat-tools
+t "a program with libethercat-tools in C++11" app_runs g++ c++11 c++ libethercat-tools
 t "examples and snippets of the documentation compile as C99 and C++20" tests/build/snippets.py
 
 # snippet_noticed TEXT FINDING: else the check above could not fail
@@ -442,7 +466,7 @@ codes_notice() {
 	local out
 
 	mkdir -p "$tmp/codes" &&
-		cp --parents master/wire/*.[ch] tool/why_slave.c \
+		cp --parents master/wire/*.[ch] lib/tools/why_codes.c \
 			Documentation/sphinx/{codes.py,remedies.txt} "$tmp/codes" &&
 		sed -i "$2" "$tmp/codes/$1" || return 1
 	out=$("$tmp/codes/Documentation/sphinx/codes.py" "$tmp/codes" 2>&1) && return 1
@@ -459,7 +483,7 @@ t "a table that is not found is noticed" codes_notice master/wire/mbox.c \
 doc_notices() {
 	mkdir -p "$tmp/docs/Documentation" "$tmp/docs/include" &&
 		cp -r Documentation/sphinx Documentation/pictures "$tmp/docs/Documentation" &&
-		cp --parents master/wire/*.[ch] tool/why_slave.c "$tmp/docs" &&
+		cp --parents master/wire/*.[ch] lib/tools/why_codes.c "$tmp/docs" &&
 		cp Makefile "$tmp/docs" && cp include/ecrt.h "$tmp/docs/include" || return 1
 	printf 'Title\n=====\n\n:doc:`nowhere`\n\n.. toctree::\n   :glob:\n\n   *\n' \
 		>"$tmp/docs/Documentation/index.rst"

@@ -26,7 +26,9 @@ LANGUAGES = {
 C_LINE = re.compile(r"^\s*(\w+ \w+|\w+\(.*\)|for \(;;\)|[\w>.-]+ = .*);?\s*[;{]\s*(/\*.*)?$")
 # what the text around a snippet presumes
 PROGRAM = """#include <ecrt.h>
+#include <ethercat-tools.h>
 #include <sched.h>
+#include <stdio.h>
 #include <sys/mman.h>
 extern ec_master_t *master;
 extern ec_domain_t *domain;

@@ -99,13 +99,12 @@ late_symbol_is_noticed() {
 	! one_release_each "$o/late.symbols"
 }
 
-gensymbols() {
+gensymbols() {	# gensymbols PACKAGE LIBRARY
 	local tree=$o/package
 
 	rm -rf "$tree"
 	mkdir -p "$tree/DEBIAN"
-	(cd "$top" && dpkg-gensymbols -plibethercat1 -v0.1.0 -P"$tree" -c4 \
-		-Idebian/libethercat1.symbols -e"$o/lib/libethercat.so.1.2.0")
+	(cd "$top" && dpkg-gensymbols -p$1 -v0.1.0 -P"$tree" -c4 -Idebian/$1.symbols -e"$o/$2")
 }
 
 soname() {
@@ -176,10 +175,10 @@ kernel_declares_list() {
 }
 
 library_works() {
-	$CC -std=gnu11 $warn -Wno-pedantic $san -D_GNU_SOURCE \
+	$CC -std=gnu11 -fms-extensions $warn -Wno-pedantic $san -D_GNU_SOURCE \
 		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close,--wrap=posix_fadvise \
 		-pthread -o "$o/session" session.c request.c soe.c foe.c dict.c eoe.c \
-		events.c extension.c rules.c kernel_cycle.c fake.c \
+		events.c extension.c rules.c kernel_cycle.c ../fake/*.c \
 		"$top"/lib/*.c "$top"/lib/ecrt/*.c "$top"/master/wire/{al,coe,emergency,event}.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }
@@ -194,6 +193,56 @@ says_why() {	# needs library_works
 }
 
 cyclic_is_silent() { ! grep 'Failed to \(send\|receive\|process\|queue\)' "$o/session.err"; }
+
+# --- libethercat-tools ---
+tools_map() {
+	sed -n 's/^\t\t\(ect_[a-z0-9_]*\);/\1/p' "$top/lib/tools/libethercat-tools.map" | sort
+}
+
+tools_declared() {
+	echo '#include "ethercat-tools.h"' | $CC -E -P -I"$top/include" - | tr '\n' ' ' |
+		grep -o 'ect_[a-z0-9_]*([^(){};]*) *;' | grep -o '^[a-z0-9_]*' | sort
+}
+
+tools_exported() {
+	readelf -W --dyn-syms "$o/tools/libethercat-tools.so.1" |
+		awk '$7 != "UND" && sub(/@@LIBETHERCAT_TOOLS_1$/, "", $8) && $8 ~ /^ect_/ {
+			print $8 }' | sort
+}
+
+# each has its text as the header's other functions
+tools_described() {
+	diff <(tools_map) <(sed -n 's/^ \* \(ect_[a-z0-9_]*\)() - .*/\1/p' \
+		"$top"/include/ethercat-tools/*.h | sort)
+}
+
+tools_packaged() {
+	diff <(tools_map) <(sed -n 's/^ \(ect_[a-z0-9_]*\)@LIBETHERCAT_TOOLS_1 .*/\1/p' \
+		"$top/debian/libethercat-tools1.symbols")
+}
+
+tools_need_libc_only() {
+	! readelf -d "$o/tools/libethercat-tools.so.1" | grep NEEDED | grep -v 'libc\.so\|ld-linux'
+}
+
+tools_soname() {
+	readelf -d "$o/tools/libethercat-tools.so.1" |
+		grep -q 'SONAME.*\[libethercat-tools\.so\.1\]'
+}
+
+# what the tests of the tool do not show: handles, sizes, failures, threads
+tools_work() {	# tools_work SANITIZERS
+	$CC -std=gnu11 -fms-extensions -Wall -Wextra -Werror $1 -D_GNU_SOURCE -pthread \
+		-o "$o/tools-test" tools.c ../fake/fake_*.c \
+		$(ls "$top"/lib/tools/*.c | grep -v /sys.c) \
+		"$top"/master/wire/{al,coe,dc,emergency,event,sdoinfo}.c &&
+		setarch -R "$o/tools-test"
+}
+
+tools_header_compiles() {	# COMPILER STANDARD LANGUAGE
+	echo '#include <ethercat-tools.h>' |
+		$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only -
+}
 
 demo_builds() {
 	$MAKE -s -C ../apps O="$o/apps" LIB="$o/lib" CFLAGS="-O2 -Werror" all &&
@@ -228,13 +277,31 @@ t "library exports the map" diff <(map_symbols) <(exported)
 t "the package has the symbols of the map" diff <(map_symbols) <(package_symbols)
 t "a symbol version is of one release" one_release_each
 t "a symbol that is added to an older version is noticed" late_symbol_is_noticed
-! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees" gensymbols
+! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees" \
+	gensymbols libethercat1 lib/libethercat.so.1.2.0
 t "soname" soname
 t "library needs libc only" needs_libc_only
 t "install, use, uninstall" installs
 t "library against a fake kernel" library_works
 t "failures of configuration are explained" says_why
 t "cyclic calls are silent" cyclic_is_silent
+t "libethercat-tools builds" $MAKE -s -C "$top/lib/tools" O="$o/tools" CFLAGS="-O2 -Werror" all
+t "ethercat-tools.h declares what the map has" diff <(tools_map) <(tools_declared)
+t "each of these functions is described" tools_described
+t "libethercat-tools exports them and nothing else" diff <(tools_map) <(tools_exported)
+t "its package has them" tools_packaged
+! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees with libethercat-tools" \
+	gensymbols libethercat-tools1 tools/libethercat-tools.so.1.0.0
+t "soname of libethercat-tools" tools_soname
+t "libethercat-tools needs libc only" tools_need_libc_only
+t "libethercat-tools against the fake kernel" tools_work "$san"
+t "libethercat-tools in several threads" tools_work "-fsanitize=thread -g -O1"
+for std in c99 c17; do
+	t "ethercat-tools.h compiles as $std" tools_header_compiles $CC $std c
+done
+for std in c++11 c++20; do
+	t "ethercat-tools.h compiles as $std" tools_header_compiles $CXX $std c++
+done
 t "demo builds" demo_builds
 for std in c99 c11; do
 	t "examples build as $std" examples_build $std

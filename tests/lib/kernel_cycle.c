@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* The library's side of a cycle the kernel runs; a thread is the kernel. */
 
-#include "fake.h"
+#include "../fake/app_side.h"
 
 #include <errno.h>
 #include <pthread.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* The library from open to release, against fake.c. */
 
-#include "fake.h"
+#include "../fake/app_side.h"
 #include "session.h"
 
 #include <errno.h>

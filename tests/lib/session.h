@@ -5,7 +5,7 @@
 
 #include <stdio.h>
 
-#include "fake.h"
+#include "../fake/app_side.h"
 
 extern int failures;
 

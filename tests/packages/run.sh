@@ -10,7 +10,7 @@
 set -u
 export LC_ALL=C
 cd "$(dirname "$0")/../.." || exit 1
-packages="ethercat-tools ethercat-dkms libethercat1 libethercat-dev ethercat-doc"
+packages="ethercat-tools ethercat-dkms libethercat1 libethercat-dev libethercat-tools1 libethercat-tools-dev ethercat-doc"
 passed=0 failed=0
 suite=${1:-bookworm}
 root=$(tests/packages/root.sh "$suite") || exit 1
@@ -47,7 +47,7 @@ source() {
 
 build() {
 	source "$1" && in_root "cd /src/ethercat-$1 && dpkg-buildpackage -us -uc -b" &&
-		[ "$(cd "$tmp/root/upper/src" && ls ./*_"$1"_*.deb | grep -vc dbgsym)" = 5 ]
+		[ "$(cd "$tmp/root/upper/src" && ls ./*_"$1"_*.deb | grep -vc dbgsym)" = 7 ]
 }
 
 # warnings have to be read, too
@@ -108,6 +108,10 @@ program_builds() {
 	in_root 'printf "%s\n" "#include <ecrt.h>" "int main(void) { return !ecrt_version_magic(); }" \
 		>/tmp/app.c
 		gcc -o /tmp/app /tmp/app.c $(pkg-config --cflags --libs libethercat)
+		/tmp/app
+		printf "%s\n" "#include <ethercat-tools.h>" "int main(void) { return !ect_new(); }" \
+			>/tmp/app.c
+		gcc -o /tmp/app /tmp/app.c $(pkg-config --cflags --libs libethercat-tools)
 		/tmp/app
 		rm /tmp/app /tmp/app.c'
 }
@@ -251,7 +255,7 @@ purged() {
 		list >"$tmp/after" && diff "$tmp/before" "$tmp/after"
 }
 
-t "dpkg-buildpackage builds five packages" build 0.1.0
+t "dpkg-buildpackage builds seven packages" build 0.1.0
 [ $failed = 0 ] || { echo "$passed passed, $failed failed"; exit 1; }
 t "lintian reports neither an error nor a warning" lint
 if [ "${2:-}" = lint ]; then
@@ -262,7 +266,7 @@ list >"$tmp/before"
 t "apt installs the packages" install 0.1.0
 t "DKMS has built the modules for the installed kernel" has_modules 0.1.0 1
 t "the modules are signed by DKMS, and can be signed by hand" signed
-t "a program builds against libethercat-dev" program_builds
+t "programs build against libethercat-dev and libethercat-tools-dev" program_builds
 t "a kernel module builds against the modules that are installed" module_builds
 t "the pages are HTML, with the codes and the reference of ecrt.h" pages
 t "systemd starts the simulated bus and an application in a guest, and stops them" boots

@@ -180,7 +180,11 @@ for o in d["options"]:
 	[ "$(ls "$d/usr/share/man/man8" | grep -c '^ethercat-.*[.]8$')" = \
 		"$(ls "$HERE/../../tool/man" | wc -l)" ]
 	[ -f "$d/usr/share/man/man8/ethercat-sdo_upload.8" ]
-	"$d/usr/bin/ethercat" version
+	# the library is a package of its own
+	make -s -C "$HERE/../../lib/tools" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d/lib" prefix= install
+	LD_LIBRARY_PATH=$d/lib/lib "$d/usr/bin/ethercat" version
+	rm -r "$d/lib"
+	[ -z "$(readelf -d "$d/usr/bin/ethercat" | grep RUNPATH)" ]
 	make -s -C "$HERE/../../tool" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d" prefix=/usr uninstall
 	[ -z "$(find "$d" -type f)" ]
 	[ -z "$(cd "$HERE/../../tool" && find . -name '*.o' -not -path './build/*' -not -path './sim-objects/*')" ]

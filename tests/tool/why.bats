@@ -232,10 +232,17 @@ is() {
 @test "why.rst has each cause" {
 	local doc=$HERE/../../Documentation/why.rst n=0
 
-	for c in $(grep -ohE '(why_add\(w, |(true|false), )"[a-z_]+"' "$HERE"/../../tool/why_*.c |
+	for c in $(grep -ohE 'X\([A-Z_]+, "[a-z_]+"' "$HERE/../../lib/tools/why_texts.h" |
 		cut -d'"' -f2); do
 		grep -Eq '^(``[a-z]+``, )*``'"$c"'``' "$doc" || { echo "$c"; false; }
 		n=$((n + 1))
 	done
 	[ $n -gt 30 ]
+}
+
+# what the tool shows, any program can have: the library knows it
+@test "the tool speaks no ioctl" {
+	! grep -nE '\<ioctl\(|EC_IOC_|uapi/' "$HERE"/../../tool/*.[ch]
+	[ -z "$(nm -D "$HERE/build/real/ethercat" | grep -w ioctl)" ]
+	[ -n "$(nm -D "$HERE/build/real/libethercat-tools.so" | grep -w ioctl)" ]
 }

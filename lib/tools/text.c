@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/*
+ * What a slave calls itself ends up on a terminal: nothing in it may move the
+ * cursor, change the terminal or turn the direction of the text around.
+ */
+#include "text.h"
+
+#include <string.h>
+
+#include "../../master/wire/env.h"
+
+/**
+ * utf8_len() - length of the character at @p
+ * @p: bytes
+ * @size: how many
+ *
+ * Return: bytes of the UTF-8 sequence, 0 when there is no valid one.
+ */
+int utf8_len(const unsigned char *p, size_t size)
+{
+	int n;
+
+	if (!size)
+		return 0;
+	n = p[0] < 0x80 ? 1 : p[0] >= 0xc2 && p[0] < 0xe0 ? 2 :
+		p[0] >= 0xe0 && p[0] < 0xf0 ? 3 : p[0] >= 0xf0 && p[0] < 0xf5 ? 4 : 0;
+	if ((size_t)n > size)
+		return 0;
+	for (int i = 1; i < n; i++)
+		if ((p[i] & 0xc0) != 0x80)
+			return 0;
+	if ((p[0] == 0xe0 && p[1] < 0xa0) || (p[0] == 0xed && p[1] > 0x9f) ||
+	    (p[0] == 0xf0 && p[1] < 0x90) || (p[0] == 0xf4 && p[1] > 0x8f))
+		return 0;
+	return n;
+}
+
+/* U+2028 to U+202E, U+2066 to U+2069, U+200E, U+200F: lines and directions */
+static bool turns(const unsigned char *p)
+{
+	if (p[0] != 0xe2)
+		return false;
+	if (p[1] == 0x80)
+		return (p[2] >= 0xa8 && p[2] <= 0xae) || p[2] == 0x8e || p[2] == 0x8f;
+	return p[1] == 0x81 && p[2] >= 0xa6 && p[2] <= 0xa9;
+}
+
+/**
+ * text_harmless() - may the character go to a terminal?
+ * @p: its bytes
+ * @n: as of utf8_len()
+ *
+ * Return: true if so.
+ */
+bool text_harmless(const unsigned char *p, int n)
+{
+	switch (n) {
+	case 0:
+		return p[0] >= 0xa0;	/* Latin-1; below are its controls */
+	case 1:
+		return p[0] >= 0x20 && p[0] != 0x7f;
+	case 2:
+		return p[0] != 0xc2 || p[1] >= 0xa0;
+	case 3:
+		return !turns(p);
+	default:
+		return true;
+	}
+}
+
+/**
+ * text_clean() - make bytes safe for a terminal
+ * @s: bytes; what is not safe becomes '?'
+ * @size: how many
+ *
+ * Bytes that are no UTF-8 stay, they are Latin-1 in many EEPROMs.
+ */
+void text_clean(char *s, size_t size)
+{
+	unsigned char *p = (unsigned char *)s;
+	size_t step;
+
+	for (size_t i = 0; i < size; i += step) {
+		int n = utf8_len(p + i, size - i);
+
+		step = n ? (size_t)n : 1;
+		if (!text_harmless(p + i, n))
+			memset(p + i, '?', step);
+	}
+}
+
+/* the same for a string in a buffer of @size bytes, which is ended */
+void string_clean(char *s, size_t size)
+{
+	s[size - 1] = 0;
+	text_clean(s, strlen(s));
+}
+
+/* letters that differ, are missing, too many, or exchanged with the next one */
+size_t text_typos(const char *a, const char *b)
+{
+	enum { MOST = 32 };
+	size_t rows[3][MOST + 1], n = strlen(b);
+
+	if (strlen(a) > MOST || n > MOST)
+		return MOST;
+	for (size_t j = 0; j <= n; j++)
+		rows[0][j] = j;
+	for (size_t i = 1; a[i - 1]; i++) {
+		size_t *row = rows[i % 3], *up = rows[(i - 1) % 3];
+
+		row[0] = i;
+		for (size_t j = 1; j <= n; j++) {
+			row[j] = min(up[j], row[j - 1]) + 1;
+			row[j] = min(row[j], up[j - 1] + (a[i - 1] != b[j - 1]));
+			if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1])
+				row[j] = min(row[j], rows[(i - 2) % 3][j - 2] + 1);
+		}
+	}
+	return rows[strlen(a) % 3][n];
+}

@@ -1,0 +1,15 @@
+/* SPDX-License-Identifier: LGPL-2.1-or-later */
+/* Text of unknown origin: names in EEPROMs, strings of slaves. */
+#ifndef EC_LIB_TOOLS_TEXT_H
+#define EC_LIB_TOOLS_TEXT_H
+
+#include <stdbool.h>
+#include <stddef.h>
+
+int utf8_len(const unsigned char *p, size_t size);
+bool text_harmless(const unsigned char *p, int n);
+void text_clean(char *s, size_t size);
+void string_clean(char *s, size_t size);
+size_t text_typos(const char *a, const char *b);
+
+#endif
