@@ -25,7 +25,7 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	init_rwsem(&bus->topo);
 	spin_lock_init(&bus->scan_lock);
 	init_waitqueue_head(&bus->settled);
-	ec_known_init(bus);
+	ec_known_init(&bus->known);
 	/* what one waits for is not done by another one */
 	return ec_workers_init(&bus->workers, base);
 }
@@ -70,7 +70,7 @@ void ec_bus_exit(struct ec_bus *bus)
 	kvfree(bus->slaves);
 	bus->slaves = NULL;
 	WRITE_ONCE(bus->n_slaves, 0);
-	ec_known_exit(bus);
+	ec_known_exit(&bus->known);
 }
 
 /**

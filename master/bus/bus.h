@@ -10,7 +10,7 @@
 #include <linux/spinlock.h>
 #include <linux/wait.h>
 #include "../base/base.h"
-#include "known.h"
+#include "known_table.h"
 #include "workers.h"
 
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the list of slaves is used as it is */

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "find.h"
+#include "known.h"
 #include "slave.h"
 
 #define WALK	64	/* slaves to look at without a pause */

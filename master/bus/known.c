@@ -2,83 +2,18 @@
 #include <linux/hash.h>
 #include <linux/ktime.h>
 #include <linux/slab.h>
-#include "scan.h"
+#include "known.h"
 #include "slave.h"
-
-/**
- * struct lost - a device that was disconnected
- * @number: its device number
- * @by_number: in struct ec_known @lost
- * @by_station: in struct ec_known @by_station
- * @by_serial: in struct ec_known @by_serial, unless @serial is 0
- * @age: in struct ec_known @oldest
- * @since_ns: when its loss was found (ktime)
- * @vendor: of its identity; 0 with @product 0: it was not readable
- * @product: likewise
- * @serial: likewise
- * @station: its station address
- * @position: its ring position
- * @label: what people call it
- */
-struct lost {
-	u64 number;
-	struct hlist_node by_number;
-	struct hlist_node by_station;
-	struct hlist_node by_serial;
-	struct list_head age;
-	u64 since_ns;
-	u32 vendor;
-	u32 product;
-	u32 serial;
-	u16 station;
-	u16 position;
-	char label[24];
-};
 
 static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 {
 	return &heads[hash_64(key, EC_KNOWN_BITS)];
 }
 
-/**
- * ec_known_init() - no device has a number
- * @bus: bus
- *
- * Context: Process.
- */
-void ec_known_init(struct ec_bus *bus)
-{
-	INIT_LIST_HEAD(&bus->known.oldest);
-}
-
-static void drop(struct ec_known *k, struct lost *l)
-{
-	hlist_del(&l->by_number);
-	hlist_del(&l->by_station);
-	hlist_del_init(&l->by_serial);
-	list_del(&l->age);
-	k->n_lost--;
-	kfree(l);
-}
-
-/**
- * ec_known_exit() - forget the devices that were disconnected
- * @bus: bus without users
- *
- * Context: Process.
- */
-void ec_known_exit(struct ec_bus *bus)
-{
-	struct lost *l, *next;
-
-	list_for_each_entry_safe(l, next, &bus->known.oldest, age)
-		drop(&bus->known, l);
-}
-
 /* Without memory the number is not known any more when the device comes back. */
-static void note_lost(struct ec_known *k, struct ec_slave *s)
+static void note_lost(struct ec_known *k, struct ec_slave *s, unsigned int limit)
 {
-	struct lost *l = kzalloc(sizeof(*l), GFP_KERNEL | __GFP_NOWARN);
+	struct ec_lost *l = kzalloc(sizeof(*l), GFP_KERNEL | __GFP_NOWARN);
 
 	hlist_del_init(&s->by_device);
 	if (!l)
@@ -96,8 +31,8 @@ static void note_lost(struct ec_known *k, struct ec_slave *s)
 	if (l->serial)
 		hlist_add_head(&l->by_serial, head_of(k->by_serial, l->serial));
 	list_add_tail(&l->age, &k->oldest);
-	if (++k->n_lost > ec_scan_limit())
-		drop(k, list_first_entry(&k->oldest, struct lost, age));
+	if (++k->n_lost > limit)
+		ec_known_drop(k, list_first_entry(&k->oldest, struct ec_lost, age));
 }
 
 static bool was_read(u32 vendor, u32 product)
@@ -105,16 +40,16 @@ static bool was_read(u32 vendor, u32 product)
 	return vendor || product;
 }
 
-static bool same_device(const struct lost *l, const struct ec_slave *s)
+static bool same_device(const struct ec_lost *l, const struct ec_slave *s)
 {
 	return was_read(l->vendor, l->product) && l->vendor == s->info.vendor &&
 	       l->product == s->info.product && l->serial == s->info.serial;
 }
 
 /* It has kept the station address: it had power all the time. */
-static struct lost *by_station(struct ec_known *k, const struct ec_slave *s, bool unread)
+static struct ec_lost *by_station(struct ec_known *k, const struct ec_slave *s, bool unread)
 {
-	struct lost *l;
+	struct ec_lost *l;
 
 	if (!s->kept_station)
 		return NULL;
@@ -128,10 +63,10 @@ static struct lost *by_station(struct ec_known *k, const struct ec_slave *s, boo
 }
 
 /* A serial number that two devices have says nothing. */
-static struct lost *by_serial(struct ec_known *k, const struct ec_slave *s,
+static struct ec_lost *by_serial(struct ec_known *k, const struct ec_slave *s,
 			      struct ec_slave **slaves, unsigned int n)
 {
-	struct lost *l, *found = NULL;
+	struct ec_lost *l, *found = NULL;
 	unsigned int i;
 
 	if (!s->info.serial)
@@ -149,9 +84,9 @@ static struct lost *by_serial(struct ec_known *k, const struct ec_slave *s,
 	return found;
 }
 
-static struct lost *by_number(const struct ec_known *k, u64 number)
+static struct ec_lost *by_number(const struct ec_known *k, u64 number)
 {
-	struct lost *l;
+	struct ec_lost *l;
 
 	hlist_for_each_entry(l, head_of((struct hlist_head *)k->lost, number), by_number)
 		if (l->number == number)
@@ -164,10 +99,12 @@ static struct lost *by_number(const struct ec_known *k, u64 number)
  * @bus: bus, still with the list before
  * @slaves: new list; @position of each slave is that in it
  * @n: entries in @slaves
+ * @limit: of the disconnected devices whose numbers are kept
  *
  * Context: The monitor thread, topo held for writing, after ec_show_change_begin(). May sleep.
  */
-void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
+void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
+		     unsigned int limit)
 {
 	struct ec_known *k = &bus->known;
 	unsigned int i;
@@ -175,10 +112,10 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 	lockdep_assert_held_write(&bus->topo);
 	ec_for_each_slave(s, bus)
 		if (s->position >= n || slaves[s->position] != s)
-			note_lost(k, s);
+			note_lost(k, s, limit);
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = slaves[i];
-		struct lost *l;
+		struct ec_lost *l;
 
 		if (!hlist_unhashed(&s->by_device))
 			continue;
@@ -186,7 +123,7 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 		    by_station(k, s, true) ?: by_number(k, s->device);
 		if (l) {
 			s->device = l->number;
-			drop(k, l);
+			ec_known_drop(k, l);
 		} else {
 			s->device = ++k->last;
 		}
@@ -225,7 +162,7 @@ struct ec_slave *ec_known_slave(const struct ec_bus *bus, u64 number)
  */
 size_t ec_known_text(const struct ec_bus *bus, u64 number, char *buf, size_t size)
 {
-	const struct lost *l = by_number(&bus->known, number);
+	const struct ec_lost *l = by_number(&bus->known, number);
 
 	ec_bus_assert_stays(bus);
 	if (!number || number > bus->known.last)

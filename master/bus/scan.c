@@ -7,6 +7,7 @@
 #include "../link/links.h"
 #include "../base/once64.h"
 #include "../carry/xfer.h"
+#include "known.h"
 #include "scan_int.h"
 
 #define LOST_LINES	16	/* in the log, per scan */
@@ -399,7 +400,7 @@ static bool scan_publish(struct scan *sc)
 	sc->changed = differs(sc);
 	ec_show_change_begin(&bus->base->show);
 	take_regs(sc, true);
-	ec_known_update(bus, sc->slaves, sc->n);
+	ec_known_update(bus, sc->slaves, sc->n, ec_scan_limit());
 	note_aliases(sc);
 	WRITE_ONCE(bus->lists, bus->lists + 1);
 	for (i = 0; i < sc->n; i++)

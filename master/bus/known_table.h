@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The table of device numbers; known.c gives them. */
+#ifndef EC_KNOWN_TABLE_H
+#define EC_KNOWN_TABLE_H
+
+#include <linux/list.h>
+#include <linux/types.h>
+
+#define EC_KNOWN_BITS	5
+#define EC_KNOWN_HEADS	(1 << EC_KNOWN_BITS)
+
+/**
+ * struct ec_lost - a device that was disconnected
+ * @number: its device number
+ * @by_number: in struct ec_known @lost
+ * @by_station: in struct ec_known @by_station
+ * @by_serial: in struct ec_known @by_serial, unless @serial is 0
+ * @age: in struct ec_known @oldest
+ * @since_ns: when its loss was found (ktime)
+ * @vendor: of its identity; 0 with @product 0: it was not readable
+ * @product: likewise
+ * @serial: likewise
+ * @station: its station address
+ * @position: its ring position
+ * @label: what people call it
+ */
+struct ec_lost {
+	u64 number;
+	struct hlist_node by_number;
+	struct hlist_node by_station;
+	struct hlist_node by_serial;
+	struct list_head age;
+	u64 since_ns;
+	u32 vendor;
+	u32 product;
+	u32 serial;
+	u16 station;
+	u16 position;
+	char label[24];
+};
+
+/**
+ * struct ec_known - the numbers of a bus, changed with topo and ec_show_change_begin()
+ * @last: number given last
+ * @present: slaves of the list, by number
+ * @lost: devices that were disconnected, by number
+ * @by_station: the same by station address
+ * @by_serial: the same by serial number, if they have one
+ * @oldest: the same, the first one that was disconnected first
+ * @n_lost: their number
+ */
+struct ec_known {
+	u64 last;
+	struct hlist_head present[EC_KNOWN_HEADS];
+	struct hlist_head lost[EC_KNOWN_HEADS];
+	struct hlist_head by_station[EC_KNOWN_HEADS];
+	struct hlist_head by_serial[EC_KNOWN_HEADS];
+	struct list_head oldest;
+	unsigned int n_lost;
+};
+
+void ec_known_init(struct ec_known *k);
+void ec_known_exit(struct ec_known *k);
+void ec_known_drop(struct ec_known *k, struct ec_lost *l);
+
+#endif
