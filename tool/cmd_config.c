@@ -124,9 +124,9 @@ const struct cmd cmd_config = {
 	.help = "Columns: alias:position, expected vendor/product, ring position of the attached\n"
 		"slave or '-', AL state of this slave or '-'. -a selects configurations by alias and\n"
 		"-p by position; -p alone selects configurations with alias 0.\n",
-	.json = "masters[]: master, configs[]: alias, position, vendor_id, product_code,\n"
-		"slave_position (or null), state, not_in_op (reason or null), warning (or null),\n"
-		"watchdog_divider, watchdog_intervals,\n"
+	.json = "masters[]: master, configs[]: alias, relative_position, vendor_id,\n"
+		"product_code, position (of the attached slave, or null), state, not_in_op (reason or\n"
+		"null), warning (or null), watchdog_divider, watchdog_intervals,\n"
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"
 		"data_hex), idns[] (drive, idn, name, state, size_bytes, data_hex; null from an older\n"

@@ -100,7 +100,7 @@ static void json(const struct ect_slave *s, const struct layout *l)
 	out_u("vendor_id", s->vendor_id, NULL);
 	out_u("product_code", s->product_code, NULL);
 	out_u("revision_number", s->revision_number, NULL);
-	out_array("syncs");
+	out_array("sync_managers");
 	for (unsigned int i = 0; i < l->n; i++) {
 		const struct layout_sm *sm = &l->sms[i];
 
@@ -185,7 +185,7 @@ const struct cmd cmd_cstruct = {
 		"Slaves without SyncManagers are omitted. Names are unique within one master: select\n"
 		"the master with -m.\n",
 	.json = "masters[]: master, slaves[]: position, order_number, vendor_id, product_code,\n"
-		"revision_number, syncs[]: index, direction (output, input), watchdog, pdos[]: index,\n"
+		"revision_number, sync_managers[]: index, direction (output, input), watchdog, pdos[]: index,\n"
 		"name, entries[]: index, subindex, size_bits, name",
 	.flags = CMD_HISTORIC,
 };

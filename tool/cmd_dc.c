@@ -125,15 +125,15 @@ static void json(const struct clock *c)
 	out_str("clock", clock_text(s), NULL);
 	out_bool("reference", c->reference, NULL);
 	if (slave_has_dc(s))
-		out_u("delay_ns", s->transmission_delay, NULL);
+		out_u("dc_delay_ns", s->transmission_delay, NULL);
 	else
-		out_null("delay_ns", NULL);
+		out_null("dc_delay_ns", NULL);
 	if (s->dc_set) {
-		out_i("offset_ns", (s64)s->dc_offset, NULL);
-		out_i("difference_ns", s->dc_diff, NULL);
+		out_i("dc_offset_ns", (s64)s->dc_offset, NULL);
+		out_i("dc_difference_ns", s->dc_diff, NULL);
 	} else {
-		out_null("offset_ns", NULL);
-		out_null("difference_ns", NULL);
+		out_null("dc_offset_ns", NULL);
+		out_null("dc_difference_ns", NULL);
 	}
 	out_u("assign_activate", c->configured ? c->assign : 0, NULL);
 	out_array("sync");
@@ -160,7 +160,7 @@ static int registers(struct dev *d, const struct clock *c)
 	    reg_read(d, p, EC_REG_DC_CYCLE0, cycle, sizeof(cycle)))
 		return 1;
 	out_object("registers");
-	out_i("difference_ns", ec_dc_diff(get_unaligned_le32(diff)),
+	out_i("dc_difference_ns", ec_dc_diff(get_unaligned_le32(diff)),
 	      "    registers: difference %d ns", ec_dc_diff(get_unaligned_le32(diff)));
 	out_u("assign_activate", get_unaligned_le16(sync), ", AssignActivate 0x%04x",
 	      get_unaligned_le16(sync));
@@ -289,9 +289,9 @@ const struct cmd cmd_dc = {
 		"slaves.\n",
 	.json = "masters[]: master, reference_clock (or null), largest_difference_slave and\n"
 		"largest_difference_ns (or null), slaves[]: position, name, clock (none, 32 bit,\n"
-		"64 bit, delay only), reference, delay_ns, offset_ns and difference_ns (or null),\n"
-		"assign_activate (0: not configured), sync[] (active, cycle_ns, shift_ns), state (-,\n"
+		"64 bit, delay only), reference, dc_delay_ns, dc_offset_ns and dc_difference_ns (or\n"
+		"null), assign_activate (0: not configured), sync[] (active, cycle_ns, shift_ns), state (-,\n"
 		"reference clock, synchronized, outside window, delay unreliable, not synchronized),\n"
-		"registers (--verbose: difference_ns, assign_activate, activation_status,\n"
+		"registers (--verbose: dc_difference_ns, assign_activate, activation_status,\n"
 		"sync0_cycle_ns, sync1_cycle_ns)",
 };

@@ -22,7 +22,7 @@ static int fmmu(struct dev *d, const struct ect_domain *dom, unsigned int i, con
 	snprintf(indent, sizeof(indent), "%s    ", in);
 	out_object(NULL);
 	out_u("alias", f.alias, "%s  SlaveConfig %u", in, f.alias);
-	out_u("position", f.position, ":%u", f.position);
+	out_u("relative_position", f.position, ":%u", f.position);
 	out_u("sync_manager", f.sm, ", SM%u", f.sm);
 	out_str("direction", f.dir == 1 ? "output" : "input", " (%6s)",
 		f.dir == 1 ? "Output" : "Input");
@@ -165,7 +165,7 @@ const struct cmd cmd_domains = {
 		"working_counter, expected_working_counter, working_counter_state (zero, incomplete,\n"
 		"complete: each datagram has its counter), age_sends, max_age_sends (0: no limit),\n"
 		"stale, options[] (overlap, separate, own_frame),\n"
-		"datagrams, datagram_bytes, with --verbose fmmus[]: alias, position,\n"
+		"datagrams, datagram_bytes, with --verbose fmmus[]: alias, relative_position,\n"
 		"sync_manager, direction, logical_address, size_bytes, offset_bytes, data_hex",
 	.flags = CMD_HISTORIC,
 };

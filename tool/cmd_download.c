@@ -31,7 +31,7 @@ static int download(const struct tool *t, struct dev *d, const struct sdo_addr *
 	if (ret)
 		return ret;
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("position", s.position, NULL);
 	sdo_addr_out(a);
 	out_u("size_bytes", size, NULL);
 	return 0;
@@ -77,7 +77,7 @@ const struct cmd cmd_download = {
 		"default 5 s or that of the application. After that the slave may still write the\n"
 		"value: the next SDO waits for its reply, at most 30 s. Negative\n"
 		"numbers need no '--' before them.\n",
-	.json = "master, slave, index, subindex, complete_access, size_bytes",
+	.json = "master, position, index, subindex, complete_access, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,
 	.max_args = 3,

@@ -112,7 +112,7 @@ const struct cmd cmd_firmware = {
 		"name after --output-file. A slave in SAFEOP or OP is refused, unless with --force. After\n"
 		"an error, or when the command was killed, the slave stays in BOOT: repeat the command.\n"
 		"Each change of state may take 10 s, or as --wait says.\n",
-	.json = "master, slave, name, size_bytes, state",
+	.json = "master, position, name, size_bytes, state",
 	.flags = CMD_ONE_MASTER,
 	.min_args = 1,
 	.max_args = 2,

@@ -70,7 +70,7 @@ const struct cmd cmd_foe_read = {
 		"PASSWORD := 32-bit number, default 0\n"
 		"The content goes to stdout, not to a terminal; with --output-file to that file.\n"
 		"A slave in BOOT is read through its bootstrap mailbox.\n",
-	.json = "master, slave, name, size_bytes, data_hex; with --output-file instead of\n"
+	.json = "master, position, name, size_bytes, data_hex; with --output-file instead of\n"
 		"data_hex: output_file",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,

@@ -51,7 +51,7 @@ const struct cmd cmd_foe_write = {
 		"longer than a second shows its progress on a terminal. A transfer that is interrupted\n"
 		"is also ended at the slave; what it has of the file then is the slave's matter.\n"
 		"Firmware is written by 'ethercat firmware'.\n",
-	.json = "master, slave, name, size_bytes",
+	.json = "master, position, name, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,
 	.max_args = 2,

@@ -16,7 +16,7 @@ static int ip(const struct tool *t, struct dev *d, struct ect_ip *p)
 		return dev_fail(d, err, "Master%u slave %u: cannot %s IP parameters", d->master,
 				s.position, set ? "set" : "read");
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("position", s.position, NULL);
 	if (!p->which)
 		out_text("None.\n");
 	if (!set || out_is_json())
@@ -59,7 +59,7 @@ const struct cmd cmd_ip = {
 		"  hostname, name             at most 31 bytes\n"
 		"Without arguments the command reads the parameters of the slave. The slave decides how\n"
 		"long it keeps new parameters. An application uses ecrt_slave_config_eoe_...().\n",
-	.json = "master, slave, mac_address, ip_address, subnet_mask, default_gateway,\n"
+	.json = "master, position, mac_address, ip_address, subnet_mask, default_gateway,\n"
 		"dns_address, hostname (null: not set, or not reported)",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.max_args = 12,

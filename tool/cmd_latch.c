@@ -104,7 +104,7 @@ static int show(const struct tool *t, struct dev *d, const char *mode)
 	if (read_all(d, &s, &l))
 		return 1;
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("position", s.position, NULL);
 	out_array("latches");
 	for (unsigned int i = 0; i < INPUTS; i++)
 		input(&l, i);
@@ -139,7 +139,7 @@ const struct cmd cmd_latch = {
 		"controls are named and do not change; if it controls both, the command fails.\n"
 		"Times are system times of the distributed clocks, ns. Reading a time re-arms the\n"
 		"latch.\n",
-	.json = "master, slave, latches[] (input, high, rising_ns, falling_ns (null: none), single,\n"
+	.json = "master, position, latches[] (input, high, rising_ns, falling_ns (null: none), single,\n"
 		"owner (master, slave: the CPU of the slave reads the times))",
 	.flags = CMD_ONE_MASTER,
 	.max_args = 1,

@@ -17,7 +17,7 @@ static int exchange(const struct tool *t, u16 address, const struct ec_type *typ
 	ret = dev_select_single(&d, t, &s) || reg_rdwr(&d, &s, address, data, size);
 	if (!ret) {
 		out_u("master", d.master, NULL);
-		out_u("slave", s.position, NULL);
+		out_u("position", s.position, NULL);
 		out_u("address", address, NULL);
 		ret = io_print(type, data, size);
 	}
@@ -82,7 +82,7 @@ const struct cmd cmd_reg_rdwr = {
 		"DATA := { value of --type, which is required; - for stdin }\n"
 		"SIZE := { bytes; a shorter value of a type without fixed size ends in zeros }\n"
 		"  ethercat reg_rdwr -p3 -t uint16 0x0300 0\n",
-	.json = "master, slave, address, type, size_bytes, value, data_hex",
+	.json = "master, position, address, type, size_bytes, value, data_hex",
 	.flags = CMD_ONE_MASTER | CMD_NEGATIVE,
 	.min_args = 2,
 	.max_args = 3,

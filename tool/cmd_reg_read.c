@@ -20,7 +20,7 @@ static int show(const struct tool *t, struct dev *d, u16 address, size_t size,
 	ret = reg_read(d, &s, address, data, size);
 	if (!ret) {
 		out_u("master", d->master, NULL);
-		out_u("slave", s.position, NULL);
+		out_u("position", s.position, NULL);
 		out_u("address", address, NULL);
 		ret = io_print(type, data, size);
 	}
@@ -71,7 +71,7 @@ const struct cmd cmd_reg_read = {
 	.help = "ADDRESS := { 0 to 0xffff }\n"
 		"SIZE := { bytes; not needed with a --type of fixed size }\n"
 		"Without --type the value is shown as hex bytes.\n",
-	.json = "master, slave, address, type, size_bytes, value, data_hex",
+	.json = "master, position, address, type, size_bytes, value, data_hex",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,
 	.max_args = 2,

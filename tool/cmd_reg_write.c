@@ -35,7 +35,7 @@ static int put(const struct tool *t, u16 address, const u8 *data, size_t size)
 	ret = position(t, &d, &s) || reg_write(&d, &s, address, data, size, t->emergency);
 	if (!ret) {
 		out_u("master", d.master, NULL);
-		out_u("slave", s.position, NULL);
+		out_u("position", s.position, NULL);
 		out_u("address", address, NULL);
 		out_u("size_bytes", size, NULL);
 		if (t->verbosity > 0)
@@ -78,7 +78,7 @@ const struct cmd cmd_reg_write = {
 		"DATA := { with --type a value, else the name of a file with the bytes; - for stdin }\n"
 		"With --emergency, -p is the ring position of the slave, even if the bus has not been\n"
 		"scanned.\n",
-	.json = "master, slave, address, size_bytes",
+	.json = "master, position, address, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,
 	.max_args = 2,

@@ -169,8 +169,8 @@ const struct cmd cmd_sdos = {
 	.json = "masters[]: master, slaves[]: position, objects[]: index, name, object_code,\n"
 		"type_code, max_subindex, entries[]: subindex, access, type, type_code, size_bits,\n"
 		"name, with --verbose value (type, size_bytes, value, data_hex), abort_code or\n"
-		"error, and default, minimum, maximum (as value), unit. --save: master, slave,\n"
-		"output_file, entry_count, values, unreadable. --compare, --compare-slave: master, slave,\n"
+		"error, and default, minimum, maximum (as value), unit. --save: master, position,\n"
+		"output_file, entry_count, values, unreadable. --compare, --compare-slave: master, position,\n"
 		"left, right, entries[]: kind (different, unreadable), index, subindex, access, type,\n"
 		"name, left and right (type, size_bytes, value, data_hex; abort_code; error;\n"
 		"missing; not_readable); equal, different, unreadable",

@@ -103,7 +103,7 @@ static int run(struct tool *t, int argc, char **argv)
 		free(img);
 	} else if (!ret) {
 		out_u("master", d.master, NULL);
-		out_u("slave", s.position, NULL);
+		out_u("position", s.position, NULL);
 		out_u("size_bytes", size, NULL);
 		show(t, img, size);
 		free(img);
@@ -121,7 +121,7 @@ const struct cmd cmd_sii_read = {
 	.help = "Binary, as read by the last bus scan, not to a terminal:\n"
 		"ethercat sii_read -p2 > backup.bin\n"
 		"--verbose prints hex bytes for each category.\n",
-	.json = "master, slave, size_bytes, data_hex; with --verbose instead of data_hex:\n"
+	.json = "master, position, size_bytes, data_hex; with --verbose instead of data_hex:\n"
 		"fixed_area_hex, checksum_ok, alias, vendor_id, product_code, revision_number,\n"
 		"serial_number, categories[] (type, name, size_words, data_hex), complete",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,

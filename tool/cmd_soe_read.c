@@ -17,7 +17,7 @@ static int soe_read(const struct tool *t, struct dev *d, const struct soe_addr *
 	if (n < 0)
 		return soe_failed(d, (int)n, &s, a, "read");
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("position", s.position, NULL);
 	soe_addr_out(a);
 	/* a text is a list: length and largest length, then the characters */
 	if (value_is_text(type) && n >= 4 && get_unaligned_le16(data) == n - 4) {
@@ -52,7 +52,7 @@ const struct cmd cmd_soe_read = {
 		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"
 		"Without --type the value is shown as hex bytes; a list includes its two lengths, a\n"
 		"text does not.\n",
-	.json = "master, slave, drive, idn, name, type, size_bytes,\n"
+	.json = "master, position, drive, idn, name, type, size_bytes,\n"
 		"value (not for bytes without a value form), data_hex",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 1,

@@ -37,7 +37,7 @@ static int soe_write(const struct tool *t, struct dev *d, const struct soe_addr 
 	if (err)
 		return soe_failed(d, err, &s, a, "write");
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("position", s.position, NULL);
 	soe_addr_out(a);
 	out_u("size_bytes", size, NULL);
 	return 0;
@@ -78,7 +78,7 @@ const struct cmd cmd_soe_write = {
 		"VALUE := { a value of the type given by --type | - for stdin }\n"
 		"--type is required. A text is sent as a list with its length; write other lists as\n"
 		"raw bytes. Negative numbers need no '--' before them.\n",
-	.json = "master, slave, drive, idn, name, size_bytes",
+	.json = "master, position, drive, idn, name, size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,
 	.max_args = 3,

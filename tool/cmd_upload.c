@@ -50,7 +50,7 @@ static int upload(const struct tool *t, struct dev *d, const struct sdo_addr *a,
 	    sdo_upload(d, &s, a, t->timeout_ms, &data, &size))
 		return 1;
 	out_u("master", d->master, NULL);
-	out_u("slave", s.position, NULL);
+	out_u("position", s.position, NULL);
 	sdo_addr_out(a);
 	if (!type)
 		type = described(d, &s, a, t->timeout_ms, size);
@@ -92,7 +92,7 @@ const struct cmd cmd_upload = {
 		"to 0x100a are strings; other data of 1, 2, 4 or 8 bytes are shown as unsigned numbers\n"
 		"and the rest as hex bytes. --timeout is the time limit of each reply, at most 60 s,\n"
 		"by default 5 s or that of the application.\n",
-	.json = "master, slave, index, subindex, complete_access, type_guessed (not from the\n"
+	.json = "master, position, index, subindex, complete_access, type_guessed (not from the\n"
 		"dictionary or --type), type, size_bytes,\n"
 		"value (not for bytes without a value form), data_hex",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,

@@ -260,12 +260,12 @@ static void attached(const struct ect_config *c, const char *in)
 	char state[16];
 
 	if (c->slave_position < 0) {
-		out_null("slave_position", "%sAttached slave: none\n", in);
+		out_null("position", "%sAttached slave: none\n", in);
 		out_null("state", NULL);
 		return;
 	}
 	al_state_text(c->al_status, state, sizeof(state));
-	out_i("slave_position", c->slave_position, "%sAttached slave: %d", in, c->slave_position);
+	out_i("position", c->slave_position, "%sAttached slave: %d", in, c->slave_position);
 	out_str("state", ec_al_state_name((u8)c->al_status), " (%s)\n", state);
 }
 
@@ -300,7 +300,7 @@ int config_info(struct dev *d, const struct ect_config *c, const char *in)
 
 	out_object(NULL);
 	out_u("alias", c->alias, "%sAlias: %u\n", in, c->alias);
-	out_u("position", c->position, "%sPosition: %u\n", in, c->position);
+	out_u("relative_position", c->position, "%sPosition: %u\n", in, c->position);
 	out_u("vendor_id", c->vendor_id, "%sVendor Id: 0x%08x\n", in, c->vendor_id);
 	out_u("product_code", c->product_code, "%sProduct code: 0x%08x\n", in, c->product_code);
 	attached(c, in);

@@ -198,7 +198,7 @@ static int single(const struct tool *t,
 	ret = dev_select_single(&d, t, &s);
 	if (!ret) {
 		out_u("master", d.master, NULL);
-		out_u("slave", s.position, NULL);
+		out_u("position", s.position, NULL);
 		ret = fn(t, &d, &s);
 	}
 	dev_close(&d);

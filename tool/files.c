@@ -154,7 +154,7 @@ int foe_transfer(struct dev *d, const struct tool *t, const struct ect_slave *s,
 	if (t->verbosity > 0)
 		fprintf(stderr, "%u bytes in %.2f s\n", f->size, now_s() - begin);
 	out_u("master", d->master, NULL);
-	out_u("slave", s->position, NULL);
+	out_u("position", s->position, NULL);
 	out_str("name", f->name, NULL);
 	out_u("size_bytes", f->size, NULL);
 	return 0;

@@ -27,7 +27,7 @@ COLUMNS = 100
 
 # rule, folder: findings that are left
 LIMITS = {
-    ("lines", "tests"): 132,
+    ("lines", "tests"): 131,
     ("lines", "master"): 4,
     ("lines", "Documentation"): 0,
     ("lines", "README.md"): 2,

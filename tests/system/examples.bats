@@ -273,7 +273,7 @@ clocks_are_shown() {
 	ethercat dc
 	json '.masters[0] | .largest_difference_ns != null and
 		all(.slaves[] | select(.sync[0].active);
-			.sync[0].cycle_ns == 1000000 and .offset_ns != null)' dc
+			.sync[0].cycle_ns == 1000000 and .dc_offset_ns != null)' dc
 	# the registers hold what is configured
 	wait_for 60 json '[.masters[0].slaves[] | select(.sync[0].active) | .registers] |
 		length == 2 and all(.[]; .sync0_cycle_ns == 1000000 and

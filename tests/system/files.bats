@@ -32,7 +32,7 @@ teardown_file() { stop; }
 	# another name, from stdin, with a password
 	ethercat foe_write -p2 -o short - 0x1234 <<<hello
 	[ "$(ethercat foe_read -p2 short 4660)" = hello ]
-	json '.slave == 2 and .name == "short" and .size_bytes == 6 and
+	json '.position == 2 and .name == "short" and .size_bytes == 6 and
 		.data_hex == "68656c6c6f0a"' foe_read -p2 short
 	# a file may be empty
 	ethercat foe_write -p2 "$BATS_FILE_TMPDIR/empty"
@@ -54,7 +54,7 @@ teardown_file() { stop; }
 	local f=$BATS_FILE_TMPDIR/fw.efw
 
 	printf x >"$BATS_TEST_TMPDIR/v1"
-	json '.slave == 1 and .name == "v1" and .size_bytes == 1 and .state == "PREOP"' \
+	json '.position == 1 and .name == "v1" and .size_bytes == 1 and .state == "PREOP"' \
 		firmware -p1 "$BATS_TEST_TMPDIR/v1"
 	[ "$(ethercat foe_read -p1 v1)" = x ]
 	"$EC_BUILD/tool/ethercat" firmware -p1 "$f" &

@@ -95,7 +95,7 @@ teardown_file() { stop; }
 	[ "$(ethercat -p 4 sdo_upload --type uint32 0x1018:02)" = "0x1c213052 471937106" ]
 	[ "$(ethercat upload -a1 -p4 0x1018 1)" = "0x00000002 2" ]
 	[ "$(ethercat upload -p4 -t string 0x1008 0)" = "EL7201" ]
-	json '.value == 2 and .data_hex == "02000000" and .slave == 4' upload -p4 0x1018 1
+	json '.value == 2 and .data_hex == "02000000" and .position == 4' upload -p4 0x1018 1
 	# complete access: the number of entries, a gap, then the entries
 	[ "$(ethercat upload -p17 -t raw 0x1018 | cut -d' ' -f1-6)" = "0x04 0x00 0x51 0xec 0x00 0x00" ]
 }
@@ -289,7 +289,7 @@ add() {
 	[[ "${lines[2]}" =~ ^"    0  64 bit "+"0 ".*"reference clock ".*EK1100 ]]
 	[ "$(ethercat dc -v -p0 | grep -c '^    registers: difference 0 ns, ')" = 1 ]
 	json '.masters[0] | .reference_clock == 0 and (.slaves | length == 22) and
-		.slaves[21].delay_ns > .slaves[1].delay_ns' dc
+		.slaves[21].dc_delay_ns > .slaves[1].dc_delay_ns' dc
 }
 
 @test "without an application nothing is configured" {

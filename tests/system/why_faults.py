@@ -263,7 +263,7 @@ class Pdo(Fault):
         return {("pdo", position(self.slave), 0x06010002)}
 
     def events(self):
-        return [self.failed(PDO, code=0x06010002, sm=2)]
+        return [self.failed(PDO, code=0x06010002, sync_manager=2)]
 
 
 class Different(Fault):

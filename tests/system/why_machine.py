@@ -56,7 +56,7 @@ class Watchdog(Fault):
         return {("watchdog", position(self.slave), SM_WATCHDOG)}
 
     def events(self):
-        return [Event("al_error", self.slave, many=True, al_code=SM_WATCHDOG)]
+        return [Event("al_error", self.slave, many=True, al_status_code=SM_WATCHDOG)]
 
     def follows(self):
         return [self.failed(REFUSED, code=SM_WATCHDOG)]

@@ -166,7 +166,8 @@ class Leftover(Fault):
     def page(self, bench):
         """The inputs of this slave, to be read from its status register."""
         fmmus = [f for d in bench.ethercat_json("domains", "-v")["masters"][0]["domains"]
-                 for f in d["fmmus"] if f["position"] == self.slave and f["direction"] == "input"]
+                 for f in d["fmmus"]
+                 if f["relative_position"] == self.slave and f["direction"] == "input"]
         at = fmmus[0]["logical_address"]
         return "".join(f"{b:02x}" for b in [
             *at.to_bytes(4, "little"), 1, 0, 0, 7, 0x30, 1, 0, 1, 1, 0, 0, 0])
@@ -239,7 +240,7 @@ class Dropped(Fault):
         return set()
 
     def events(self):
-        return [Event("al_error", self.slave, many=True, al_code=0x1a)]
+        return [Event("al_error", self.slave, many=True, al_status_code=0x1a)]
 
 
 class Twin(Cut):

@@ -10,7 +10,7 @@ load common
 	[ "$(od -An -tx1 "$BATS_TEST_TMPDIR/fw" | tr -d ' \n')" = 010262696e6172790a ]
 	out foe_read -j -p2 fw |
 		json 'd["data_hex"] == "010262696e6172790a" and d["size_bytes"] == 9'
-	out foe_read -j -p2 fw | json 'd["name"] == "fw" and d["slave"] == 2'
+	out foe_read -j -p2 fw | json 'd["name"] == "fw" and d["position"] == 2'
 	out foe_read -j -p2 -o "$BATS_TEST_TMPDIR/fw" fw |
 		json '"data_hex" not in d and d["output_file"].endswith("/fw")'
 	[[ "$(err foe_read -v -p2 fw)" =~ ^"9 bytes in "[0-9.]+" s"$ ]]

@@ -21,15 +21,15 @@ watch() {
 
 @test "dc --json has numbers or null" {
 	slave='d["masters"][0]["slaves"][0]'
-	FAKE_BUS=dc out dc -j -p2 | json "$slave['offset_ns'] == -815000000123456789"
+	FAKE_BUS=dc out dc -j -p2 | json "$slave['dc_offset_ns'] == -815000000123456789"
 	FAKE_BUS=dc out dc -j -p2 |
 		json "$slave['sync'][0] == {'active': True, 'cycle_ns': 1000000, 'shift_ns': -500}"
 	FAKE_BUS=dc out dc -j -p2 |
 		json "not $slave['sync'][1]['active'] and 'registers' not in $slave"
-	FAKE_BUS=dc out dc -j -v -p2 | json "$slave['registers']['difference_ns'] == -12"
+	FAKE_BUS=dc out dc -j -v -p2 | json "$slave['registers']['dc_difference_ns'] == -12"
 	FAKE_BUS=dc out dc -j -p0 |
 		json "$slave['reference'] and d['masters'][0]['largest_difference_ns'] is None"
-	out dc -j -p1 | json "$slave['clock'] == 'delay only' and $slave['difference_ns'] is None"
+	out dc -j -p1 | json "$slave['clock'] == 'delay only' and $slave['dc_difference_ns'] is None"
 }
 
 @test "dc reads registers only with --verbose, which needs write access" {

@@ -5,7 +5,7 @@ load common
 
 @test "ip shows the parameters of the slave" {
 	golden ip ip -p2
-	out ip -p2 -j | json 'd["ip_address"] == "192.168.0.17" and d["slave"] == 2'
+	out ip -p2 -j | json 'd["ip_address"] == "192.168.0.17" and d["position"] == 2'
 	out ip -p2 -j | json 'd["default_gateway"] is None and d["hostname"] == "mixer"'
 	FAKE_BUS=evil out ip -p2 | grep -q '^Hostname: '
 	[ -z "$(FAKE_BUS=evil out ip -p2 | LC_ALL=C grep '[^ -~]')" ]

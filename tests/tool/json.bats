@@ -17,6 +17,27 @@ load common
 	done
 }
 
+@test "a number has the same key in every command" {
+	local c
+
+	export FAKE_BUS=app
+	# the ring position of the slave that an object describes
+	for c in "upload -p2 0x1018 1" "download -p2 -tint8 0x6060 0 1" "reg_read -p2 0x130 2" \
+		"reg_write -p2 -tuint8 0x40 1" "reg_rdwr -p2 -tuint8 0x40 1" "sii_read -p2" \
+		"latch -p2" "ip -p2" "soe_read -p2 S-0-15" "foe_read -p2 fw"; do
+		out $c -j | json 'd["position"] == 2 and "slave" not in d' || { echo "$c"; return 1; }
+	done
+	out config -j | json '[c["position"] for c in d["masters"][0]["configs"]] == [None, 1]'
+	# slaves from the one with the alias on
+	out config -j | json '[(c["alias"], c["relative_position"])
+		for c in d["masters"][0]["configs"]] == [(0, 2), (1001, 0)]'
+	out domains -v -j | json 'all("relative_position" in f and "position" not in f
+		for m in d["masters"] for x in m["domains"] for f in x["fmmus"])'
+	out cstruct -j | json 'all("sync_managers" in s for s in d["masters"][0]["slaves"])'
+	FAKE_BUS=dc out dc -j | json 'all("dc_delay_ns" in s and "dc_offset_ns" in s
+		for s in d["masters"][0]["slaves"])'
+}
+
 @test "JSON keys are unchanged" {
 	out slaves -j | json 'd["masters"][0]["slaves"][2]["name"] == "EL7201 servo terminal"'
 	out slaves -j | json 'd["masters"][0]["slaves"][2]["al_status_code"] == 0x1d'
@@ -38,7 +59,7 @@ load common
 	out upload -j -p2 0x1018 1 | json 'd["value"] == 2 and d["data_hex"] == "02000000"'
 	out upload -j -p2 -tstring 0x1008 0 | json 'd["value"] == "EL7201"'
 	out pdos -j | json 'd["masters"][0]["slaves"][2]["sync_managers"][3]["pdos"][0]["entries"][0]["size_bits"] == 32'
-	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["slave_position"] is None'
+	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["position"] is None'
 	FAKE_BUS=app out config -j | json '"no slave at ring" in d["masters"][0]["configs"][0]["not_in_op"]'
 	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][1]["not_in_op"] is None'
 	FAKE_BUS=app out config -j | json 'd["masters"][0]["configs"][0]["dc"]["sync"][0]["shift_ns"] == -500'

@@ -16,7 +16,7 @@ load common
 		json 'd["value"] == 0x1234 and d["drive"] == 1 and d["idn"] == 0x8096'
 	out soe_read -j -p2 -tuint16 1 P-0-150 | json 'd["name"] == "P-0-0150"'
 	out soe_read -j -p2 S-0-15 |
-		json 'd["data_hex"] == "0700" and d["size_bytes"] == 2 and d["slave"] == 2'
+		json 'd["data_hex"] == "0700" and d["size_bytes"] == 2 and d["position"] == 2'
 }
 
 @test "soe_write: values and texts" {

@@ -23,7 +23,8 @@
 
 #define CHECK(c) check(c, __LINE__, #c)
 #define DONE(cmd, arg) check(!ioctl(fd, cmd, arg), __LINE__, #cmd)
-#define FAILS(cmd, arg, err) check(ioctl(fd, cmd, arg) < 0 && errno == (err), __LINE__, #cmd " " #err)
+#define FAILS(cmd, arg, err) \
+	check(ioctl(fd, cmd, arg) < 0 && errno == (err), __LINE__, #cmd " " #err)
 
 static int fd;
 static unsigned int checks, wrong;
