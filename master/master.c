@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "boundary/api.h"
 #include "boundary/cdev.h"
+#include "carry/posts.h"
 #include "link/device.h"
 #include "link/spec.h"
 #include "boundary/master.h"

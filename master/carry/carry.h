@@ -110,8 +110,6 @@ static inline bool ec_carry_is_busy(const struct ec_carry *c)
 	return READ_ONCE(c->n_ready) || READ_ONCE(c->n_flying);
 }
 
-int ec_carry_init(struct ec_carry *c, struct ec_links *l, const struct ec_carry_ops *ops);
-void ec_carry_exit(struct ec_carry *c);
 void ec_carry_changed(struct ec_links *l);
 void ec_carry_kick(struct ec_carry *c);
 void ec_carry_expect(struct ec_carry *c, u64 after_ns);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Posts of a master, from their begin to their end. */
 #include "loss.h"
+#include "posts.h"
 
 /**
  * ec_carry_init() - prepare the posts of a master

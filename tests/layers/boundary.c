@@ -12,6 +12,7 @@
 #include "master/boundary/ioctl.h"
 #include "master/boundary/master.h"
 #include "master/bus/scan.h"
+#include "master/carry/posts.h"
 #include "master/config/apply.h"
 #include "master/link/device.h"
 #include "alone.h"

@@ -5,6 +5,7 @@
 #include "alone.h"
 #include "card.h"
 #include "master/carry/carry.h"
+#include "master/carry/posts.h"
 #include "master/carry/xfer.h"
 
 /* links of a master that has nothing else */

@@ -2,6 +2,7 @@
 #include "devices/sim/describe.h"
 #include "devices/sim/sim_link.h"
 #include "devices/sim/sim_wire.h"
+#include "master/carry/posts.h"
 #include "master/link/device.h"
 #include "segment.h"
 
