@@ -60,13 +60,13 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	raw_spin_lock_init(&s->note_lock);
 	ec_stop_init(&s->stop, bus->base);
 	s->mbox.base = bus->base;
-	s->mbox.links = bus->links;
+	s->mbox.box.links = bus->links;
 	s->mbox.stop = &s->stop;
-	s->mbox.sii = &s->info;
-	s->mbox.al_status = &s->al_status;
+	s->mbox.box.sii = &s->info;
+	s->mbox.box.al_status = &s->al_status;
 	s->mbox.changes = &bus->changes;
 	s->mbox.position = &s->position;
-	s->mbox.station = station;
+	s->mbox.box.station = station;
 	ec_mbox_init(&s->mbox);
 	ec_dict_init(&s->dict);
 	for (p = 0; p < EC_MAX_PORT; p++)
@@ -180,7 +180,7 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 		string(slave, slave->general.order, slave->order);
 		string(slave, slave->general.name, slave->name);
 	}
-	slave->mbox.can_repeat = slave->has_general && slave->general.flags & EC_SII_FLAG_MBOX_DLL;
+	slave->mbox.box.can_repeat = slave->has_general && slave->general.flags & EC_SII_FLAG_MBOX_DLL;
 	ret = ec_sii_decode_sms(slave->sii, slave->sii_bytes, slave->sms, EC_MAX_SM);
 	slave->n_sms = ret > 0 ? min_t(unsigned int, ret, EC_MAX_SM) : 0;
 	ec_slave_settle_mbox(slave);

@@ -10,506 +10,577 @@
  * with it no lost frame loses a message or doubles it.
  */
 #include <linux/ktime.h>
-#include "../link/links.h"
-#include "../wire/al.h"
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
-#include "mailbox_int.h"
+#include "box.h"
+#include "box_post.h"
 
+#define ACK_FAILS	3	/* repeat requests without acknowledgement */
 #define ACK_POLLS	50	/* of a repeat request */
 #define ACK_NS		(300 * NSEC_PER_USEC)	/* between them */
 #define UNSEEN_NS	(5 * NSEC_PER_MSEC)	/* for one that the slave cannot acknowledge */
-#define POLL_SLACK_NS	(20 * NSEC_PER_USEC)	/* free in a cycle that carries polls at will */
-#define SHORT_NS	(200 * NSEC_PER_USEC)	/* most slaves reply within that time */
-#define PAUSE_MIN_NS	(10 * NSEC_PER_USEC)
-#define PAUSE_MAX_NS	(5 * NSEC_PER_MSEC)
+#define ORDERED		3	/* messages with the next counter in a row */
 
-/**
- * ec_mbox_off() - is the slave in a state without mailbox?
- * @mb: mailbox of the slave
- *
- * Context: Any. RT-safe.
- * Return: whether it is in INIT.
- */
-bool ec_mbox_off(const struct ec_mbox *mb)
+/* states --------------------------------------------------------------------*/
+
+static void box_set_job(struct ec_box *box, enum ec_box_job job)
 {
-	return (READ_ONCE(*mb->al_status) & EC_AL_STATE_MASK) < EC_AL_PREOP;
+	/* the jobs before */
+	static const u8 from[] = {
+		[EC_BOX_NO_JOB] = U8_MAX,
+		[EC_BOX_EMPTYING] = BIT(EC_BOX_NO_JOB),
+		[EC_BOX_DISCARDING] = BIT(EC_BOX_NO_JOB),
+		[EC_BOX_WRITING] = BIT(EC_BOX_NO_JOB) | BIT(EC_BOX_EMPTYING) | BIT(EC_BOX_BLOCKED),
+		[EC_BOX_BLOCKED] = BIT(EC_BOX_WRITING),
+	};
+
+	lockdep_assert_held(&box->lock);
+	WARN_ON_ONCE(!(from[job] & BIT(box->job)));
+	box->job = job;
 }
 
-/* sending -------------------------------------------------------------------*/
-
-static void post(struct ec_mbox *mb, enum ec_mbox_step step, u8 cmd, u16 ado, void *data, u16 len,
-		 bool repeat)
+static void box_set_gap(struct ec_box *box, enum ec_box_gap gap)
 {
-	lockdep_assert_held(&mb->lock);
-	WRITE_ONCE(mb->step, step);
-	mb->dg = EC_DG(cmd, mb->station, ado, len, data);
-	mb->dg.repeat = repeat;
-	ec_post_send(&mb->post, mb->due_ns);
+	/* the states before */
+	static const u8 from[] = {
+		[EC_BOX_WHOLE] = U8_MAX,
+		[EC_BOX_UNREAD] = BIT(EC_BOX_WHOLE) | BIT(EC_BOX_UNREAD),
+		[EC_BOX_GAP] = BIT(EC_BOX_WHOLE) | BIT(EC_BOX_GAP) | BIT(EC_BOX_GAP_LOOK),
+		[EC_BOX_GAP_LOOK] = BIT(EC_BOX_GAP),
+	};
+
+	lockdep_assert_held(&box->lock);
+	WARN_ON_ONCE(!(from[gap] & BIT(box->gap)));
+	box->gap = gap;
 }
 
-/*
- * A piece of a mailbox. What does not fit beside the process data of a short cycle goes in
- * pieces: the first byte opens the mailbox, the last byte hands it over (ETG.1000.4 clause
- * 6.7.2). That one must not happen twice.
- */
-static void post_piece(struct ec_mbox *mb, enum ec_mbox_step step, u16 offset, u8 *box)
+static void end_job(struct ec_box *box, int err)
 {
-	u16 n = min_t(u16, mb->size - mb->at, ec_access_room(mb->links));
-
-	post(mb, step, step == EC_MBOX_READ ? EC_CMD_FPRD : EC_CMD_FPWR, offset + mb->at,
-	     box + mb->at, n, mb->at + n < mb->size);
+	box_set_job(box, EC_BOX_NO_JOB);
+	box->ops->event(box, EC_BOX_ON_JOB, err);
 }
 
-static void read_on(struct ec_mbox *mb)
+/* The slave cannot be reached, or its mailbox not be used. */
+static void box_fail(struct ec_box *box, int err)
 {
-	post_piece(mb, EC_MBOX_READ, ec_mbox_area(mb)->tx_offset, mb->rx);
+	box_set_job(box, EC_BOX_NO_JOB);
+	box->ops->event(box, EC_BOX_ON_FAILED, err);
 }
 
-static void write_on(struct ec_mbox *mb)
+/* One look has been made without a repetition. */
+static void looked(struct ec_box *box)
 {
-	post_piece(mb, EC_MBOX_WRITE, ec_mbox_area(mb)->rx_offset, mb->tx);
+	if (box->gap == EC_BOX_GAP_LOOK)
+		box_set_gap(box, EC_BOX_GAP);
 }
 
-static void post_status(struct ec_mbox *mb)
+/* Reading has made room in SM0, or nothing is in SM1 that blocks it. */
+static void unblock(struct ec_box *box)
 {
-	post(mb, EC_MBOX_STATUS, EC_CMD_FPRD, EC_REG_SM(1) + EC_SM_OFS_STATUS, mb->status, 1, true);
+	if (box->job == EC_BOX_BLOCKED)
+		box_set_job(box, EC_BOX_WRITING);
 }
 
-static void post_repeat(struct ec_mbox *mb, enum ec_mbox_step step)
+static bool is_emptying(const struct ec_box *box)
 {
-	bool set = step == EC_MBOX_REPEAT_SET;
-
-	post(mb, step, set ? EC_CMD_FPWR : EC_CMD_FPRD, EC_REG_SM(1) + EC_SM_OFS_ACTIVATE,
-	     mb->status, set ? 1 : 2, true);
+	return box->job == EC_BOX_EMPTYING || box->job == EC_BOX_DISCARDING;
 }
 
-/* Something has happened: the next access is made at once. */
-static void box_progress(struct ec_mbox *mb)
+static void end_emptying(struct ec_box *box, int err)
 {
-	lockdep_assert_held(&mb->lock);
-	mb->since_ns = ktime_get_ns();
-	mb->due_ns = 0;
+	if (box->job == EC_BOX_DISCARDING)
+		end_job(box, err);
+	else
+		box_set_job(box, EC_BOX_WRITING);
 }
 
-/*
- * A slow slave is polled ever less often: at most an eighth of the time it has taken so far
- * passes until the master sees its reply, or a millisecond. The polls of a cycle are rare enough,
- * where there is wire time for them.
- */
-static void pause(struct ec_mbox *mb)
+/* The first piece of SM1, or REST: the mailbox changes with the state. */
+static enum ec_box_step begin_read(struct ec_box *box)
 {
-	u64 now = ktime_get_ns(), took = now - mb->since_ns, ns = took / 8;
+	u16 size = ec_box_area(box)->tx_size;
 
-	lockdep_assert_held(&mb->lock);
-	if (!ec_access_is_cyclic(&mb->links->access) ||
-	    ec_access_slack_ns(mb->links) < POLL_SLACK_NS)
-		ns = max(ns, took < SHORT_NS ? took / 4 : min_t(u64, took, NSEC_PER_MSEC));
-	mb->due_ns = now + clamp_t(u64, ns, PAUSE_MIN_NS, PAUSE_MAX_NS);
-}
-
-/* Most slaves take as long as last time: the first poll is not long before that. */
-static void expect_reply(struct ec_mbox *mb)
-{
-	lockdep_assert_held(&mb->lock);
-	if (!ec_access_is_cyclic(&mb->links->access))
-		mb->due_ns = mb->since_ns + min_t(u64, mb->took_ns / 4 * 3, SHORT_NS / 2);
-}
-
-static void on_message(struct ec_mbox *mb)
-{
-	lockdep_assert_held(&mb->lock);
-	mb->took_ns = ktime_get_ns() - mb->since_ns;
-	mb->due_ns = 0;
-}
-
-/*
- * Beside a cycle each look takes a period. Where the mailbox has room on the wire it is
- * read at once: an empty one gives nothing.
- */
-static bool read_at_once(const struct ec_mbox *mb)
-{
-	u32 slack = ec_access_slack_ns(mb->links);
-	u32 ns = ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + EC_DGRAM_OVERHEAD +
-				  ec_mbox_area(mb)->tx_size);
-
-	return mb->counts && slack != ~0u &&
-	       ec_links_acyclic_ns(mb->links) + ns <= slack / 2;
-}
-
-static void begin_read(struct ec_mbox *mb)
-{
-	u16 size = ec_mbox_area(mb)->tx_size;
-
-	if (size > mb->rx_room || size < EC_MBOX_HDR) {
-		ec_mbox_fail(mb, -EMSGSIZE);
-		return;
+	if (size > box->rx_room || size < EC_MBOX_HDR) {
+		box_fail(box, -EMSGSIZE);
+		return EC_BOX_REST;
 	}
-	mb->size = size;
-	mb->at = 0;
-	read_on(mb);
+	box->size = size;
+	box->at = 0;
+	return EC_BOX_READ;
 }
 
-/* The message in @sending, as it is in SM0: the mailbox changes with the state. */
-static bool begin_write(struct ec_mbox *mb)
+/* The message in @tx, as it is in SM0; false: that is too small for it. */
+static bool begin_write(struct ec_box *box)
 {
-	u16 size = ec_mbox_area(mb)->rx_size;
+	u16 size = ec_box_area(box)->rx_size;
 
-	if (size > mb->tx_room || mb->sending.len + EC_MBOX_HDR > size) {
-		mb->sending.on = false;
-		ec_mbox_finish(mb, mb->sending.user, -EMSGSIZE);
+	lockdep_assert_held(&box->lock);
+	if (size > box->tx_room || box->tx_len > size)
 		return false;
-	}
-	memset(mb->tx + EC_MBOX_HDR + mb->sending.len, 0, size - EC_MBOX_HDR - mb->sending.len);
-	mb->size = size;
-	mb->at = 0;
-	write_on(mb);
+	memset(box->tx + box->tx_len, 0, size - box->tx_len);
+	box->size = size;
+	box->at = 0;
 	return true;
 }
 
-static void renew(struct ec_mbox *mb)
+static void renew(struct ec_box *box)
 {
-	mb->renew = false;
-	mb->counter = 0;
-	mb->seen = 0;
-	mb->in_order = 0;
-	mb->counts = false;
-	mb->gap = false;
-	mb->unread = false;
-	mb->asked = false;
-	mb->repeats = false;
-	mb->answered = false;
-	mb->late = 0;
-	mb->never_late = false;
+	lockdep_assert_held(&box->lock);
+	box->renew = false;
+	box->counter = 0;
+	box->seen = 0;
+	box->in_order = 0;
+	box->counts = false;
+	box_set_gap(box, EC_BOX_WHOLE);
+	box->asked = false;
+	box->repeats = false;
+	box->ops->event(box, EC_BOX_ON_RENEWED, 0);
 }
 
-/* The user whose message is the next one; NULL: none. */
-static struct ec_mbox_user *next_user(struct ec_mbox *mb)
+static void begin_job(struct ec_box *box, enum ec_box_job job)
 {
-	struct ec_mbox_user *u;
-
-	lockdep_assert_held(&mb->lock);
-	while ((u = list_first_entry_or_null(&mb->queue, struct ec_mbox_user, list))) {
-		list_move_tail(&u->list, &mb->users);
-		u->phase = EC_MBOX_USER_SENDING;
-		/* a slave that only passes INIT is waited for: its worker claims the mailbox */
-		if (ec_mbox_off(mb))
-			ec_mbox_finish(mb, u, -EAGAIN);
-		else if (u->len + EC_MBOX_HDR > mb->tx_room && !u->discard)
-			ec_mbox_finish(mb, u, -EMSGSIZE);
-		else
-			break;
-	}
-	return u;
+	box_set_job(box, job);
+	box->doubtful = false;
+	box->orphan = false;
+	box->drained = 0;
+	ec_box_progress(box);
 }
 
-/* The next message of the queue. */
-static void take_message(struct ec_mbox *mb)
+/**
+ * ec_box_give() - a message for the slave
+ * @box: mailbox of a slave without a job, its lock held
+ * @type: enum ec_mbox_type
+ * @data: message behind the mailbox header
+ * @len: bytes of it, with the header at most @box->tx_room
+ * @emptying: first read SM1 until it is empty
+ *
+ * Context: Only struct ec_box_ops.next. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_box_give(struct ec_box *box, u8 type, const u8 *data, u16 len, bool emptying)
 {
-	struct ec_mbox_user *u = mb->sending.on ? NULL : next_user(mb);
-	struct ec_mbox_hdr h;
-	struct ec_wbuf w;
+	struct ec_mbox_hdr h = { .len = len, .type = type };
+	struct ec_wbuf w = ec_wbuf(box->tx, EC_MBOX_HDR + len);
 
-	lockdep_assert_held(&mb->lock);
-	if (!u)
-		return;
-	mb->sending = (struct ec_mbox_sending){
-		.on = true, .user = u, .type = u->type, .len = u->len, .discard = u->discard,
-		.emptying = u->discard || (u->first && !mb->answered),
-	};
-	box_progress(mb);
-	if (u->discard)
-		return;
-	mb->counter = ec_mbox_next_counter(mb->counter);
-	mb->sending.counter = mb->counter;
-	mb->answered = false;
-	h = (struct ec_mbox_hdr){ .len = u->len, .type = u->type, .counter = mb->counter };
-	w = ec_wbuf(mb->tx, EC_MBOX_HDR + u->len);
+	begin_job(box, emptying ? EC_BOX_EMPTYING : EC_BOX_WRITING);
+	box->counter = ec_mbox_next_counter(box->counter);
+	box->tx_len = EC_MBOX_HDR + len;
+	h.counter = box->counter;
 	ec_mbox_hdr_encode(&w, &h);
-	ec_wbuf_bytes(&w, u->tx, u->len);
+	ec_wbuf_bytes(&w, data, len);
 }
 
-/* One datagram; false: the message does not fit, and there may be another. */
-static bool send_step(struct ec_mbox *mb)
+/**
+ * ec_box_discard() - discard what the slave has sent so far
+ * @box: mailbox of a slave without a job, its lock held
+ *
+ * Context: Only struct ec_box_ops.next. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_box_discard(struct ec_box *box)
 {
-	struct ec_mbox_sending *s = &mb->sending;
+	begin_job(box, EC_BOX_DISCARDING);
+}
+
+/**
+ * ec_box_take_back() - the job is not wanted any more
+ * @box: mailbox of a slave, its lock held
+ *
+ * What is on its way goes on.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: a frame with its message was lost, so the slave may have it.
+ */
+bool ec_box_take_back(struct ec_box *box)
+{
+	bool doubtful = ec_box_is_doubtful(box);
+
+	if (box->step == EC_BOX_WRITE)
+		box->orphan = true;
+	else
+		box_set_job(box, EC_BOX_NO_JOB);
+	return doubtful;
+}
+
+/**
+ * ec_box_arrived() - the answer to the message of the job has come
+ * @box: mailbox of a slave, its lock held
+ *
+ * Whatever became of the frame, the slave has the message.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_box_arrived(struct ec_box *box)
+{
+	box_set_job(box, EC_BOX_NO_JOB);
+}
+
+static enum ec_box_step choose(struct ec_box *box)
+{
+	enum ec_box_want want;
 	bool read;
 
-	lockdep_assert_held(&mb->lock);
-	if (READ_ONCE(mb->renew) && !s->on)
-		renew(mb);
-	take_message(mb);
-	read = !mb->held && ((s->on && (s->emptying || s->blocked)) || ec_mbox_awaited(mb));
-	if (read && mb->gap && mb->can_repeat && !mb->failed)
-		post_repeat(mb, EC_MBOX_REPEAT_GET);
-	else if (s->on && !s->emptying && !s->blocked)
-		return begin_write(mb);
-	else if (read && !ec_mbox_is_blind(mb) && (mb->unread || s->on || !read_at_once(mb)))
-		post_status(mb);
-	else if (read)
-		begin_read(mb);
-	return true;
+	for (;;) {
+		if (READ_ONCE(box->renew) && box->job == EC_BOX_NO_JOB)
+			renew(box);
+		if (box->job == EC_BOX_NO_JOB)
+			box->ops->next(box);
+		want = box->ops->want(box);
+		read = !box->held && (is_emptying(box) || box->job == EC_BOX_BLOCKED ||
+				      want != EC_BOX_NOTHING);
+		if (read && box->gap == EC_BOX_GAP)
+			return EC_BOX_REPEAT_GET;
+		if (box->job != EC_BOX_WRITING)
+			break;
+		if (begin_write(box))
+			return EC_BOX_WRITE;
+		end_job(box, -EMSGSIZE);
+	}
+	if (!read)
+		return EC_BOX_REST;
+	if (want != EC_BOX_BLIND && (box->gap == EC_BOX_UNREAD || box->job != EC_BOX_NO_JOB ||
+				     !ec_box_reads_at_once(box)))
+		return EC_BOX_STATUS;
+	return begin_read(box);
 }
 
 /**
- * ec_mbox_go() - send the next datagram, if there is anything to do
- * @mb: mailbox of the slave, its lock held
+ * ec_box_go() - send the next datagram, if there is anything to do
+ * @box: mailbox of a slave, its lock held
+ *
+ * Context: Any, but no call of the machine. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_box_go(struct ec_box *box)
+{
+	lockdep_assert_held(&box->lock);
+	if (box->step == EC_BOX_REST && !box->dead && box->rx && !box->closed)
+		ec_box_post(box, choose(box));
+}
+
+/**
+ * ec_box_hurry() - there is more to do: the next poll that waits for its time must not delay it
+ * @box: mailbox of a slave, its lock held; ec_box_go() follows
+ *
+ * Context: Any, but no call of the machine. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_box_hurry(struct ec_box *box)
+{
+	lockdep_assert_held(&box->lock);
+	if ((box->step == EC_BOX_STATUS || (box->step == EC_BOX_READ && !box->at)) &&
+	    ec_post_recall(&box->post))
+		ec_box_post(box, EC_BOX_REST);
+}
+
+/* messages of the slave -----------------------------------------------------*/
+
+/**
+ * ec_box_message() - the message of the slave in @rx
+ * @box: mailbox of a slave, its lock held, or with a message that is held
+ * @h: result: its header
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; -EBADMSG when the header is wrong.
  */
-void ec_mbox_go(struct ec_mbox *mb)
+int ec_box_message(const struct ec_box *box, struct ec_mbox_hdr *h)
 {
-	lockdep_assert_held(&mb->lock);
-	if (mb->step != EC_MBOX_REST || mb->dead || !mb->rx || mb->claimed == EC_MBOX_ALL)
+	struct ec_rbuf r = ec_rbuf(box->rx, box->rx_size);
+
+	return ec_mbox_hdr_decode(&r, h);
+}
+
+/**
+ * ec_box_drop() - the message of the slave in @rx is not needed any more
+ * @box: mailbox of a slave, its lock held
+ *
+ * Context: Any; ec_box_go() follows, but in a call of the machine. RT-safe: bounded, no sleep,
+ * no allocation.
+ */
+void ec_box_drop(struct ec_box *box)
+{
+	lockdep_assert_held(&box->lock);
+	box->held = false;
+}
+
+/* Is the message in @rx the last one, from a slave that has counted well so far? */
+static bool is_twice(struct ec_box *box, u8 counter)
+{
+	bool same = !memcmp(box->begin, box->rx, sizeof(box->begin));
+
+	lockdep_assert_held(&box->lock);
+	memcpy(box->begin, box->rx, sizeof(box->begin));
+	if (counter == box->seen) {
+		same &= box->in_order >= ORDERED;
+		/* of a slave that stops counting one message is discarded, no more */
+		box->in_order -= same;
+		return same;
+	}
+	box->in_order = counter == ec_mbox_next_counter(box->seen) ?
+		       min(box->in_order + 1, ORDERED) : 0;
+	return false;
+}
+
+/*
+ * When a slave has repeated its last message although nothing was lost, the counter shows
+ * that the message is not a new one; also when a slave sends a message twice.
+ */
+static bool is_known(struct ec_box *box, u8 counter)
+{
+	bool twice = is_twice(box, counter);
+	bool again = counter && counter == box->seen && (box->repeats || twice);
+
+	lockdep_assert_held(&box->lock);
+	box->repeats = false;
+	if (again)
+		return true;
+	box->counts = counter && box->seen && counter != box->seen;
+	box->seen = counter;
+	return false;
+}
+
+/* SM1 was read: its content is in @rx. */
+static void received(struct ec_box *box)
+{
+	struct ec_mbox_hdr h;
+
+	lockdep_assert_held(&box->lock);
+	if (box->gap == EC_BOX_UNREAD)
+		box_set_gap(box, EC_BOX_WHOLE);
+	if (ec_box_message(box, &h)) {
+		box->ops->event(box, EC_BOX_ON_MALFORMED, 0);
+	} else if (is_known(box, h.counter)) {
+		box->ops->event(box, EC_BOX_ON_REPEATED, 0);
+	} else {
+		box->held = true;
+		box->ops->event(box, EC_BOX_ON_RECEIVED, 0);
+	}
+	if (is_emptying(box) && ++box->drained >= EC_BOX_DRAIN)
+		end_emptying(box, -EBUSY);
+	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
+}
+
+/* SM1 has no message. */
+static void found_empty(struct ec_box *box)
+{
+	unblock(box);
+	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
+	/* what a lost frame had is asked for again */
+	if (box->gap == EC_BOX_GAP)
 		return;
-	while (!send_step(mb))
-		;
+	box->ops->event(box, EC_BOX_ON_EMPTY, 0);
+	if (!is_emptying(box))
+		return;
+	box->ops->event(box, EC_BOX_ON_EMPTIED, 0);
+	end_emptying(box, 0);
 }
 
-/**
- * ec_mbox_hurry() - there is more to do: the next poll that waits for its time must not delay it
- * @mb: mailbox of the slave, its lock held; ec_mbox_go() follows
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_mbox_hurry(struct ec_mbox *mb)
+/* results: each returns the next step, REST: what there is to do ------------*/
+
+static enum ec_box_step on_status(struct ec_box *box, int ret)
 {
-	lockdep_assert_held(&mb->lock);
-	if ((mb->step == EC_MBOX_STATUS || (mb->step == EC_MBOX_READ && !mb->at)) &&
-	    ec_post_recall(&mb->post))
-		WRITE_ONCE(mb->step, EC_MBOX_REST);
+	looked(box);
+	if (ret == -ETIMEDOUT && !is_emptying(box)) {
+		ec_box_pause(box);
+		return EC_BOX_REST;
+	}
+	if (ret) {
+		box_fail(box, ret);
+		return EC_BOX_REST;
+	}
+	if (box->gap == EC_BOX_UNREAD)
+		box_set_gap(box, EC_BOX_WHOLE);
+	if (box->status[0] & EC_SM_ST_FULL) {
+		box->took_ns = ktime_get_ns() - box->since_ns;
+		box->due_ns = 0;
+		return begin_read(box);
+	}
+	ec_box_pause(box);
+	found_empty(box);
+	return EC_BOX_REST;
 }
-
-/* results -------------------------------------------------------------------*/
 
 /*
  * The frame that read a mailbox is lost. Was it read? It is full if not, or if the slave has
  * put in the next one by now: then only a repetition shows which.
  */
-static void read_lost(struct ec_mbox *mb)
+static void read_lost(struct ec_box *box)
 {
-	mb->gap = true;
-	mb->unread = !mb->can_repeat;
-	ec_mbox_mark_gap(mb);
-	ec_mbox_finish_once(mb);
+	box_set_gap(box, box->can_repeat ? EC_BOX_GAP : EC_BOX_UNREAD);
+	box->ops->event(box, EC_BOX_ON_GAP, 0);
+	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
 }
 
-static void on_status(struct ec_mbox *mb, int ret)
+static enum ec_box_step on_read(struct ec_box *box, int ret)
 {
-	bool full = mb->status[0] & EC_SM_ST_FULL;
-
-	mb->failed = false;
-	if (ret == -ETIMEDOUT && !mb->sending.emptying) {
-		pause(mb);
-		return;
-	}
-	if (ret) {
-		ec_mbox_fail(mb, ret);
-		return;
-	}
-	if (mb->unread) {
-		mb->unread = false;
-		mb->gap = false;
-	}
-	if (full) {
-		on_message(mb);
-		begin_read(mb);
-		return;
-	}
-	pause(mb);
-	ec_mbox_found_empty(mb);
-}
-
-static void on_read(struct ec_mbox *mb, int ret)
-{
-	mb->failed = false;
+	looked(box);
 	if (!ret) {
-		mb->at += mb->dg.len;
-		if (mb->at < mb->size) {
-			read_on(mb);
-			return;
-		}
-		box_progress(mb);
-		mb->sending.blocked = false;
-		mb->rx_size = mb->size;
-		ec_mbox_received(mb);
-		return;
+		box->at += box->dg.len;
+		if (box->at < box->size)
+			return EC_BOX_READ;
+		ec_box_progress(box);
+		unblock(box);
+		box->rx_size = box->size;
+		received(box);
+		return EC_BOX_REST;
 	}
-	pause(mb);
+	ec_box_pause(box);
 	if (ret == -EIO) {
-		ec_mbox_found_empty(mb);
-		return;
+		found_empty(box);
+		return EC_BOX_REST;
 	}
 	/* also when the link is down: it may have been read */
-	read_lost(mb);
+	read_lost(box);
 	if (ret != -ETIMEDOUT)
-		ec_mbox_fail(mb, ret);
+		box_fail(box, ret);
+	return EC_BOX_REST;
 }
 
 /* It is in SM0, or may be and must not be sent again. */
-static void sent(struct ec_mbox *mb)
+static void written(struct ec_box *box)
 {
-	struct ec_mbox_user *u = mb->sending.user;
-
-	lockdep_assert_held(&mb->lock);
-	mb->sending.on = false;
-	box_progress(mb);
-	/* its answer may have come before */
-	if (!u || u->phase != EC_MBOX_USER_SENDING)
-		return;
-	u->lost |= mb->sending.lost;
-	if (u->answer) {
-		u->phase = EC_MBOX_USER_WAITING;
-		expect_reply(mb);
-	} else {
-		ec_mbox_finish(mb, u, u->lost ? -ENOTRECOVERABLE : 0);
-	}
+	ec_box_progress(box);
+	end_job(box, box->doubtful ? -ENOTRECOVERABLE : 0);
 }
 
-static void on_written(struct ec_mbox *mb, int ret)
+static enum ec_box_step on_written(struct ec_box *box, int ret)
 {
-	struct ec_mbox_sending *s = &mb->sending;
-
 	/* its answer has come before */
-	if (!s->on)
-		return;
+	if (box->job == EC_BOX_NO_JOB)
+		return EC_BOX_REST;
 	if (!ret) {
-		mb->at += mb->dg.len;
-		if (mb->at < mb->size) {
-			write_on(mb);
-			return;
-		}
-		s->lost = false;
-		sent(mb);
+		box->at += box->dg.len;
+		if (box->at < box->size)
+			return EC_BOX_WRITE;
+		box->doubtful = false;
+		written(box);
 	} else if (ret == -ETIMEDOUT) {
 		/* it may have it: with repetition it gets it again, until it has it */
-		s->lost = true;
-		if (!mb->can_repeat || !s->user)
-			sent(mb);
+		box->doubtful = true;
+		if (!box->can_repeat || box->orphan)
+			written(box);
 	} else if (ret == -EIO) {
 		/* full, until its own message is read */
-		s->blocked = true;
-		s->on = s->user;
-		pause(mb);
+		box_set_job(box, box->orphan ? EC_BOX_NO_JOB : EC_BOX_BLOCKED);
+		ec_box_pause(box);
 	} else {
-		ec_mbox_fail(mb, ret);
+		box_fail(box, ret);
 	}
+	return EC_BOX_REST;
 }
 
 /*
  * Let the slave put its last message into SM1 again (ETG.1000.4 clause 6.7.3, registers
  * 0x080E, 0x080F). A request that is written once more after a lost frame is no second one.
  */
-static void on_repeat(struct ec_mbox *mb)
+static enum ec_box_step on_repeat_get(struct ec_box *box)
 {
-	u8 *b = mb->status;
+	u8 *b = box->status;
 
-	if (!mb->asked) {
-		mb->asked = true;
-		mb->want = !(b[0] & EC_SM_ACT_REPEAT);
+	if (!box->asked) {
+		box->asked = true;
+		box->asked_bit = !(b[0] & EC_SM_ACT_REPEAT);
 		/* left from before INIT: the slave cannot show that it has done it */
-		mb->unseen = !!(b[1] & EC_SM_PDI_REPEAT_ACK) == mb->want;
+		box->unseen = !!(b[1] & EC_SM_PDI_REPEAT_ACK) == box->asked_bit;
 	}
 	b[0] &= ~EC_SM_ACT_REPEAT;
-	if (mb->want)
+	if (box->asked_bit)
 		b[0] |= EC_SM_ACT_REPEAT;
-	mb->acks = 0;
-	post_repeat(mb, EC_MBOX_REPEAT_SET);
+	box->acks = 0;
+	return EC_BOX_REPEAT_SET;
 }
 
-static void no_repetition(struct ec_mbox *mb, bool silent)
+static enum ec_box_step no_repetition(struct ec_box *box, bool silent)
 {
-	mb->failed = true;
-	mb->due_ns = 0;
-	if (!silent || ++mb->ack_fails < EC_MBOX_ACK_FAILS)
-		return;
-	mb->can_repeat = false;
-	mb->gap = false;
-	if (mb->sending.on && mb->sending.lost)
-		sent(mb);
-	/* for the log */
-	queue_work(system_highpri_wq, &mb->unasked);
-}
-
-static void on_ack(struct ec_mbox *mb)
-{
-	if (!!(mb->status[1] & EC_SM_PDI_REPEAT_ACK) == mb->want) {
-		mb->gap = false;
-		mb->asked = false;
-		mb->repeats = true;
-		mb->ack_fails = 0;
-		mb->due_ns = 0;
-	} else if (++mb->acks < ACK_POLLS) {
-		mb->due_ns = ktime_get_ns() + ACK_NS;
-		post_repeat(mb, EC_MBOX_REPEAT_ACK);
-	} else {
-		no_repetition(mb, true);
+	box->due_ns = 0;
+	if (!silent || ++box->ack_fails < ACK_FAILS) {
+		box_set_gap(box, EC_BOX_GAP_LOOK);
+		return EC_BOX_REST;
 	}
+	box->can_repeat = false;
+	box_set_gap(box, EC_BOX_WHOLE);
+	if (ec_box_is_doubtful(box))
+		written(box);
+	box->ops->event(box, EC_BOX_ON_UNABLE, 0);
+	return EC_BOX_REST;
+}
+
+static enum ec_box_step on_ack(struct ec_box *box)
+{
+	if (!!(box->status[1] & EC_SM_PDI_REPEAT_ACK) == box->asked_bit) {
+		box_set_gap(box, EC_BOX_WHOLE);
+		box->asked = false;
+		box->repeats = true;
+		box->ack_fails = 0;
+		box->due_ns = 0;
+		return EC_BOX_REST;
+	}
+	if (++box->acks >= ACK_POLLS)
+		return no_repetition(box, true);
+	box->due_ns = ktime_get_ns() + ACK_NS;
+	return EC_BOX_REPEAT_ACK;
+}
+
+static enum ec_box_step on_repeat(struct ec_box *box, int ret)
+{
+	if (ret)
+		return no_repetition(box, false);
+	if (box->step == EC_BOX_REPEAT_GET)
+		return on_repeat_get(box);
+	if (box->step == EC_BOX_REPEAT_ACK)
+		return on_ack(box);
+	box->due_ns = box->unseen ? ktime_get_ns() + UNSEEN_NS : 0;
+	return EC_BOX_REPEAT_ACK;
 }
 
 /* It has not left: the same again, which may be shorter now. */
-static void again(struct ec_mbox *mb, enum ec_mbox_step step)
+static enum ec_box_step again(const struct ec_box *box)
 {
-	if (step == EC_MBOX_READ)
-		read_on(mb);
-	else if (step == EC_MBOX_WRITE && mb->sending.on)
-		write_on(mb);
-	else if (step >= EC_MBOX_REPEAT_GET)
-		post_repeat(mb, step);
+	bool over = box->step == EC_BOX_STATUS ||
+		    (box->step == EC_BOX_WRITE && box->job == EC_BOX_NO_JOB);
+
+	return over ? EC_BOX_REST : box->step;
 }
 
-static void on_step(struct ec_mbox *mb, enum ec_mbox_step step, int ret)
+static enum ec_box_step on_step(struct ec_box *box, int ret)
 {
-	if (ret == -EAGAIN) {
-		again(mb, step);
-		return;
+	if (box->dead)
+		return EC_BOX_REST;
+	if (ret == -EAGAIN)
+		return again(box);
+	switch (box->step) {
+	case EC_BOX_STATUS:
+		return on_status(box, ret);
+	case EC_BOX_READ:
+		return on_read(box, ret);
+	case EC_BOX_WRITE:
+		return on_written(box, ret);
+	case EC_BOX_REST:
+		return EC_BOX_REST;
+	default:
+		return on_repeat(box, ret);
 	}
-	switch (step) {
-	case EC_MBOX_STATUS:
-		on_status(mb, ret);
-		break;
-	case EC_MBOX_READ:
-		on_read(mb, ret);
-		break;
-	case EC_MBOX_WRITE:
-		on_written(mb, ret);
-		break;
-	case EC_MBOX_REPEAT_GET:
-	case EC_MBOX_REPEAT_SET:
-	case EC_MBOX_REPEAT_ACK:
-		if (ret) {
-			no_repetition(mb, false);
-		} else if (step == EC_MBOX_REPEAT_GET) {
-			on_repeat(mb);
-		} else if (step == EC_MBOX_REPEAT_SET) {
-			mb->due_ns = mb->unseen ? ktime_get_ns() + UNSEEN_NS : 0;
-			post_repeat(mb, EC_MBOX_REPEAT_ACK);
-		} else {
-			on_ack(mb);
-		}
-		break;
-	case EC_MBOX_REST:
-		break;
-	}
+}
+
+/* The datagram is back, or lost. */
+static void box_done(struct ec_post *post)
+{
+	struct ec_box *box = container_of(post, struct ec_box, post);
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&box->lock, flags);
+	ec_box_post(box, on_step(box, box->dg.err ?: box->dg.wkc == 1 ? 0 : -EIO));
+	ec_box_go(box);
+	raw_spin_unlock_irqrestore(&box->lock, flags);
 }
 
 /**
- * ec_mbox_done() - the datagram of a mailbox is back, or lost
- * @post: in the mailbox
+ * ec_box_init() - prepare the machine of a mailbox
+ * @box: zeroed structure whose immutable members are set
+ * @ops: calls
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any.
  */
-void ec_mbox_done(struct ec_post *post)
+void ec_box_init(struct ec_box *box, const struct ec_box_ops *ops)
 {
-	struct ec_mbox *mb = container_of(post, struct ec_mbox, post);
-	enum ec_mbox_step step;
-	unsigned long flags;
-
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	step = mb->step;
-	WRITE_ONCE(mb->step, EC_MBOX_REST);
-	if (!mb->dead)
-		on_step(mb, step, mb->dg.err ?: mb->dg.wkc == 1 ? 0 : -EIO);
-	ec_mbox_go(mb);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	box->ops = ops;
+	raw_spin_lock_init(&box->lock);
+	ec_post_init(&box->post, box->links, box_done);
+	box->post.dg = &box->dg;
+	box->post.n = 1;
 }

@@ -3,10 +3,10 @@
  * Who may use a protocol of a slave's mailbox: one transfer of each at a time, several protocols
  * side by side. The way through INIT claims all, so that it aborts no transfer.
  */
-#include <linux/hrtimer.h>
 #include <linux/ktime.h>
-#include <linux/sched/signal.h>
-#include "mailbox_int.h"
+#include <linux/sched.h>
+#include "caller.h"
+#include "claim.h"
 
 #define EVER_NS	(U64_MAX - 1)	/* one more is a time as well */
 
@@ -18,63 +18,25 @@ struct claim {
 	struct task_struct *task;
 };
 
-/**
- * ec_mbox_over() - why a wait has to end now
- * @mb: mailbox of the slave
- * @u: when it has to, anyway
- *
- * Context: Process.
- * Return: 0: go on; -ECANCELED, -EINTR, -ETIMEDOUT.
- */
-int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u)
+/* With all protocols claimed the machine is left alone as well. */
+static void claim_set(struct ec_mbox *mb, u16 claimed)
 {
-	if (ec_stop_all(mb->stop) || ec_stop_interrupted(mb->stop) ||
-	    (u->cancel && READ_ONCE(*u->cancel)))
-		return -ECANCELED;
-	if (signal_pending(current))
-		return -EINTR;
-	return ktime_get_ns() > u->ns ? -ETIMEDOUT : 0;
-}
-
-/**
- * ec_mbox_sleep() - sleep until something may have changed
- * @mb: mailbox of the slave
- * @state: has the value @end when the wait is over; wake_up_process() follows
- * @end: value
- * @u: when the wait has to end, anyway
- *
- * What ends the waits of callers wakes as well; a flag that another thread sets is seen after
- * %EC_MBOX_SLICE_MS at most.
- *
- * Context: Process. May sleep.
- */
-void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
-		   const struct ec_mbox_until *u)
-{
-	u64 slice = ktime_get_ns() + EC_MBOX_SLICE_MS * NSEC_PER_MSEC;
-	/* one more nanosecond: the time is over then */
-	ktime_t at = ns_to_ktime(min(slice, u->ns + 1));
-	wait_queue_head_t *wq = &mb->stop->wake;
-	DEFINE_WAIT(wait);
-
-	prepare_to_wait(wq, &wait, TASK_INTERRUPTIBLE);
-	/* pairs with the release of what it stands for */
-	if (smp_load_acquire(state) != end && !ec_mbox_over(mb, u))
-		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
-	finish_wait(wq, &wait);
+	lockdep_assert_held(&mb->box.lock);
+	WRITE_ONCE(mb->desk.claimed, claimed);
+	mb->box.closed = claimed == EC_MBOX_ALL;
 }
 
 /* Give free protocols to those who wait, in their order. */
 static void claim_admit(struct ec_mbox *mb)
 {
 	struct claim *c, *next;
-	u16 taken = mb->claimed;
+	u16 taken = mb->desk.claimed;
 
-	lockdep_assert_held(&mb->lock);
-	list_for_each_entry_safe(c, next, &mb->claims, list) {
+	lockdep_assert_held(&mb->box.lock);
+	list_for_each_entry_safe(c, next, &mb->desk.claims, list) {
 		if (!(taken & c->types)) {
 			list_del_init(&c->list);
-			mb->claimed |= c->types;
+			claim_set(mb, mb->desk.claimed | c->types);
 			smp_store_release(&c->got, true);	/* see ec_mbox_sleep() */
 			wake_up_process(c->task);
 		}
@@ -89,13 +51,13 @@ static int claim(struct ec_mbox *mb, u16 types, const struct ec_mbox_until *unti
 	unsigned long flags;
 	int ret = 0;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
 	if (READ_ONCE(mb->stop->worker) == current)
-		list_add(&c.list, &mb->claims);
+		list_add(&c.list, &mb->desk.claims);
 	else
-		list_add_tail(&c.list, &mb->claims);
+		list_add_tail(&c.list, &mb->desk.claims);
 	claim_admit(mb);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	/* the lock below orders all else */
 	while (!READ_ONCE(c.got)) {
 		ret = ec_mbox_over(mb, until);
@@ -103,14 +65,14 @@ static int claim(struct ec_mbox *mb, u16 types, const struct ec_mbox_until *unti
 			break;
 		ec_mbox_sleep(mb, &c.got, true, until);
 	}
-	raw_spin_lock_irqsave(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
 	if (c.got) {
 		ret = 0;
 	} else {
 		list_del(&c.list);
 		claim_admit(mb);
 	}
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	return ret;
 }
 
@@ -165,11 +127,11 @@ void ec_mbox_unclaim(struct ec_mbox *mb, u16 types)
 {
 	unsigned long flags;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	mb->claimed &= ~types;
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	claim_set(mb, mb->desk.claimed & ~types);
 	claim_admit(mb);
-	ec_mbox_go(mb);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	ec_box_go(&mb->box);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 }
 
 /**
@@ -182,5 +144,5 @@ void ec_mbox_unclaim(struct ec_mbox *mb, u16 types)
  */
 bool ec_mbox_is_claimed(struct ec_mbox *mb, u16 types)
 {
-	return READ_ONCE(mb->claimed) & types;
+	return READ_ONCE(mb->desk.claimed) & types;
 }

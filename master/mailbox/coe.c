@@ -40,7 +40,7 @@ static size_t moved(const struct ec_sdo *s)
  */
 static int coe_run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_limit *limit)
 {
-	size_t cap = mb->sii->std.rx_size - EC_MBOX_HDR;
+	size_t cap = ec_mbox_tx_room(mb);
 	struct ec_mbox_request req = {
 		.type = EC_MBOX_COE, .first = true, .late = true, .rx = coe_rx, .ctx = s,
 		.limit = ec_mbox_limit(limit, READ_ONCE(mb->reply_ms) ?: EC_SDO_TIMEOUT_MS),
@@ -146,7 +146,7 @@ int ec_coe_download(struct ec_mbox *mb, u16 index, u8 sub, bool complete, const 
 
 	*abort = 0;
 	ec_sdo_download_init(&s, index, sub, complete, data, size,
-			     mb->sii->std.rx_size - EC_MBOX_HDR);
+			     ec_mbox_tx_room(mb));
 	ret = coe_run(mb, &s, limit);
 	if (ret == -EIO)
 		*abort = s.abort;
@@ -195,7 +195,7 @@ int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
 
 	do {
 		*info = again;
-		len = ec_sdoinfo_tx(info, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
+		len = ec_sdoinfo_tx(info, b->tx, ec_mbox_tx_room(mb));
 		ret = len < 0 ? len : ec_mbox_request(mb, &req, b, len);
 	} while (ret == -ENOTRECOVERABLE && ++tries < EC_MBOX_READ_TRIES &&
 		 ktime_get_ns() < until_ns);

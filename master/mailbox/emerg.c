@@ -6,7 +6,7 @@
 #include "ethercat_map.h"
 #include "../wire/compat.h"
 #include "emerg.h"
-#include "mailbox.h"
+#include "mbox.h"
 
 /**
  * ec_emerg_set() - where the emergencies of a slave go from now on
@@ -17,9 +17,9 @@
  */
 void ec_emerg_set(struct ec_mbox *mb, struct ec_emerg *e)
 {
-	spin_lock(&mb->unasked_lock);
-	mb->emerg = e;
-	spin_unlock(&mb->unasked_lock);
+	spin_lock(&mb->desk.unasked_lock);
+	mb->desk.emerg = e;
+	spin_unlock(&mb->desk.unasked_lock);
 }
 
 /**
@@ -38,7 +38,7 @@ void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data)
 	struct ec_emerg_ring *ring = e->ring;
 
 	if (mb)
-		spin_lock(&mb->unasked_lock);
+		spin_lock(&mb->desk.unasked_lock);
 	ring->count = e->count;
 	ring->data = data;
 	ring->reserved = 0;
@@ -47,7 +47,7 @@ void ec_emerg_describe(struct ec_mbox *mb, struct ec_emerg *e, u32 data)
 	if (e->head - READ_ONCE(ring->tail) > min(e->count, e->head))
 		WRITE_ONCE(ring->tail, e->head);
 	if (mb)
-		spin_unlock(&mb->unasked_lock);
+		spin_unlock(&mb->desk.unasked_lock);
 }
 
 static void keep_last(struct ec_mbox *mb, const u8 *message)
@@ -58,9 +58,9 @@ static void keep_last(struct ec_mbox *mb, const u8 *message)
 	};
 
 	memcpy(e.data, message + 3, sizeof(e.data));
-	raw_spin_lock(&mb->last_lock);
-	mb->last[mb->n_last++ % EC_EMERGENCIES] = e;
-	raw_spin_unlock(&mb->last_lock);
+	raw_spin_lock(&mb->desk.last_lock);
+	mb->desk.last[mb->desk.n_last++ % EC_EMERGENCIES] = e;
+	raw_spin_unlock(&mb->desk.last_lock);
 }
 
 /**
@@ -78,12 +78,12 @@ unsigned int ec_emerg_last(struct ec_mbox *mb, struct ec_emergency *entry, u32 *
 {
 	u32 i, n;
 
-	raw_spin_lock(&mb->last_lock);
-	*total = mb->n_last;
+	raw_spin_lock(&mb->desk.last_lock);
+	*total = mb->desk.n_last;
 	n = min_t(u32, *total, EC_EMERGENCIES);
 	for (i = 0; i < n; i++)
-		entry[i] = mb->last[(*total - n + i) % EC_EMERGENCIES];
-	raw_spin_unlock(&mb->last_lock);
+		entry[i] = mb->desk.last[(*total - n + i) % EC_EMERGENCIES];
+	raw_spin_unlock(&mb->desk.last_lock);
 	return n;
 }
 
@@ -99,8 +99,8 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 	struct ec_emerg *e;
 
 	keep_last(mb, message);
-	spin_lock(&mb->unasked_lock);
-	e = mb->emerg;
+	spin_lock(&mb->desk.unasked_lock);
+	e = mb->desk.emerg;
 	if (!e)
 		goto out;
 	if (e->head - READ_ONCE(e->ring->tail) >= e->count) {
@@ -111,5 +111,5 @@ void ec_emerg_push(struct ec_mbox *mb, const u8 *message)
 	/* the message before the head */
 	smp_store_release(&e->ring->head, ++e->head);
 out:
-	spin_unlock(&mb->unasked_lock);
+	spin_unlock(&mb->desk.unasked_lock);
 }

@@ -10,7 +10,7 @@ struct ec_emergency;
 struct ec_mbox;
 
 /**
- * struct ec_emerg - the kernel's side of a ring; under ec_mbox.unasked_lock
+ * struct ec_emerg - the kernel's side of a ring; under ec_desk.unasked_lock
  * @ring: mapped by the application; of it only @tail is read, and not trusted
  * @data: entries, mapped
  * @count: how many

@@ -8,7 +8,9 @@
 #include "../carry/xfer.h"
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
-#include "mailbox_int.h"
+#include "caller.h"
+#include "desk.h"
+#include "late.h"
 
 /**
  * ec_mbox_is_late() - has the slave accepted a request that it has not replied to?
@@ -24,11 +26,11 @@ bool ec_mbox_is_late(struct ec_mbox *mb, const struct ec_mbox_user *u)
 	unsigned long flags;
 	bool waits;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
 	waits = u->phase == EC_MBOX_USER_WAITING && !u->lost && !u->gap && !u->heard;
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	return waits && !ec_mbox_off(mb) &&
-	       !ec_xfer_fprd(mb->links, mb->station, EC_REG_SM(0) + EC_SM_OFS_STATUS, &status, 1) &&
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+	return waits && !ec_box_is_off(&mb->box) &&
+	       !ec_xfer_fprd(mb->box.links, mb->box.station, EC_REG_SM(0) + EC_SM_OFS_STATUS, &status, 1) &&
 	       !(status & EC_SM_ST_FULL);
 }
 
@@ -43,17 +45,17 @@ void ec_mbox_mark_late(struct ec_mbox *mb, const struct ec_mbox_user *u)
 {
 	unsigned long flags;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	if (u->phase == EC_MBOX_USER_WAITING && !mb->never_late) {
-		mb->late |= BIT(u->type);
-		mb->late_ns = ktime_get_ns() + (u64)EC_MBOX_LATE_MS * NSEC_PER_MSEC;
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	if (u->phase == EC_MBOX_USER_WAITING && !mb->desk.never_late) {
+		mb->desk.late |= BIT(u->type);
+		mb->desk.late_ns = ktime_get_ns() + (u64)EC_MBOX_LATE_MS * NSEC_PER_MSEC;
 	}
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 }
 
 static bool is_awaited(struct ec_mbox *mb, u16 types)
 {
-	return READ_ONCE(mb->late) & types && !READ_ONCE(mb->renew) && !ec_mbox_off(mb);
+	return READ_ONCE(mb->desk.late) & types && !READ_ONCE(mb->box.renew) && !ec_box_is_off(&mb->box);
 }
 
 /**
@@ -67,9 +69,9 @@ void ec_mbox_forget_late(struct ec_mbox *mb, u16 types)
 {
 	unsigned long flags;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	mb->late &= ~types;
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	mb->desk.late &= ~types;
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 }
 
 /**
@@ -86,12 +88,12 @@ void ec_mbox_took_late(struct ec_mbox *mb, u8 type)
 	unsigned long flags;
 	bool late;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	late = mb->late & types;
-	mb->late &= ~types;
-	if (late && now < mb->late_ns)
-		ms -= div_u64(mb->late_ns - now, NSEC_PER_MSEC);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	late = mb->desk.late & types;
+	mb->desk.late &= ~types;
+	if (late && now < mb->desk.late_ns)
+		ms -= div_u64(mb->desk.late_ns - now, NSEC_PER_MSEC);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	if (late)
 		ec_mbox_warn(mb, "mailbox reply %llu ms after its time limit discarded; allow more time: --timeout, ecrt_slave_config_sdo_timeout()\n",
 			      ms);
@@ -102,11 +104,11 @@ static void late_give_up(struct ec_mbox *mb, u8 type)
 {
 	unsigned long flags;
 
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	if (mb->late & BIT(type))
-		mb->never_late = true;
-	mb->late &= ~BIT(type);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	if (mb->desk.late & BIT(type))
+		mb->desk.never_late = true;
+	mb->desk.late &= ~BIT(type);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 }
 
 /**
@@ -125,30 +127,30 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 {
 	const struct ec_mbox_limit *l = &r->limit;
 	u64 begin = min(l->begin_ns ?: U64_MAX - 1, l->end_ns ?: U64_MAX - 1), last;
-	struct ec_mbox_user u = { .type = r->type, .rx = b->rx };
+	struct ec_caller c = { .user = { .type = r->type, .rx = b->rx } };
 	struct ec_mbox_until until = { .cancel = l->cancel };
 	unsigned long flags;
 	int ret = 0;
 
 	if (!is_awaited(mb, BIT(r->type)))
 		return 0;
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	last = mb->late_ns;
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	last = mb->desk.late_ns;
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	/* a caller waits no longer than it allows for a reply */
 	until.ns = min3(begin, last, ktime_get_ns() + (u64)l->timeout_ms * NSEC_PER_MSEC);
-	ec_mbox_enter(mb, &u);
+	ec_caller_enter(mb, &c);
 	while (!ret && is_awaited(mb, BIT(r->type))) {
 		ret = ec_mbox_over(mb, &until);
-		/* the result is there: see ec_mbox_finish() */
-		if (smp_load_acquire(&u.phase) == EC_MBOX_USER_DONE)
+		/* the result is there: see desk_finish() */
+		if (smp_load_acquire(&c.user.phase) == EC_MBOX_USER_DONE)
 			break;
 		if (!ret)
-			ec_mbox_sleep(mb, &u.phase, EC_MBOX_USER_DONE, &until);
+			ec_mbox_sleep(mb, &c.user.phase, EC_MBOX_USER_DONE, &until);
 	}
-	ec_mbox_leave(mb, &u, false);
-	if (u.got) {
-		ec_mbox_took_late(mb, u.got_type);
+	ec_desk_leave(mb, &c.user, false);
+	if (c.user.got) {
+		ec_mbox_took_late(mb, c.user.got_type);
 	} else if (ret == -ETIMEDOUT && until.ns == last) {
 		late_give_up(mb, r->type);
 		return 0;

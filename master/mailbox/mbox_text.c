@@ -2,8 +2,8 @@
 /* Why a transfer through a mailbox failed, for refusals and reasons alike. */
 #include <linux/err.h>
 #include <linux/kernel.h>
-#include "mailbox.h"
 #include "../wire/mbox.h"
+#include "mbox_text.h"
 
 static const struct {
 	int err;

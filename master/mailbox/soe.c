@@ -36,7 +36,7 @@ static int soe_transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_soe_tx(a, b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
+	ret = ec_soe_tx(a, b->tx, ec_mbox_tx_room(mb));
 	if (ret >= 0) {
 		size_t len = ret;
 

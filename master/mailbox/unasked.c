@@ -3,8 +3,10 @@
 #include <linux/slab.h>
 #include "../wire/coe.h"
 #include "../wire/emergency.h"
+#include "desk.h"
 #include "emerg.h"
-#include "mailbox_int.h"
+#include "late.h"
+#include "unasked.h"
 
 /* a message that waits for its reader */
 struct kept {
@@ -30,12 +32,12 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 
 static void unasked_flush(struct ec_mbox *mb, unsigned int left)
 {
-	lockdep_assert_held(&mb->unasked_lock);
-	while (mb->n_kept > left) {
-		struct kept *k = list_first_entry(&mb->kept, struct kept, list);
+	lockdep_assert_held(&mb->desk.unasked_lock);
+	while (mb->desk.n_kept > left) {
+		struct kept *k = list_first_entry(&mb->desk.kept, struct kept, list);
 
 		list_del(&k->list);
-		mb->n_kept--;
+		mb->desk.n_kept--;
 		kfree(k);
 	}
 }
@@ -45,23 +47,23 @@ static void unasked_keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 {
 	struct kept *k;
 
-	if (!READ_ONCE(mb->keep_voe))
+	if (!READ_ONCE(mb->desk.keep_voe))
 		return;
 	k = kmalloc(struct_size(k, data, len), GFP_KERNEL);
 	if (!k)
 		return;
 	k->len = len;
 	memcpy(k->data, rx, len);
-	spin_lock(&mb->unasked_lock);
-	if (mb->keep_voe && mb->n_kept == EC_MBOX_KEPT)
+	spin_lock(&mb->desk.unasked_lock);
+	if (mb->desk.keep_voe && mb->desk.n_kept == EC_MBOX_KEPT)
 		ec_mbox_warn(mb, "VoE buffer full, %u message(s) not read; the oldest is dropped\n",
 			      EC_MBOX_KEPT);
 	unasked_flush(mb, EC_MBOX_KEPT - 1);
-	list_add_tail(&k->list, &mb->kept);
-	mb->n_kept++;
-	if (!mb->keep_voe)
+	list_add_tail(&k->list, &mb->desk.kept);
+	mb->desk.n_kept++;
+	if (!mb->desk.keep_voe)
 		unasked_flush(mb, 0);
-	spin_unlock(&mb->unasked_lock);
+	spin_unlock(&mb->desk.unasked_lock);
 }
 
 /**
@@ -74,11 +76,11 @@ static void unasked_keep(struct ec_mbox *mb, const u8 *rx, u16 len)
  */
 void ec_mbox_keep_voe(struct ec_mbox *mb, bool on)
 {
-	spin_lock(&mb->unasked_lock);
-	WRITE_ONCE(mb->keep_voe, on);
+	spin_lock(&mb->desk.unasked_lock);
+	WRITE_ONCE(mb->desk.keep_voe, on);
 	if (!on)
 		unasked_flush(mb, 0);
-	spin_unlock(&mb->unasked_lock);
+	spin_unlock(&mb->desk.unasked_lock);
 }
 
 /**
@@ -94,13 +96,13 @@ int ec_mbox_take_kept(struct ec_mbox *mb, u8 *rx)
 	struct kept *k;
 	int len;
 
-	spin_lock(&mb->unasked_lock);
-	k = list_first_entry_or_null(&mb->kept, struct kept, list);
+	spin_lock(&mb->desk.unasked_lock);
+	k = list_first_entry_or_null(&mb->desk.kept, struct kept, list);
 	if (k) {
 		list_del(&k->list);
-		mb->n_kept--;
+		mb->desk.n_kept--;
 	}
-	spin_unlock(&mb->unasked_lock);
+	spin_unlock(&mb->desk.unasked_lock);
 	if (!k)
 		return -ENOMSG;
 	len = k->len;
@@ -117,9 +119,9 @@ int ec_mbox_take_kept(struct ec_mbox *mb, u8 *rx)
  */
 void ec_mbox_flush_kept(struct ec_mbox *mb)
 {
-	spin_lock(&mb->unasked_lock);
+	spin_lock(&mb->desk.unasked_lock);
 	unasked_flush(mb, 0);
-	spin_unlock(&mb->unasked_lock);
+	spin_unlock(&mb->desk.unasked_lock);
 }
 
 /**
@@ -145,14 +147,14 @@ int ec_mbox_error_reply(struct ec_mbox *mb, const u8 *rx, size_t len)
 /* To its protocol; what no protocol wants is an answer that is too late. */
 static void unasked_take(struct ec_mbox *mb)
 {
-	struct ec_rbuf r = ec_rbuf(mb->rx, mb->rx_size);
+	const u8 *rx = mb->box.rx + EC_MBOX_HDR;
 	struct ec_mbox_hdr h;
 
-	if (ec_mbox_hdr_decode(&r, &h))
+	if (ec_box_message(&mb->box, &h))
 		return;
 	if (h.type == EC_MBOX_VOE)
-		unasked_keep(mb, r.p, h.len);
-	else if (!emergency(mb, &h, r.p))
+		unasked_keep(mb, rx, h.len);
+	else if (!emergency(mb, &h, rx))
 		ec_mbox_took_late(mb, h.type);
 }
 
@@ -164,29 +166,28 @@ static void unasked_take(struct ec_mbox *mb)
  */
 void ec_mbox_unasked(struct work_struct *work)
 {
-	struct ec_mbox *mb = container_of(work, struct ec_mbox, unasked);
+	struct ec_mbox *mb = container_of(work, struct ec_mbox, desk.unasked);
 	unsigned long flags;
-	bool taken;
+	bool taken, unable;
 
-	if (mb->ack_fails >= EC_MBOX_ACK_FAILS && !mb->can_repeat && !mb->logged) {
-		mb->logged = true;
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	unable = mb->desk.unable;
+	mb->desk.unable = false;
+	taken = !mb->desk.handed_over || ec_desk_has_reader(mb);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+	if (unable)
 		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM has that flag; what a lost frame loses is lost\n");
-	}
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	taken = !mb->handed_over || ec_mbox_has_reader(mb);
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
-	/* a message that is handed over stays in @rx */
+	/* a message that is handed over stays in the machine */
 	if (!taken) {
 		unasked_take(mb);
 		/* a reader may have come meanwhile */
 		wake_up_all(&mb->stop->wake);
 	}
-	raw_spin_lock_irqsave(&mb->lock, flags);
-	if (!mb->handed_over)
-		goto out;
-	mb->handed_over = false;
-	mb->held = false;
-	ec_mbox_go(mb);
-out:
-	raw_spin_unlock_irqrestore(&mb->lock, flags);
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	if (mb->desk.handed_over) {
+		mb->desk.handed_over = false;
+		ec_box_drop(&mb->box);
+		ec_box_go(&mb->box);
+	}
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 }

@@ -26,7 +26,7 @@ int ec_voe_write(struct ec_mbox *mb, const struct ec_voe_hdr *h, const u8 *data,
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	w = ec_wbuf(b->tx, mb->sii->std.rx_size - EC_MBOX_HDR);
+	w = ec_wbuf(b->tx, ec_mbox_tx_room(mb));
 	ec_voe_hdr_encode(&w, h);
 	ec_wbuf_bytes(&w, data, size);
 	ret = w.bad ? -EMSGSIZE : ec_mbox_send(mb, EC_MBOX_VOE, b, w.p - b->tx, &l);

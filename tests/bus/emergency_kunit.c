@@ -111,9 +111,9 @@ static void emergency_list_read_without_lock_of_mailbox(struct kunit *test)
 	struct ec_emergency e[EC_EMERGENCIES];
 	u32 total;
 
-	spin_lock(&mb->unasked_lock);
+	spin_lock(&mb->desk.unasked_lock);
 	KUNIT_EXPECT_EQ(test, ec_emerg_last(mb, e, &total), 0u);
-	spin_unlock(&mb->unasked_lock);
+	spin_unlock(&mb->desk.unasked_lock);
 }
 
 /* emergencies of many slaves beside a cycle */

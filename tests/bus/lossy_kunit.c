@@ -207,7 +207,7 @@ static void lossy_after_init(struct kunit *test)
 		KUNIT_ASSERT_NE(test, bus_wait_al(b, SURE, EC_AL_PREOP, 500), ~0ull);
 		bus_idle(b);
 	}
-	KUNIT_EXPECT_TRUE(test, bus_mbox(b, SURE)->can_repeat);
+	KUNIT_EXPECT_TRUE(test, bus_mbox(b, SURE)->box.can_repeat);
 	KUNIT_EXPECT_EQ(test, down.done, 12u * 5);
 	KUNIT_EXPECT_EQ(test, up.done, 12u * 5);
 	KUNIT_EXPECT_EQ(test, down.twice, 0u);
@@ -223,7 +223,7 @@ static void lossy_false_promise(struct kunit *test)
 	lossy(b, true);
 	transfers(b, SURE, 2000, &down, &up);
 	lossy(b, false);
-	KUNIT_EXPECT_FALSE(test, bus_mbox(b, SURE)->can_repeat);
+	KUNIT_EXPECT_FALSE(test, bus_mbox(b, SURE)->box.can_repeat);
 	KUNIT_EXPECT_EQ(test, up.wrong + down.wrong + down.twice + down.late, 0u);
 	KUNIT_EXPECT_GT(test, down.unknown, 0u);
 	KUNIT_EXPECT_GT(test, down.done, 900u);

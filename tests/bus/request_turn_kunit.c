@@ -101,7 +101,7 @@ static void turn_of_request_ends_when_cancelled(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, req_end(c, r[i], 50), -ECANCELED);
 		c->flags = 0;
 	}
-	KUNIT_EXPECT_TRUE(test, list_empty(&mb->claims));
+	KUNIT_EXPECT_TRUE(test, list_empty(&mb->desk.claims));
 	ec_mbox_unclaim(mb, USED);
 }
 
@@ -119,12 +119,12 @@ static void turn_of_request_ends_with_session(struct kunit *test)
 	begin(c, r[0], 0);
 	begin(c, r[2], 2);
 	cyc_run(c, 10);
-	KUNIT_ASSERT_FALSE(test, list_empty(&mb->claims));
+	KUNIT_ASSERT_FALSE(test, list_empty(&mb->desk.claims));
 	bus_end(b);
 	/* the slave's worker waits as well, until the protocols are free */
-	for (i = 0; i < 50 && mb->claims.next != mb->claims.prev; i++)
+	for (i = 0; i < 50 && mb->desk.claims.next != mb->desk.claims.prev; i++)
 		usleep_range(1000, 1001);
-	KUNIT_EXPECT_PTR_EQ(test, mb->claims.next, mb->claims.prev);
+	KUNIT_EXPECT_PTR_EQ(test, mb->desk.claims.next, mb->desk.claims.prev);
 	ec_mbox_unclaim(mb, USED);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 5000), ~0ull);
 }

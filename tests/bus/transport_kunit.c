@@ -167,7 +167,7 @@ static void transport_emergencies_beside_requests(struct kunit *test)
 	wait_for_completion(&c->end);
 	msleep(200);
 	KUNIT_EXPECT_GT(test, sent, 20u);
-	KUNIT_EXPECT_EQ(test, bus_mbox(b, 0)->n_last, sent);
+	KUNIT_EXPECT_EQ(test, bus_mbox(b, 0)->desk.n_last, sent);
 	KUNIT_EXPECT_GT(test, c->done, 40u);
 	KUNIT_EXPECT_EQ(test, c->failed + c->wrong, 0u);
 }

@@ -324,7 +324,7 @@ static void voe_ended(struct kunit *test)
 	t0 = ktime_get_ns();
 	bus_end(b);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, 50 * NSEC_PER_MSEC);
-	KUNIT_EXPECT_FALSE(test, bus_mbox(b, 0)->keep_voe);
+	KUNIT_EXPECT_FALSE(test, bus_mbox(b, 0)->desk.keep_voe);
 	for (i = 0; i < 100; i++)
 		usleep_range(100, 101);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);

@@ -71,12 +71,12 @@ static struct bench *bench_new(void)
 	}
 	ec_stop_init(&b->stop, &b->seg.base);
 	b->mbox.base = &b->seg.base;
-	b->mbox.links = &b->seg.links;
+	b->mbox.box.links = &b->seg.links;
 	b->mbox.stop = &b->stop;
-	b->mbox.sii = &b->sii;
-	b->mbox.al_status = &b->al_status;
+	b->mbox.box.sii = &b->sii;
+	b->mbox.box.al_status = &b->al_status;
 	b->mbox.position = &b->position;
-	b->mbox.station = STATION;
+	b->mbox.box.station = STATION;
 	ec_mbox_init(&b->mbox);
 	if (climb(b))
 		return b;

@@ -1,0 +1,508 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The desk of a mailbox: users come, wait and leave. It gives the message of the next one to the
+ * machine, and each message of the slave to the user that waits for it.
+ */
+#include <linux/ktime.h>
+#include "../wire/coe.h"
+#include "desk.h"
+
+#define FLOOD_NS	(250 * NSEC_PER_MSEC)	/* of a slave that sends without end */
+
+#define for_each_user(mb, u) list_for_each_entry(u, &(mb)->desk.users, list)
+
+static struct ec_mbox *mbox_of(struct ec_box *box)
+{
+	return container_of(box, struct ec_mbox, box);
+}
+
+/* A user has its result; NULL: it has left. */
+static void desk_finish(struct ec_mbox *mb, struct ec_mbox_user *u, int err)
+{
+	lockdep_assert_held(&mb->box.lock);
+	if (!u)
+		return;
+	u->err = err;
+	/* the result before the phase */
+	smp_store_release(&u->phase, EC_MBOX_USER_DONE);
+	u->done(mb, u);
+}
+
+/* All that have a message on its way or wait for one. */
+static void finish_all(struct ec_mbox *mb, int err)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->box.lock);
+	mb->desk.fetch = false;
+	for_each_user(mb, u)
+		if (u->phase == EC_MBOX_USER_WAITING || u->phase == EC_MBOX_USER_SENDING)
+			desk_finish(mb, u, err);
+}
+
+/* The access to SM1 has brought nothing to those who want one only. */
+static void finish_once(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->box.lock);
+	for_each_user(mb, u)
+		if (u->once && u->phase == EC_MBOX_USER_WAITING)
+			desk_finish(mb, u, -ENOMSG);
+}
+
+/* A caller that runs into the time limit after that does not know what the slave has done. */
+static void mark_gap(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->box.lock);
+	for_each_user(mb, u)
+		if (u->answer)
+			u->gap = true;
+}
+
+/* A message without a waiting request: a request gets its reply before such, or never. */
+static void mark_heard(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->box.lock);
+	for_each_user(mb, u)
+		if (u->answer && u->phase == EC_MBOX_USER_WAITING)
+			u->heard = true;
+}
+
+/* messages to the slave -----------------------------------------------------*/
+
+/* The user whose message is the next one; NULL: none. */
+static struct ec_mbox_user *next_user(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->box.lock);
+	while ((u = list_first_entry_or_null(&mb->desk.queue, struct ec_mbox_user, list))) {
+		list_move_tail(&u->list, &mb->desk.users);
+		u->phase = EC_MBOX_USER_SENDING;
+		/* a slave that only passes INIT is waited for: its worker claims the mailbox */
+		if (ec_box_is_off(&mb->box))
+			desk_finish(mb, u, -EAGAIN);
+		else if (u->len + EC_MBOX_HDR > mb->box.tx_room && !u->discard)
+			desk_finish(mb, u, -EMSGSIZE);
+		else
+			break;
+	}
+	return u;
+}
+
+static void desk_next(struct ec_box *box)
+{
+	struct ec_mbox *mb = mbox_of(box);
+	struct ec_mbox_user *u = next_user(mb);
+	bool emptying;
+
+	if (!u)
+		return;
+	mb->desk.sending = u;
+	if (u->discard) {
+		ec_box_discard(box);
+		return;
+	}
+	emptying = u->first && !mb->desk.answered;
+	mb->desk.answered = false;
+	ec_box_give(box, u->type, u->tx, u->len, emptying);
+}
+
+static void job_over(struct ec_mbox *mb, int err)
+{
+	struct ec_mbox_user *u = mb->desk.sending;
+
+	lockdep_assert_held(&mb->box.lock);
+	/* its answer may have come before */
+	if (!u || u->phase != EC_MBOX_USER_SENDING)
+		return;
+	u->lost |= err == -ENOTRECOVERABLE;
+	if (u->answer && (!err || err == -ENOTRECOVERABLE)) {
+		u->phase = EC_MBOX_USER_WAITING;
+		ec_box_expect_reply(&mb->box);
+	} else {
+		desk_finish(mb, u, err);
+	}
+}
+
+/* messages of the slave -----------------------------------------------------*/
+
+static enum ec_box_want desk_want(struct ec_box *box)
+{
+	struct ec_mbox *mb = mbox_of(box);
+	enum ec_box_want want = mb->desk.fetch ? EC_BOX_MESSAGE : EC_BOX_NOTHING;
+	const struct ec_mbox_user *u;
+
+	lockdep_assert_held(&box->lock);
+	for_each_user(mb, u) {
+		if (u->phase != EC_MBOX_USER_WAITING)
+			continue;
+		if (u->once)
+			return EC_BOX_BLIND;
+		want = EC_BOX_MESSAGE;
+	}
+	return want;
+}
+
+/* No answer comes before the request may have arrived. */
+static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
+{
+	return u->phase == EC_MBOX_USER_WAITING ||
+	       (u == mb->desk.sending && ec_box_is_doubtful(&mb->box));
+}
+
+/*
+ * The user that a message of a type is for: of an error reply, which has no type, the one that
+ * has sent its request first. One that has not taken its last message has to take that first.
+ */
+static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type)
+{
+	struct ec_mbox_user *u, *reader = NULL;
+
+	lockdep_assert_held(&mb->box.lock);
+	for_each_user(mb, u) {
+		/* it only sends */
+		if (!u->rx)
+			continue;
+		if (type != EC_MBOX_ERR && u->type != type)
+			continue;
+		if (!may_have(mb, u) && !(u->phase == EC_MBOX_USER_DONE && u->answer))
+			continue;
+		if (u->answer)
+			return u;
+		reader = reader ?: u;
+	}
+	return reader;
+}
+
+/* Its message has arrived, whatever became of the frame. */
+static void arrived(struct ec_mbox *mb, const struct ec_mbox_user *u)
+{
+	if (mb->desk.sending == u)
+		ec_box_arrived(&mb->box);
+}
+
+static void deliver(struct ec_mbox *mb, struct ec_mbox_user *u, const struct ec_mbox_hdr *h)
+{
+	lockdep_assert_held(&mb->box.lock);
+	u->got = h->len;
+	u->got_type = h->type;
+	memcpy(u->rx, mb->box.rx + EC_MBOX_HDR, h->len);
+	if (u->answer)
+		mb->desk.never_late = false;
+	arrived(mb, u);
+	desk_finish(mb, u, 0);
+}
+
+static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
+{
+	struct ec_coe_emergency e;
+
+	return h->type == EC_MBOX_COE &&
+	       !ec_coe_emergency_decode(mb->box.rx + EC_MBOX_HDR, h->len, &e);
+}
+
+/* Whose message is it? The machine holds it until it is taken. */
+static void dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
+{
+	bool emergency = is_emergency(mb, h);
+	struct ec_mbox_user *u = emergency ? NULL : desk_find(mb, h->type);
+
+	lockdep_assert_held(&mb->box.lock);
+	if (!u && !emergency && h->type != EC_MBOX_VOE && h->type != EC_MBOX_EOE)
+		mark_heard(mb);
+	if (u && u->phase == EC_MBOX_USER_DONE)
+		return;
+	if (!u && mb->box.job != EC_BOX_DISCARDING) {
+		mb->desk.handed_over = true;
+		queue_work(system_highpri_wq, &mb->desk.unasked);
+		return;
+	}
+	ec_box_drop(&mb->box);
+	if (u)
+		deliver(mb, u, h);
+}
+
+static void refuse_malformed(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u = desk_find(mb, EC_MBOX_ERR);
+
+	if (!u || u->phase == EC_MBOX_USER_DONE)
+		return;
+	arrived(mb, u);
+	desk_finish(mb, u, -EBADMSG);
+}
+
+static void count_fetched(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->box.lock);
+	if (!mb->desk.fetch || ++mb->desk.fetched < EC_BOX_DRAIN)
+		return;
+	mb->desk.fetch = false;
+	mb->desk.fetched = 0;
+	mb->desk.flood_ns = ktime_get_ns() + FLOOD_NS;
+}
+
+static void on_received(struct ec_mbox *mb)
+{
+	struct ec_mbox_hdr h;
+
+	if (ec_box_message(&mb->box, &h))
+		ec_box_drop(&mb->box);
+	else
+		dispatch(mb, &h);
+}
+
+static void on_renewed(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->box.lock);
+	mb->desk.answered = false;
+	mb->desk.late = 0;
+	mb->desk.never_late = false;
+}
+
+static void desk_event(struct ec_box *box, enum ec_box_event event, int err)
+{
+	struct ec_mbox *mb = mbox_of(box);
+
+	lockdep_assert_held(&box->lock);
+	switch (event) {
+	case EC_BOX_ON_RECEIVED:
+		on_received(mb);
+		count_fetched(mb);
+		break;
+	case EC_BOX_ON_REPEATED:
+		mark_heard(mb);
+		count_fetched(mb);
+		break;
+	case EC_BOX_ON_MALFORMED:
+		refuse_malformed(mb);
+		count_fetched(mb);
+		break;
+	case EC_BOX_ON_NOTHING:
+		finish_once(mb);
+		break;
+	case EC_BOX_ON_EMPTY:
+		mb->desk.fetch = false;
+		mb->desk.fetched = 0;
+		break;
+	case EC_BOX_ON_GAP:
+		mark_gap(mb);
+		break;
+	case EC_BOX_ON_EMPTIED:
+		mb->desk.answered = true;
+		break;
+	case EC_BOX_ON_JOB:
+		job_over(mb, err);
+		break;
+	case EC_BOX_ON_FAILED:
+		finish_all(mb, err);
+		break;
+	case EC_BOX_ON_RENEWED:
+		on_renewed(mb);
+		break;
+	case EC_BOX_ON_UNABLE:
+		mb->desk.unable = true;
+		queue_work(system_highpri_wq, &mb->desk.unasked);
+		break;
+	}
+}
+
+const struct ec_box_ops ec_desk_ops = {
+	.next = desk_next,
+	.want = desk_want,
+	.event = desk_event,
+};
+
+/* A user may take the message that the machine holds now, or no user does any more. */
+static void retry_held(struct ec_mbox *mb)
+{
+	lockdep_assert_held(&mb->box.lock);
+	if (mb->box.held && !mb->desk.handed_over)
+		on_received(mb);
+}
+
+/**
+ * ec_desk_has_reader() - a user has come for the message that none was there for
+ * @mb: mailbox of the slave, the lock of its machine held, @handed_over
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: the user has it.
+ */
+bool ec_desk_has_reader(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+	struct ec_mbox_hdr h;
+
+	lockdep_assert_held(&mb->box.lock);
+	if (ec_box_message(&mb->box, &h) || h.type != EC_MBOX_VOE)
+		return false;
+	u = desk_find(mb, EC_MBOX_VOE);
+	if (!u)
+		return false;
+	deliver(mb, u, &h);
+	return true;
+}
+
+/* users ---------------------------------------------------------------------*/
+
+/* Into the queue with a message, else among the users. */
+static void line_up(struct ec_mbox *mb, struct ec_mbox_user *u)
+{
+	bool sends = u->len || u->discard;
+
+	lockdep_assert_held(&mb->box.lock);
+	u->phase = sends ? EC_MBOX_USER_QUEUED : EC_MBOX_USER_WAITING;
+	list_add_tail(&u->list, sends ? &mb->desk.queue : &mb->desk.users);
+	if (!sends)
+		ec_box_progress(&mb->box);
+}
+
+/**
+ * ec_desk_enter() - a user has a message for the slave, or waits for one
+ * @mb: mailbox of the slave, with memory
+ * @u: IDLE, its members set up to @once
+ *
+ * @u->done may be called before this returns.
+ *
+ * Context: Any, but @u->done. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_desk_enter(struct ec_mbox *mb, struct ec_mbox_user *u)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	line_up(mb, u);
+	ec_box_hurry(&mb->box);
+	ec_box_go(&mb->box);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+	/* the user before the count */
+	if (mb->changes)
+		atomic_inc_return_release(mb->changes);
+}
+
+/**
+ * ec_desk_again() - a user that has its result has another message, or waits for the next one
+ * @mb: mailbox of the slave
+ * @u: DONE, its members set anew up to @once; after an error it has to leave instead
+ *
+ * Context: Only @u->done. RT-safe: bounded, no sleep, no allocation.
+ * Return: false after an error.
+ */
+bool ec_desk_again(struct ec_mbox *mb, struct ec_mbox_user *u)
+{
+	lockdep_assert_held(&mb->box.lock);
+	if (u->err)
+		return false;
+	list_del(&u->list);
+	u->lost = false;
+	u->gap = false;
+	u->heard = false;
+	line_up(mb, u);
+	return true;
+}
+
+/**
+ * ec_desk_wait_on() - the message was not the one: wait for another
+ * @mb: mailbox of the slave
+ * @u: DONE
+ *
+ * Context: Any, but @u->done. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_desk_wait_on(struct ec_mbox *mb, struct ec_mbox_user *u)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	u->phase = EC_MBOX_USER_WAITING;
+	ec_box_expect_more(&mb->box);
+	retry_held(mb);
+	ec_box_go(&mb->box);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+}
+
+/**
+ * ec_desk_leave() - a user has its result, or has given up
+ * @mb: mailbox of the slave
+ * @u: user that has entered; afterwards IDLE, and @u->done does not run any more
+ * @answered: nothing of its exchange can come any more
+ *
+ * Context: Any, but @u->done. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_desk_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	if (mb->desk.sending == u) {
+		u->lost |= ec_box_take_back(&mb->box);
+		mb->desk.sending = NULL;
+	}
+	list_del(&u->list);
+	u->phase = EC_MBOX_USER_IDLE;
+	if (u->answer)
+		mb->desk.answered = answered;
+	retry_held(mb);
+	ec_box_go(&mb->box);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+}
+
+/**
+ * ec_mbox_in_use() - does a caller exchange messages with the slave now?
+ * @mb: mailbox of the slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether one does; it gets all that the slave sends. One that begins or changes its
+ * queue just now, or whose datagram is just back, may be missed.
+ */
+bool ec_mbox_in_use(const struct ec_mbox *mb)
+{
+	return !list_empty(&mb->desk.queue) || !list_empty(&mb->desk.users) ||
+	       READ_ONCE(mb->box.step) != EC_BOX_REST;
+}
+
+/**
+ * ec_mbox_reset() - the slave is in INIT: its mailbox forgets all messages
+ * @mb: mailbox of a slave
+ *
+ * A caller of the mailbox may still wait for a reply that cannot come any more.
+ *
+ * Context: The slave's worker.
+ */
+void ec_mbox_reset(struct ec_mbox *mb)
+{
+	WRITE_ONCE(mb->box.renew, true);
+}
+
+/**
+ * ec_mbox_fetch() - let the slave's messages be read, although no caller waits for them
+ * @mb: mailbox of the slave
+ *
+ * Emergencies and VoE messages are kept. Returns at once.
+ *
+ * Context: Process. May sleep.
+ * Return: false: not now: the slave has no mailbox in its state, or sends without end.
+ */
+bool ec_mbox_fetch(struct ec_mbox *mb)
+{
+	unsigned long flags;
+	bool flood;
+
+	if (!ec_mbox_present(mb) || ec_stop_all(mb->stop) || ec_box_is_off(&mb->box) ||
+	    ec_box_get_memory(&mb->box))
+		return false;
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	flood = ktime_get_ns() < mb->desk.flood_ns;
+	if (!flood && !mb->desk.fetch) {
+		mb->desk.fetch = true;
+		ec_box_progress(&mb->box);
+		ec_box_go(&mb->box);
+	}
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+	return !flood;
+}

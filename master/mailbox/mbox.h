@@ -1,0 +1,296 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Mailbox of a slave: its machine (box.h), its desk (desk.h), and what the protocols share. */
+#ifndef EC_MBOX_H
+#define EC_MBOX_H
+
+#include <linux/bits.h>
+#include <linux/list.h>
+#include <linux/spinlock.h>
+#include <linux/types.h>
+#include <linux/workqueue.h>
+#include "ethercat.h"
+#include "../base/stop.h"
+#include "box.h"
+
+struct ec_emerg;
+struct ec_mbox;
+
+#define EC_MBOX_READ_TRIES	4	/* of what changes nothing, after lost frames */
+#define EC_MBOX_KEPT	16	/* messages kept for their reader */
+#define EC_MBOX_ALL	0xffff	/* all protocols: no other caller uses the mailbox */
+#define EC_MBOX_REPLY	10	/* bytes behind the header that a reply has at most, at least */
+#define EC_MBOX_LATE_MS	30000	/* so long a reply is waited for after its time limit */
+#define EC_MBOX_KIB_MS	4000	/* for a KiB of a transfer: its rate must not be lower */
+
+enum ec_mbox_flag {
+	EC_MBOX_FILE,	/* a file is transferred */
+	EC_MBOX_FILE_WRITE,	/* a file is written, firmware perhaps */
+};
+
+/**
+ * enum ec_mbox_phase - of a user; desk.c alone changes it
+ * @EC_MBOX_USER_IDLE: out of all lists
+ * @EC_MBOX_USER_QUEUED: its message waits
+ * @EC_MBOX_USER_SENDING: its message is being given to the slave
+ * @EC_MBOX_USER_WAITING: for a message of its type
+ * @EC_MBOX_USER_DONE: it has its result; another message of its type has to wait
+ *
+ * =======  ===============  ========  ===========  ==========  ======  =============
+ * phase    ec_desk_enter()  its turn  in SM0       its answer  error   ec_desk_
+ *                                                  is here             again(),leave()
+ * =======  ===============  ========  ===========  ==========  ======  =============
+ * IDLE     QUEUED, WAITING
+ * QUEUED                    SENDING                                    IDLE
+ * SENDING                             WAITING,     DONE        DONE    IDLE
+ *                                     DONE
+ * WAITING                                          DONE        DONE    IDLE
+ * DONE                                                                 QUEUED,
+ *                                                                      WAITING, IDLE
+ * =======  ===============  ========  ===========  ==========  ======  =============
+ */
+enum ec_mbox_phase {
+	EC_MBOX_USER_IDLE,
+	EC_MBOX_USER_QUEUED,
+	EC_MBOX_USER_SENDING,
+	EC_MBOX_USER_WAITING,
+	EC_MBOX_USER_DONE,
+};
+
+/**
+ * struct ec_mbox_user - who has a message for the slave, or waits for one
+ *
+ * It belongs to its user, who sets the first members, and may read the results while it is DONE.
+ * From ec_desk_enter() until ec_desk_leave() has returned the rest is of desk.c, under the lock
+ * of the machine. Nothing is allocated for it.
+ */
+struct ec_mbox_user {
+	/**
+	 * @done: it is DONE. Once for each ec_desk_enter() and ec_desk_again(), with the lock of
+	 * the machine held, where the frame has arrived: possibly in a hard interrupt. So it
+	 * takes no sleeping lock, is bounded, and calls nothing of the mailbox but
+	 * ec_desk_again(). Never after ec_desk_leave() has returned
+	 */
+	void (*done)(struct ec_mbox *mb, struct ec_mbox_user *u);
+	/** @tx: its message behind the mailbox header */
+	const u8 *tx;
+	/** @rx: result: message of the slave behind the header; NULL: it only sends */
+	u8 *rx;
+	/** @len: bytes of @tx; 0: it waits for a message of @type */
+	u16 len;
+	/** @type: enum ec_mbox_type */
+	u8 type;
+	/** @answer: its message has an answer */
+	bool answer;
+	/** @first: read SM1 until it is empty before, unless nothing can be there */
+	bool first;
+	/** @discard: it has no message: what the slave has sent so far is discarded */
+	bool discard;
+	/** @once: one access to SM1, then -ENOMSG */
+	bool once;
+
+	/** @phase: enum ec_mbox_phase; may be read without the lock */
+	u8 phase;
+	/** @got_type: result: @type or EC_MBOX_ERR */
+	u8 got_type;
+	/** @got: result: bytes of @rx */
+	u16 got;
+	/** @err: result: 0 or -errno */
+	int err;
+	/** @list: in the queue, or among the users */
+	struct list_head list;
+	/** @lost: a frame with its message was lost */
+	bool lost;
+	/** @gap: a frame was lost that may have had its answer */
+	bool gap;
+	/** @heard: the slave has sent something else meanwhile: it is not busy with the request */
+	bool heard;
+};
+
+/**
+ * struct ec_desk - where requests wait and messages are kept
+ *
+ * Under the lock of the machine, but for the last two groups.
+ */
+struct ec_desk {
+	/* of desk.c */
+	/** @queue: users whose message waits, the oldest first */
+	struct list_head queue;
+	/** @users: users that wait for messages, the oldest first */
+	struct list_head users;
+	/** @sending: whose message the machine has; NULL: the user has left */
+	struct ec_mbox_user *sending;
+	/** @flood_ns: no @fetch before that time (ktime): the slave sends without end */
+	u64 flood_ns;
+	/** @fetched: messages read because of @fetch */
+	u8 fetched;
+	/** @fetch: SM1 is read until it is empty, although no user waits */
+	bool fetch;
+	/** @handed_over: @unasked takes the message that the machine holds */
+	bool handed_over;
+	/** @answered: nothing of an earlier exchange can come any more */
+	bool answered;
+
+	/* of late.c; a user that gets its answer clears @never_late, INIT clears all */
+	/** @never_late: the last late reply did not come; the next one is not waited for */
+	bool never_late;
+	/** @late: BIT(enum ec_mbox_type): the slave has a request whose reply is late */
+	u16 late;
+	/** @late_ns: nothing waits for that reply after this time (ktime) */
+	u64 late_ns;
+
+	/* of claim.c */
+	/** @claimed: BIT(enum ec_mbox_type) of the protocols in use; see ec_mbox_claim() */
+	u16 claimed;
+	/** @claims: callers that wait for a protocol, the oldest first */
+	struct list_head claims;
+
+	/* of unasked.c */
+	/** @unable: the slave does not repeat, which is to be logged; of desk.c until then */
+	bool unable;
+	/** @keep_voe: the application has VoE handlers; under @unasked_lock */
+	bool keep_voe;
+	/** @n_kept: entries in @kept; under @unasked_lock */
+	u8 n_kept;
+	/** @unasked: takes what the slave has sent without a request */
+	struct work_struct unasked;
+	/** @unasked_lock: protects @kept, and @emerg with what it points to */
+	spinlock_t unasked_lock;
+	/** @kept: VoE messages, the oldest first; under @unasked_lock */
+	struct list_head kept;
+
+	/* of emerg.c */
+	/** @emerg: where emergencies go, NULL: only to the log; under @unasked_lock */
+	struct ec_emerg *emerg;
+	/** @last_lock: protects the members below, for one copy of them */
+	raw_spinlock_t last_lock;
+	/** @n_last: emergencies so far */
+	u32 n_last;
+	/** @last: the last emergencies, entry n of them at n % EC_EMERGENCIES */
+	struct ec_emergency last[EC_EMERGENCIES];
+};
+
+/** struct ec_mbox - mailbox of a slave */
+struct ec_mbox {
+	/** @base: of the master, immutable */
+	struct ec_base *base;
+	/** @stop: what ends exchanges, immutable */
+	struct ec_stop *stop;
+	/** @changes: counts users that come; NULL: nobody wants to know; pointer immutable */
+	atomic_t *changes;
+	/** @position: ring position, for the log; pointer immutable */
+	const u16 *position;
+
+	/** @reply_ms: limit of SDO and SoE replies, 0: the default; of the configuration */
+	u32 reply_ms;
+	/** @profile: of the device, 402: a drive; 0: not known; of the bus */
+	u32 profile;
+	/** @flags: bits enum ec_mbox_flag, atomic; of foe.c */
+	unsigned long flags;
+	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
+	bool strict;
+
+	/** @box: machine that writes, polls, reads and repeats */
+	struct ec_box box;
+	/** @desk: where requests wait and messages are kept */
+	struct ec_desk desk;
+};
+
+/**
+ * struct ec_mbox_buf - buffers of one exchange
+ * @tx: message behind the mailbox header
+ * @rx: answer behind the mailbox header
+ */
+struct ec_mbox_buf {
+	u8 tx[EC_MBOX_MAX];
+	u8 rx[EC_MBOX_MAX];
+};
+
+/**
+ * struct ec_mbox_limit - when a transfer has to give up
+ * @timeout_ms: per message, 0: the protocol's default
+ * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
+ * @end_ns: time (ktime) until which all of its messages have to be exchanged, 0: unlimited
+ * @patient: a reply that is late is waited for as well, %EC_MBOX_LATE_MS more
+ * @cancel: NULL, or becomes true when another thread cancels the transfer
+ */
+struct ec_mbox_limit {
+	u32 timeout_ms;
+	bool patient;
+	u64 begin_ns;
+	u64 end_ns;
+	const bool *cancel;
+};
+
+/**
+ * struct ec_mbox_request - a message to the slave that has an answer
+ * @type: enum ec_mbox_type
+ * @first: of a transfer: replies to earlier ones are discarded
+ * @late: the next transfer begins when the reply to this message has come, however late
+ * @limit: for the answer; @timeout_ms is not 0
+ * @rx: takes each message of @type: 0 and EC_MORE end the wait, EC_STALE
+ *	goes on, EC_WAIT goes on with a new time limit, or -errno
+ * @ctx: for @rx
+ */
+struct ec_mbox_request {
+	u8 type;
+	bool first;
+	bool late;
+	struct ec_mbox_limit limit;
+	int (*rx)(void *ctx, const u8 *rx, size_t len);
+	void *ctx;
+};
+
+#define ec_mbox_warn(mb, fmt, ...) \
+	ec_log_event((mb)->base, *(mb)->position, 0, KERN_WARNING, fmt, ##__VA_ARGS__)
+#define ec_mbox_dbg_result(mb, ret, fmt, ...) \
+	ec_dbg_slave_result((mb)->base, *(mb)->position, ret, fmt, ##__VA_ARGS__)
+
+/* Does the slave have a mailbox? ec_sii_settle_mbox() has decided it, once for all states. */
+static inline bool ec_mbox_present(const struct ec_mbox *mb)
+{
+	return mb->box.sii->std.rx_size && mb->box.sii->std.tx_size;
+}
+
+/* The mailbox in use: BOOT has one of its own. */
+static inline const struct ec_sii_mbox *ec_mbox_area(const struct ec_mbox *mb)
+{
+	return ec_box_area(&mb->box);
+}
+
+/* Bytes that a message to the slave has behind the mailbox header, not in BOOT. */
+static inline size_t ec_mbox_tx_room(const struct ec_mbox *mb)
+{
+	return mb->box.sii->std.rx_size - EC_MBOX_HDR;
+}
+
+/* Bytes that a mailbox holds behind its header. */
+static inline size_t ec_mbox_room(u16 size)
+{
+	return clamp_t(size_t, size, EC_MBOX_HDR, EC_MBOX_MAX) - EC_MBOX_HDR;
+}
+
+/* the limit that a caller has set, if any, with the protocol's timeout as default */
+static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set, u32 timeout_ms)
+{
+	struct ec_mbox_limit limit = set ? *set : (struct ec_mbox_limit){ 0 };
+
+	limit.timeout_ms = limit.timeout_ms ?: timeout_ms;
+	return limit;
+}
+
+/*
+ * The end of a transfer that has moved @bytes since @begin_ns: a slave that replies within the
+ * time limit of each message, with next to nothing in it, would go on for hours.
+ */
+static inline u64 ec_mbox_end_ns(u64 begin_ns, u32 ms, u64 bytes)
+{
+	return begin_ns + (ms + (bytes * EC_MBOX_KIB_MS >> 10)) * NSEC_PER_MSEC;
+}
+
+/* Nothing was to be changed, so a lost frame has left nothing unknown. */
+static inline int ec_mbox_read_result(int ret)
+{
+	return ret == -ENOTRECOVERABLE ? -ETIMEDOUT : ret;
+}
+
+#endif
