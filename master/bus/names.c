@@ -205,14 +205,15 @@ void ec_names_read(struct ec_slave *s)
 	struct ec_mbox_buf *b = kmalloc(sizeof(*b), GFP_KERNEL);
 	struct answer *a = kmalloc(sizeof(*a), GFP_KERNEL);
 	struct ec_names l = { 0 };
+	struct ec_claim claim = { 0 };
 	int ret = -ENOMEM;
 
 	lockdep_assert_held(&s->lock);
 	if (a && b && !names_copy(&l, &s->names))
-		ret = ec_mbox_claim(&s->mbox, BIT(EC_MBOX_COE), LIMIT_MS);
+		ret = ec_mbox_claim(&s->mbox, &claim, BIT(EC_MBOX_COE), LIMIT_MS);
 	if (!ret) {
 		ret = names_read_all(s, &l, a, b);
-		ec_mbox_unclaim(&s->mbox, BIT(EC_MBOX_COE));
+		ec_mbox_unclaim(&s->mbox, &claim);
 		names_publish(s, &l);
 		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	} else {

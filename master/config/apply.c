@@ -122,17 +122,15 @@ static int set_state(struct ec_slave *s, u8 state)
  */
 static void hold_mailbox(struct ec_slave *s)
 {
-	if (ec_setup_of(s)->holds_mailbox || READ_ONCE(s->requested) < EC_AL_PREOP)
+	if (ec_setup_of(s)->mailbox.state == EC_CLAIM_HELD || READ_ONCE(s->requested) < EC_AL_PREOP)
 		return;
-	ec_setup_of(s)->holds_mailbox = !ec_mbox_claim(&s->mbox, EC_MBOX_ALL, HOLD_MS);
+	ec_mbox_claim(&s->mbox, &ec_setup_of(s)->mailbox, EC_MBOX_ALL, HOLD_MS);
 }
 
 static void release_mailbox(struct ec_slave *s)
 {
-	if (!ec_setup_of(s)->holds_mailbox)
-		return;
-	ec_setup_of(s)->holds_mailbox = false;
-	ec_mbox_unclaim(&s->mbox, EC_MBOX_ALL);
+	if (ec_setup_of(s)->mailbox.state == EC_CLAIM_HELD)
+		ec_mbox_unclaim(&s->mbox, &ec_setup_of(s)->mailbox);
 }
 
 static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)

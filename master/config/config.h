@@ -160,8 +160,8 @@ struct ec_setup {
 	bool mapped;
 	/** @made: SyncManagers whose PDOs the startup SDOs have made, and were read, a bit each */
 	u16 made;
-	/** @holds_mailbox: the worker has both locks of the mailbox */
-	bool holds_mailbox;
+	/** @mailbox: claim of the worker, for the way through INIT */
+	struct ec_claim mailbox;
 	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */
 	char pdo_refusal[EC_UAPI_REASON];
 	/** @pdo_cause: the same for programs, when @pdo_refusal is not empty */

@@ -10,14 +10,6 @@
 
 #define EVER_NS	(U64_MAX - 1)	/* one more is a time as well */
 
-/* a caller that waits for protocols */
-struct claim {
-	struct list_head list;
-	u16 types;
-	u8 got;
-	struct task_struct *task;
-};
-
 /* With all protocols claimed the machine is left alone as well. */
 static void claim_set(struct ec_mbox *mb, u16 claimed)
 {
@@ -29,76 +21,127 @@ static void claim_set(struct ec_mbox *mb, u16 claimed)
 /* Give free protocols to those who wait, in their order. */
 static void claim_admit(struct ec_mbox *mb)
 {
-	struct claim *c, *next;
 	u16 taken = mb->desk.claimed;
+	struct ec_claim *c, *next;
 
 	lockdep_assert_held(&mb->box.lock);
 	list_for_each_entry_safe(c, next, &mb->desk.claims, list) {
-		if (!(taken & c->types)) {
-			list_del_init(&c->list);
-			claim_set(mb, mb->desk.claimed | c->types);
-			smp_store_release(&c->got, true);	/* see ec_mbox_sleep() */
-			wake_up_process(c->task);
-		}
 		/* later ones do not overtake */
+		if (taken & c->types) {
+			taken |= c->types;
+			continue;
+		}
 		taken |= c->types;
+		list_move_tail(&c->list, &mb->desk.holders);
+		claim_set(mb, mb->desk.claimed | c->types);
+		smp_store_release(&c->state, EC_CLAIM_HELD);	/* see ec_mbox_sleep() */
+		c->done(mb, c);
 	}
 }
 
-static int claim(struct ec_mbox *mb, u16 types, const struct ec_mbox_until *until)
+/* Its protocols are not claimed any more, nor waited for; others are admitted after that. */
+static void claim_end(struct ec_mbox *mb, struct ec_claim *c)
 {
-	struct claim c = { .types = types, .task = current };
+	lockdep_assert_held(&mb->box.lock);
+	if (c->state == EC_CLAIM_IDLE)
+		return;
+	if (c->state == EC_CLAIM_HELD)
+		claim_set(mb, mb->desk.claimed & ~c->types);
+	list_del(&c->list);
+	WRITE_ONCE(c->state, EC_CLAIM_IDLE);
+}
+
+/**
+ * ec_claim_begin() - want protocols of a mailbox
+ * @mb: mailbox of the slave
+ * @c: IDLE, its @done and @owner set
+ * @types: BIT(enum ec_mbox_type), or EC_MBOX_ALL
+ * @first: before all others that wait
+ *
+ * @c->done may be called before this returns.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_claim_begin(struct ec_mbox *mb, struct ec_claim *c, u16 types, bool first)
+{
 	unsigned long flags;
-	int ret = 0;
 
 	raw_spin_lock_irqsave(&mb->box.lock, flags);
-	if (READ_ONCE(mb->stop->worker) == current)
-		list_add(&c.list, &mb->desk.claims);
+	c->types = types;
+	c->state = EC_CLAIM_WAITING;
+	if (first)
+		list_add(&c->list, &mb->desk.claims);
 	else
-		list_add_tail(&c.list, &mb->desk.claims);
+		list_add_tail(&c->list, &mb->desk.claims);
 	claim_admit(mb);
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
-	/* the lock below orders all else */
-	while (!READ_ONCE(c.got)) {
-		ret = ec_mbox_over(mb, until);
-		if (ret)
-			break;
-		ec_mbox_sleep(mb, &c.got, true, until);
-	}
+}
+
+static void claim_wake(struct ec_mbox *mb, struct ec_claim *c)
+{
+	wake_up_process(c->task);
+}
+
+/* What has come at the last moment is held, what is not held does not wait any more. */
+static int claim_result(struct ec_mbox *mb, struct ec_claim *c, int ret)
+{
+	unsigned long flags;
+
 	raw_spin_lock_irqsave(&mb->box.lock, flags);
-	if (c.got) {
+	if (c->state == EC_CLAIM_HELD) {
 		ret = 0;
 	} else {
-		list_del(&c.list);
+		ret = ret ?: -ECANCELED;
+		claim_end(mb, c);
 		claim_admit(mb);
 	}
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	return ret;
 }
 
+static int claim(struct ec_mbox *mb, struct ec_claim *c, u16 types,
+		 const struct ec_mbox_until *until)
+{
+	int ret = 0;
+
+	c->task = current;
+	c->done = claim_wake;
+	ec_claim_begin(mb, c, types, READ_ONCE(mb->stop->worker) == current);
+	/* the lock below orders all else */
+	while (!ret && READ_ONCE(c->state) == EC_CLAIM_WAITING) {
+		ret = ec_mbox_over(mb, until);
+		if (!ret)
+			ec_mbox_sleep(mb, &c->state, EC_CLAIM_HELD, until);
+	}
+	return claim_result(mb, c, ret);
+}
+
 /**
  * ec_mbox_claim() - wait for one's turn
  * @mb: mailbox of the slave
+ * @c: IDLE, its @owner set
  * @types: BIT(enum ec_mbox_type), or EC_MBOX_ALL
  * @ms: the wait ends after that time; 0: as long as it takes
  *
  * The slave's worker comes before other callers that wait.
  *
  * Context: Process. May sleep.
- * Return: 0; -EINTR; -ECANCELED when the caller has to leave; -ETIMEDOUT.
+ * Return: 0; -EINTR; -ECANCELED when the caller has to leave, or the owner of @c was released;
+ * -ETIMEDOUT.
  */
-int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms)
+int ec_mbox_claim(struct ec_mbox *mb, struct ec_claim *c, u16 types, u32 ms)
 {
 	struct ec_mbox_until until = {
 		.ns = ms ? ktime_get_ns() + (u64)ms * NSEC_PER_MSEC : EVER_NS,
 	};
 
-	return claim(mb, types, &until);
+	return claim(mb, c, types, &until);
 }
 
 /**
  * ec_mbox_claim_for() - wait for the turn of a transfer
  * @mb: mailbox of the slave
+ * @c: IDLE, its @owner set
  * @type: enum ec_mbox_type
  * @limit: of the transfer
  *
@@ -107,28 +150,65 @@ int ec_mbox_claim(struct ec_mbox *mb, u16 types, u32 ms)
  * Context: Process. May sleep.
  * Return: as ec_mbox_claim(); -ECANCELED also for a transfer that is cancelled.
  */
-int ec_mbox_claim_for(struct ec_mbox *mb, u8 type, const struct ec_mbox_limit *limit)
+int ec_mbox_claim_for(struct ec_mbox *mb, struct ec_claim *c, u8 type,
+		      const struct ec_mbox_limit *limit)
 {
 	struct ec_mbox_until until = {
 		.ns = limit->begin_ns ?: EVER_NS, .cancel = limit->cancel,
 	};
 
-	return claim(mb, BIT(type), &until);
+	return claim(mb, c, BIT(type), &until);
 }
 
 /**
  * ec_mbox_unclaim() - let others use protocols
  * @mb: mailbox of the slave
- * @types: of ec_mbox_claim()
+ * @c: in any state; IDLE afterwards
  *
- * Context: Process.
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_mbox_unclaim(struct ec_mbox *mb, u16 types)
+void ec_mbox_unclaim(struct ec_mbox *mb, struct ec_claim *c)
 {
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&mb->box.lock, flags);
-	claim_set(mb, mb->desk.claimed & ~types);
+	claim_end(mb, c);
+	claim_admit(mb);
+	ec_box_go(&mb->box);
+	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
+}
+
+/* Those of a list that belong to an owner; @done of those that wait. */
+static void end_claims_of(struct ec_mbox *mb, struct list_head *claims, const void *owner)
+{
+	struct ec_claim *c, *next;
+	bool waits;
+
+	lockdep_assert_held(&mb->box.lock);
+	list_for_each_entry_safe(c, next, claims, list) {
+		if (c->owner != owner)
+			continue;
+		waits = c->state == EC_CLAIM_WAITING;
+		claim_end(mb, c);
+		if (waits)
+			c->done(mb, c);
+	}
+}
+
+/**
+ * ec_mbox_release_owner() - an owner of claims goes away, an open file for example
+ * @mb: mailbox of the slave
+ * @owner: not NULL; its claims are IDLE afterwards, those that are HELD and those that wait
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_mbox_release_owner(struct ec_mbox *mb, const void *owner)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	end_claims_of(mb, &mb->desk.claims, owner);
+	end_claims_of(mb, &mb->desk.holders, owner);
 	claim_admit(mb);
 	ec_box_go(&mb->box);
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);

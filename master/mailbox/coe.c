@@ -47,13 +47,14 @@ static int coe_run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_li
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDO_MSG);
 	u64 begin, end = req.limit.end_ns ?: U64_MAX;
+	struct ec_claim claim = { 0 };
 	u32 whole = WHOLE_MS + req.limit.timeout_ms;
 	u32 abort;
 	int ret;
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_mbox_claim_for(mb, EC_MBOX_COE, &req.limit);
+	ret = ec_mbox_claim_for(mb, &claim, EC_MBOX_COE, &req.limit);
 	if (ret)
 		goto out;
 	begin = ktime_get_ns();
@@ -73,7 +74,7 @@ static int coe_run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_li
 		ec_mbox_forget_late(mb, BIT(EC_MBOX_COE));
 	}
 	s->abort = abort;
-	ec_mbox_unclaim(mb, BIT(EC_MBOX_COE));
+	ec_mbox_unclaim(mb, &claim);
 out:
 	kfree(b);
 	return ret;
@@ -218,14 +219,15 @@ int ec_coe_info(struct ec_mbox *mb, struct ec_sdoinfo *info, const struct ec_mbo
 {
 	struct ec_mbox_limit l = ec_mbox_limit(limit, EC_SDOINFO_TIMEOUT_MS);
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_COE, EC_SDOINFO_MIN);
+	struct ec_claim claim = { 0 };
 	int ret;
 
 	if (IS_ERR(b))
 		return PTR_ERR(b);
-	ret = ec_mbox_claim_for(mb, EC_MBOX_COE, &l);
+	ret = ec_mbox_claim_for(mb, &claim, EC_MBOX_COE, &l);
 	if (!ret) {
 		ret = ec_coe_ask(mb, info, ktime_get_ns() + INFO_MS * (u64)NSEC_PER_MSEC, &l, b);
-		ec_mbox_unclaim(mb, BIT(EC_MBOX_COE));
+		ec_mbox_unclaim(mb, &claim);
 	}
 	kfree(b);
 	ec_mbox_dbg_result(mb, ret, "SDO information %u of 0x%04x:%02x, error 0x%08x, %zu byte(s)",

@@ -34,13 +34,13 @@ static int eoe_exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u
 		.type = EC_MBOX_EOE, .first = true, .limit.timeout_ms = TIMEOUT_MS, .rx = eoe_rx,
 		.ctx = &a,
 	};
-
-	int ret = ec_mbox_claim(mb, BIT(EC_MBOX_EOE), 0);
+	struct ec_claim claim = { 0 };
+	int ret = ec_mbox_claim(mb, &claim, BIT(EC_MBOX_EOE), 0);
 
 	if (ret)
 		return ret;
 	ret = ec_mbox_request(mb, &req, b, len) ?: a.len;
-	ec_mbox_unclaim(mb, BIT(EC_MBOX_EOE));
+	ec_mbox_unclaim(mb, &claim);
 	return ret;
 }
 

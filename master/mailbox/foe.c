@@ -150,6 +150,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 		.limit = ec_mbox_limit(limit, EC_FOE_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_FOE, EC_FOE_HDR + 1);
+	struct ec_claim claim = { 0 };
 	int ret;
 
 	if (IS_ERR(b))
@@ -160,7 +161,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 	}
 	if (f->write)
 		f->size = file->size;
-	ret = ec_mbox_claim_for(mb, EC_MBOX_FOE, &req.limit);
+	ret = ec_mbox_claim_for(mb, &claim, EC_MBOX_FOE, &req.limit);
 	if (ret)
 		goto out;
 	t.begin_ns = ktime_get_ns();
@@ -176,7 +177,7 @@ int ec_foe_transfer(struct ec_mbox *mb, struct ec_foe *f, const struct ec_foe_fi
 		report_end(mb, f, ret);
 	}
 	clear_bit(EC_MBOX_FILE_WRITE, &mb->flags);
-	ec_mbox_unclaim(mb, BIT(EC_MBOX_FOE));
+	ec_mbox_unclaim(mb, &claim);
 out:
 	clear_bit_unlock(EC_MBOX_FILE, &mb->flags);
 	kfree(b);

@@ -24,6 +24,7 @@ void ec_mbox_init(struct ec_mbox *mb)
 	INIT_LIST_HEAD(&desk->queue);
 	INIT_LIST_HEAD(&desk->users);
 	INIT_LIST_HEAD(&desk->claims);
+	INIT_LIST_HEAD(&desk->holders);
 	spin_lock_init(&desk->unasked_lock);
 	raw_spin_lock_init(&desk->last_lock);
 	INIT_LIST_HEAD(&desk->kept);

@@ -141,8 +141,10 @@ struct ec_desk {
 	/* of claim.c */
 	/** @claimed: BIT(enum ec_mbox_type) of the protocols in use; see ec_mbox_claim() */
 	u16 claimed;
-	/** @claims: callers that wait for a protocol, the oldest first */
+	/** @claims: struct ec_claim that wait for a protocol, in the order of their turn */
 	struct list_head claims;
+	/** @holders: struct ec_claim that have one */
+	struct list_head holders;
 
 	/* of unasked.c */
 	/** @unable: the slave does not repeat, which is to be logged; of desk.c until then */

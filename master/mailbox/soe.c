@@ -31,6 +31,7 @@ static int soe_transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 		.limit = ec_mbox_limit(limit, READ_ONCE(mb->reply_ms) ?: EC_SOE_TIMEOUT_MS),
 	};
 	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_SOE, EC_SOE_HDR);
+	struct ec_claim claim = { 0 };
 	char name[12];
 	int ret;
 
@@ -40,10 +41,10 @@ static int soe_transfer(struct ec_mbox *mb, struct ec_soe_access *a,
 	if (ret >= 0) {
 		size_t len = ret;
 
-		ret = ec_mbox_claim_for(mb, EC_MBOX_SOE, &req.limit);
+		ret = ec_mbox_claim_for(mb, &claim, EC_MBOX_SOE, &req.limit);
 		if (!ret) {
 			ret = ec_mbox_request(mb, &req, b, len);
-			ec_mbox_unclaim(mb, BIT(EC_MBOX_SOE));
+			ec_mbox_unclaim(mb, &claim);
 		}
 	}
 	kfree(b);

@@ -219,6 +219,7 @@ static void pdo_names_beside_cycle(struct kunit *test)
 static void pdo_names_after_long_transfer(struct kunit *test)
 {
 	struct bus *b = nameless(test);
+	struct ec_claim claim = { 0 };
 	struct ec_slave *s;
 
 	bus_idle(b);
@@ -226,10 +227,10 @@ static void pdo_names_after_long_transfer(struct kunit *test)
 	KUNIT_ASSERT_GT(test, s->names.n, 0u);
 	ec_names_free(s);
 	s->names_done = false;
-	KUNIT_ASSERT_EQ(test, ec_mbox_claim(&s->mbox, BIT(EC_MBOX_COE), 0), 0);
+	KUNIT_ASSERT_EQ(test, ec_mbox_claim(&s->mbox, &claim, BIT(EC_MBOX_COE), 0), 0);
 	ec_slave_kick(s);
 	msleep(2000);
-	ec_mbox_unclaim(&s->mbox, BIT(EC_MBOX_COE));
+	ec_mbox_unclaim(&s->mbox, &claim);
 	KUNIT_ASSERT_EQ(test, s->names.n, 0u);
 	ec_slave_kick(s);
 	bus_idle(b);

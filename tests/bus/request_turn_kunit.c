@@ -62,6 +62,7 @@ static void turn_of_request_is_waited_for_in_time(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, 1);
 	struct ec_mbox *mb = bus_mbox(b, 0);
+	struct ec_claim claim = { 0 };
 	u32 r[ARRAY_SIZE(kinds)], reg, i;
 	struct cyc *c = prepare(b, r);
 	u64 t0, ms;
@@ -69,7 +70,7 @@ static void turn_of_request_is_waited_for_in_time(struct kunit *test)
 	reg = req_add(c, 0, EC_REQUEST_REG, 2);
 	go(c);
 	for (i = 0; i < ARRAY_SIZE(kinds); i++) {
-		KUNIT_ASSERT_EQ(test, ec_mbox_claim(mb, USED, 1000), 0);
+		KUNIT_ASSERT_EQ(test, ec_mbox_claim(mb, &claim, USED, 1000), 0);
 		t0 = ktime_get_ns();
 		req_rec(c, r[i])->timeout_ms = LIMIT_MS;
 		begin(c, r[i], i);
@@ -78,7 +79,7 @@ static void turn_of_request_is_waited_for_in_time(struct kunit *test)
 		KUNIT_EXPECT_GE(test, ms, (u64)LIMIT_MS);
 		KUNIT_EXPECT_LE(test, ms, LIMIT_MS + 30ull);
 		KUNIT_EXPECT_EQ(test, req_do(c, reg, EC_REG_STATION, 0, false, 2), 0);
-		ec_mbox_unclaim(mb, USED);
+		ec_mbox_unclaim(mb, &claim);
 	}
 	begin(c, r[0], 0);
 	KUNIT_EXPECT_EQ(test, req_end(c, r[0], 1000), 0);
@@ -88,11 +89,12 @@ static void turn_of_request_ends_when_cancelled(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, 1);
 	struct ec_mbox *mb = bus_mbox(b, 0);
+	struct ec_claim claim = { 0 };
 	u32 r[ARRAY_SIZE(kinds)], i;
 	struct cyc *c = prepare(b, r);
 
 	go(c);
-	KUNIT_ASSERT_EQ(test, ec_mbox_claim(mb, USED, 1000), 0);
+	KUNIT_ASSERT_EQ(test, ec_mbox_claim(mb, &claim, USED, 1000), 0);
 	for (i = 0; i < ARRAY_SIZE(kinds); i++) {
 		begin(c, r[i], i);
 		KUNIT_EXPECT_EQ(test, req_end(c, r[i], 300), 1);
@@ -102,7 +104,7 @@ static void turn_of_request_ends_when_cancelled(struct kunit *test)
 		c->flags = 0;
 	}
 	KUNIT_EXPECT_TRUE(test, list_empty(&mb->desk.claims));
-	ec_mbox_unclaim(mb, USED);
+	ec_mbox_unclaim(mb, &claim);
 }
 
 /* What has waited does not claim a protocol later, in the middle of another session. */
@@ -110,11 +112,12 @@ static void turn_of_request_ends_with_session(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, 1);
 	struct ec_mbox *mb = bus_mbox(b, 0);
+	struct ec_claim claim = { 0 };
 	u32 r[ARRAY_SIZE(kinds)], i;
 	struct cyc *c = prepare(b, r);
 
 	go(c);
-	KUNIT_ASSERT_EQ(test, ec_mbox_claim(mb, USED, 1000), 0);
+	KUNIT_ASSERT_EQ(test, ec_mbox_claim(mb, &claim, USED, 1000), 0);
 	/* files have a queue of their own */
 	begin(c, r[0], 0);
 	begin(c, r[2], 2);
@@ -125,7 +128,7 @@ static void turn_of_request_ends_with_session(struct kunit *test)
 	for (i = 0; i < 50 && mb->desk.claims.next != mb->desk.claims.prev; i++)
 		usleep_range(1000, 1001);
 	KUNIT_EXPECT_PTR_EQ(test, mb->desk.claims.next, mb->desk.claims.prev);
-	ec_mbox_unclaim(mb, USED);
+	ec_mbox_unclaim(mb, &claim);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 5000), ~0ull);
 }
 
