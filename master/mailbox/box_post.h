@@ -188,6 +188,12 @@ struct ec_box {
 	u8 job;
 	/** @gap: enum ec_box_gap */
 	u8 gap;
+	/** @dead: nothing is sent any more */
+	bool dead;
+	/** @closed: nothing new is sent: another layer has the slave for itself; of claim.c */
+	bool closed;
+	/** @renew: the slave has been in INIT; any thread sets it */
+	bool renew;
 	/** @lock: protects the machine, and what is above it: see struct ec_desk */
 	raw_spinlock_t lock;
 	/** @post: carries @dg */
@@ -226,19 +232,6 @@ struct ec_box {
 	u8 ack_fails;
 	/** @begin: header and first bytes of the last message of the slave */
 	u8 begin[EC_BOX_BEGIN];
-	/** @since_ns: last progress (ktime) */
-	u64 since_ns;
-	/** @took_ns: how long the slave took for its last message */
-	u64 took_ns;
-	/** @due_ns: no access before that time (ktime) */
-	u64 due_ns;
-
-	/** @dead: nothing is sent any more */
-	bool dead;
-	/** @closed: nothing new is sent: another layer has the slave for itself; of claim.c */
-	bool closed;
-	/** @renew: the slave has been in INIT; any thread sets it */
-	bool renew;
 	/** @held: @rx has a message that was not dropped so far */
 	bool held;
 	/** @doubtful: a frame with the message of the job was lost, so it may be in SM0 */
@@ -247,6 +240,13 @@ struct ec_box {
 	bool orphan;
 	/** @counts: the slave counts its messages */
 	bool counts;
+	/** @since_ns: last progress (ktime) */
+	u64 since_ns;
+	/** @took_ns: how long the slave took for its last message */
+	u64 took_ns;
+	/** @due_ns: no access before that time (ktime) */
+	u64 due_ns;
+
 	/** @can_repeat: the slave repeats, both ways; set by the scan, cleared here if it does not */
 	bool can_repeat;
 	/** @asked: it was asked to repeat, and has not acknowledged that so far */

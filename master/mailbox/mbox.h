@@ -133,10 +133,23 @@ struct ec_desk {
 	/* of late.c; a user that gets its answer clears @never_late, INIT clears all */
 	/** @never_late: the last late reply did not come; the next one is not waited for */
 	bool never_late;
-	/** @late: BIT(enum ec_mbox_type): the slave has a request whose reply is late */
-	u16 late;
+
+	/* of unasked.c, with more below */
+	/** @unable: the slave does not repeat, which is to be logged; of desk.c until then */
+	bool unable;
+	/** @keep_voe: the application has VoE handlers; under @unasked_lock */
+	bool keep_voe;
+	/** @n_kept: entries in @kept; under @unasked_lock */
+	u8 n_kept;
+
+	/* of late.c */
 	/** @late_ns: nothing waits for that reply after this time (ktime) */
 	u64 late_ns;
+	/** @late: BIT(enum ec_mbox_type): the slave has a request whose reply is late */
+	u16 late;
+
+	/** @unasked_lock: of unasked.c, protects @kept, and @emerg with what it points to */
+	spinlock_t unasked_lock;
 
 	/* of claim.c */
 	/** @claimed: BIT(enum ec_mbox_type) of the protocols in use; see ec_mbox_claim() */
@@ -147,16 +160,8 @@ struct ec_desk {
 	struct list_head holders;
 
 	/* of unasked.c */
-	/** @unable: the slave does not repeat, which is to be logged; of desk.c until then */
-	bool unable;
-	/** @keep_voe: the application has VoE handlers; under @unasked_lock */
-	bool keep_voe;
-	/** @n_kept: entries in @kept; under @unasked_lock */
-	u8 n_kept;
 	/** @unasked: takes what the slave has sent without a request */
 	struct work_struct unasked;
-	/** @unasked_lock: protects @kept, and @emerg with what it points to */
-	spinlock_t unasked_lock;
 	/** @kept: VoE messages, the oldest first; under @unasked_lock */
 	struct list_head kept;
 
