@@ -18,7 +18,7 @@ void ec_known_init(struct ec_known *k)
  * @k: numbers of a bus
  * @l: device
  *
- * Context: Process, topo of the bus held for writing, or no users.
+ * Context: Process. Who changes the table of slaves, or ends it.
  */
 void ec_known_drop(struct ec_known *k, struct ec_lost *l)
 {

@@ -255,6 +255,13 @@ static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64
 	       ec_slot_cancel(f->slot, *now);
 }
 
+/* The copy of a link has not come, and may come late. */
+static noinline void put_partial(struct ec_links *l, struct ec_slot *slot)
+{
+	ec_links_count(l, slot->sides & ~slot->back, lost);
+	ec_slot_put(slot);
+}
+
 /**
  * ec_cycle_do_receive() - take what the last sends have brought back
  * @c: active cycle; the links of its master are entered
@@ -287,10 +294,11 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, f->slot->back, late);
-			if (unlikely(f->slot->back != f->slot->sides))
-				ec_links_count(l, f->slot->sides & ~f->slot->back, lost);
 			irq |= take_frame(c, f);
-			ec_slot_put(f->slot);
+			if (likely(f->slot->back == f->slot->sides))
+				ec_slot_release(f->slot, EC_SLOT_FREE);
+			else
+				put_partial(l, f->slot);
 		} else if (is_lost(c, f, &now)) {
 			ec_links_count(l, f->slot->sides, lost);
 		} else {
