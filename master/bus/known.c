@@ -11,7 +11,7 @@ static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 }
 
 /* Without memory the number is not known any more when the device comes back. */
-static void note_lost(struct ec_known *k, struct ec_slave *s, unsigned int limit)
+static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int limit)
 {
 	struct ec_lost *l = kzalloc(sizeof(*l), GFP_KERNEL | __GFP_NOWARN);
 
@@ -112,7 +112,7 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 	lockdep_assert_held_write(&bus->topo);
 	ec_for_each_slave(s, bus)
 		if (s->position >= n || slaves[s->position] != s)
-			note_lost(k, s, limit);
+			known_note_lost(k, s, limit);
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = slaves[i];
 		struct ec_lost *l;

@@ -68,7 +68,7 @@ struct ec_carry {
 	unsigned int n_flying;
 	/** @flight: by index of the slot */
 	struct ec_flight flight[EC_SLOTS];
-	/** @stuck_ns: since when the first frame does not fit beside the cycle, ktime; 0: it does */
+	/** @stuck_ns: since when the first frame does not fit beside the cycle, ktime; or 0 */
 	aligned_u64 stuck_ns;
 	/** @stuck_class: of that frame, enum ec_post_class */
 	u8 stuck_class;

@@ -54,7 +54,7 @@ static void box_set_gap(struct ec_box *box, enum ec_box_gap gap)
 	box->gap = gap;
 }
 
-static void end_job(struct ec_box *box, int err)
+static void box_end_job(struct ec_box *box, int err)
 {
 	box_set_job(box, EC_BOX_NO_JOB);
 	box->ops->event(box, EC_BOX_ON_JOB, err);
@@ -89,7 +89,7 @@ static bool is_emptying(const struct ec_box *box)
 static void end_emptying(struct ec_box *box, int err)
 {
 	if (box->job == EC_BOX_DISCARDING)
-		end_job(box, err);
+		box_end_job(box, err);
 	else
 		box_set_job(box, EC_BOX_WRITING);
 }
@@ -212,7 +212,7 @@ void ec_box_arrived(struct ec_box *box)
 	box_set_job(box, EC_BOX_NO_JOB);
 }
 
-static enum ec_box_step choose(struct ec_box *box)
+static enum ec_box_step box_choose(struct ec_box *box)
 {
 	enum ec_box_want want;
 	bool read;
@@ -231,7 +231,7 @@ static enum ec_box_step choose(struct ec_box *box)
 			break;
 		if (begin_write(box))
 			return EC_BOX_WRITE;
-		end_job(box, -EMSGSIZE);
+		box_end_job(box, -EMSGSIZE);
 	}
 	if (!read)
 		return EC_BOX_REST;
@@ -251,7 +251,7 @@ void ec_box_go(struct ec_box *box)
 {
 	lockdep_assert_held(&box->lock);
 	if (box->step == EC_BOX_REST && !box->dead && box->rx && !box->closed)
-		ec_box_post(box, choose(box));
+		ec_box_post(box, box_choose(box));
 }
 
 /**
@@ -335,7 +335,7 @@ static bool is_known(struct ec_box *box, u8 counter)
 }
 
 /* SM1 was read: its content is in @rx. */
-static void received(struct ec_box *box)
+static void box_received(struct ec_box *box)
 {
 	struct ec_mbox_hdr h;
 
@@ -416,7 +416,7 @@ static enum ec_box_step on_read(struct ec_box *box, int ret)
 		ec_box_progress(box);
 		unblock(box);
 		box->rx_size = box->size;
-		received(box);
+		box_received(box);
 		return EC_BOX_REST;
 	}
 	ec_box_pause(box);
@@ -432,10 +432,10 @@ static enum ec_box_step on_read(struct ec_box *box, int ret)
 }
 
 /* It is in SM0, or may be and must not be sent again. */
-static void written(struct ec_box *box)
+static void box_written(struct ec_box *box)
 {
 	ec_box_progress(box);
-	end_job(box, box->doubtful ? -ENOTRECOVERABLE : 0);
+	box_end_job(box, box->doubtful ? -ENOTRECOVERABLE : 0);
 }
 
 static enum ec_box_step on_written(struct ec_box *box, int ret)
@@ -448,12 +448,12 @@ static enum ec_box_step on_written(struct ec_box *box, int ret)
 		if (box->at < box->size)
 			return EC_BOX_WRITE;
 		box->doubtful = false;
-		written(box);
+		box_written(box);
 	} else if (ret == -ETIMEDOUT) {
 		/* it may have it: with repetition it gets it again, until it has it */
 		box->doubtful = true;
 		if (!box->can_repeat || box->orphan)
-			written(box);
+			box_written(box);
 	} else if (ret == -EIO) {
 		/* full, until its own message is read */
 		box_set_job(box, box->orphan ? EC_BOX_NO_JOB : EC_BOX_BLOCKED);
@@ -495,7 +495,7 @@ static enum ec_box_step no_repetition(struct ec_box *box, bool silent)
 	box->can_repeat = false;
 	box_set_gap(box, EC_BOX_WHOLE);
 	if (ec_box_is_doubtful(box))
-		written(box);
+		box_written(box);
 	box->ops->event(box, EC_BOX_ON_UNABLE, 0);
 	return EC_BOX_REST;
 }

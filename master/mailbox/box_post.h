@@ -247,7 +247,7 @@ struct ec_box {
 	/** @due_ns: no access before that time (ktime) */
 	u64 due_ns;
 
-	/** @can_repeat: the slave repeats, both ways; set by the scan, cleared here if it does not */
+	/** @can_repeat: the slave repeats, both ways; set by the scan, cleared if it does not */
 	bool can_repeat;
 	/** @asked: it was asked to repeat, and has not acknowledged that so far */
 	bool asked;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Callers of a mailbox that sleep until they have their result, their time is over, or they leave. */
+/* Callers of a mailbox that sleep until they have their result, or their time is over. */
 #include <linux/hrtimer.h>
 #include <linux/sched/signal.h>
 #include "caller.h"
@@ -53,7 +53,7 @@ void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
 	finish_wait(wq, &wait);
 }
 
-static void wake(struct ec_mbox *mb, struct ec_mbox_user *u)
+static void caller_wake(struct ec_mbox *mb, struct ec_mbox_user *u)
 {
 	wake_up_process(container_of(u, struct ec_caller, user)->task);
 }
@@ -68,7 +68,7 @@ static void wake(struct ec_mbox *mb, struct ec_mbox_user *u)
 void ec_caller_enter(struct ec_mbox *mb, struct ec_caller *c)
 {
 	c->task = current;
-	c->user.done = wake;
+	c->user.done = caller_wake;
 	ec_desk_enter(mb, &c->user);
 }
 

@@ -181,7 +181,7 @@ static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type)
 }
 
 /* Its message has arrived, whatever became of the frame. */
-static void arrived(struct ec_mbox *mb, const struct ec_mbox_user *u)
+static void desk_arrived(struct ec_mbox *mb, const struct ec_mbox_user *u)
 {
 	if (mb->desk.sending == u)
 		ec_box_arrived(&mb->box);
@@ -195,7 +195,7 @@ static void deliver(struct ec_mbox *mb, struct ec_mbox_user *u, const struct ec_
 	memcpy(u->rx, mb->box.rx + EC_MBOX_HDR, h->len);
 	if (u->answer)
 		mb->desk.never_late = false;
-	arrived(mb, u);
+	desk_arrived(mb, u);
 	desk_finish(mb, u, 0);
 }
 
@@ -208,7 +208,7 @@ static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 }
 
 /* Whose message is it? The machine holds it until it is taken. */
-static void dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
+static void desk_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
 	bool emergency = is_emergency(mb, h);
 	struct ec_mbox_user *u = emergency ? NULL : desk_find(mb, h->type);
@@ -234,7 +234,7 @@ static void refuse_malformed(struct ec_mbox *mb)
 
 	if (!u || u->phase == EC_MBOX_USER_DONE)
 		return;
-	arrived(mb, u);
+	desk_arrived(mb, u);
 	desk_finish(mb, u, -EBADMSG);
 }
 
@@ -255,7 +255,7 @@ static void on_received(struct ec_mbox *mb)
 	if (ec_box_message(&mb->box, &h))
 		ec_box_drop(&mb->box);
 	else
-		dispatch(mb, &h);
+		desk_dispatch(mb, &h);
 }
 
 static void on_renewed(struct ec_mbox *mb)

@@ -30,7 +30,8 @@ bool ec_mbox_is_late(struct ec_mbox *mb, const struct ec_mbox_user *u)
 	waits = u->phase == EC_MBOX_USER_WAITING && !u->lost && !u->gap && !u->heard;
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	return waits && !ec_box_is_off(&mb->box) &&
-	       !ec_xfer_fprd(mb->box.links, mb->box.station, EC_REG_SM(0) + EC_SM_OFS_STATUS, &status, 1) &&
+	       !ec_xfer_fprd(mb->box.links, mb->box.station, EC_REG_SM(0) + EC_SM_OFS_STATUS,
+			     &status, 1) &&
 	       !(status & EC_SM_ST_FULL);
 }
 
@@ -55,7 +56,8 @@ void ec_mbox_mark_late(struct ec_mbox *mb, const struct ec_mbox_user *u)
 
 static bool is_awaited(struct ec_mbox *mb, u16 types)
 {
-	return READ_ONCE(mb->desk.late) & types && !READ_ONCE(mb->box.renew) && !ec_box_is_off(&mb->box);
+	return READ_ONCE(mb->desk.late) & types && !READ_ONCE(mb->box.renew) &&
+	       !ec_box_is_off(&mb->box);
 }
 
 /**
