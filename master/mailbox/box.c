@@ -160,6 +160,7 @@ void ec_box_give(struct ec_box *box, u8 type, const u8 *data, u16 len, bool empt
 	struct ec_mbox_hdr h = { .len = len, .type = type };
 	struct ec_wbuf w = ec_wbuf(box->tx, EC_MBOX_HDR + len);
 
+	lockdep_assert_held(&box->lock);
 	begin_job(box, emptying ? EC_BOX_EMPTYING : EC_BOX_WRITING);
 	box->counter = ec_mbox_next_counter(box->counter);
 	box->tx_len = EC_MBOX_HDR + len;
@@ -176,6 +177,7 @@ void ec_box_give(struct ec_box *box, u8 type, const u8 *data, u16 len, bool empt
  */
 void ec_box_discard(struct ec_box *box)
 {
+	lockdep_assert_held(&box->lock);
 	begin_job(box, EC_BOX_DISCARDING);
 }
 
@@ -192,6 +194,7 @@ bool ec_box_take_back(struct ec_box *box)
 {
 	bool doubtful = ec_box_is_doubtful(box);
 
+	lockdep_assert_held(&box->lock);
 	if (box->step == EC_BOX_WRITE)
 		box->orphan = true;
 	else
@@ -209,6 +212,7 @@ bool ec_box_take_back(struct ec_box *box)
  */
 void ec_box_arrived(struct ec_box *box)
 {
+	lockdep_assert_held(&box->lock);
 	box_set_job(box, EC_BOX_NO_JOB);
 }
 
@@ -272,7 +276,7 @@ void ec_box_hurry(struct ec_box *box)
 
 /**
  * ec_box_message() - the message of the slave in @rx
- * @box: mailbox of a slave, its lock held, or with a message that is held
+ * @box: mailbox of a slave whose message stays: with its lock, or until it is dropped
  * @h: result: its header
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.

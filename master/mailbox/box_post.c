@@ -64,6 +64,7 @@ static void post_repeat(struct ec_box *box, u8 cmd, u16 len)
  */
 void ec_box_post(struct ec_box *box, enum ec_box_step step)
 {
+	lockdep_assert_held(&box->lock);
 	box_set_step(box, step);
 	switch (step) {
 	case EC_BOX_STATUS:

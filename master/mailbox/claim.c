@@ -82,7 +82,7 @@ static void claim_wake(struct ec_mbox *mb, struct ec_claim *c)
 	wake_up_process(c->task);
 }
 
-/* What has come at the last moment is held, what is not held does not wait any more. */
+/* A turn that has come at the last moment counts, another one is not waited for any more. */
 static int claim_result(struct ec_mbox *mb, struct ec_claim *c, int ret)
 {
 	unsigned long flags;
