@@ -215,7 +215,7 @@ outputs() { ethercat reg_read -p2 -t uint8 0x0f00 | awk '{ print $1 }'; }
 	cat "$out"
 	moved
 	# a clock that is 500 ppm too fast learns our rate from frames that jitter
-	error=$(sed -n 's/^reference clock +\([0-9]*\) ns.*/\1/p' "$out")
+	error=$(sed -n 's/^reference clock [-+]\([0-9]*\) ns.*/\1/p' "$out")
 	[ "$(echo "$error" | tail -n 1)" -lt 20000 ]
 	[ "$(echo "$error" | sort -n | tail -n 1)" -lt 100000 ]
 	app=

@@ -100,6 +100,9 @@ static void fill(unsigned long nr, uint64_t *arg, unsigned int k)
 		((struct ec_ioc_config_idn *)arg)->index = 1;
 		((struct ec_ioc_config_idn *)arg)->idn_pos = k % 2;
 		break;
+	case EC_IOC_VERSION:
+		((struct ec_ioc_version *)arg)->abi = EC_UAPI_VERSION;
+		break;
 	case EC_IOC_CONFIG_FLAG:
 		((struct ec_ioc_config_flag *)arg)->index = 1;
 		((struct ec_ioc_config_flag *)arg)->flag_pos = k % 2;
@@ -126,7 +129,6 @@ static int allowed(const struct cmd *c, int err)
 		return err == EPERM;
 	switch (c->nr) {
 	case EC_IOC_VERSION:
-		return err == EPROTO;	/* it is not told a version */
 	case EC_IOC_REASON:
 	case EC_IOC_MASTER:
 	case EC_IOC_DEVICE:
