@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What is sent with direct access: by who has a post, or by the thread. */
+/* What is sent with direct access: by the sender of a post, or by the thread. */
 #include <linux/ktime.h>
 #include "direct.h"
 #include "flight.h"

@@ -282,7 +282,12 @@ static enum hrtimer_restart starved(struct hrtimer *t)
 {
 	struct ec_base *b = container_of(t, struct ec_carry, starved)->links->base;
 
-	/* it was started on the CPU of the thread, or of who kicked it */
+	/* the whole machine stood still, as a guest does that is paused: once more */
+	if (ktime_get_ns() - ktime_to_ns(hrtimer_get_expires(t)) > NSEC_PER_SEC / 10) {
+		hrtimer_forward_now(t, ns_to_ktime(NSEC_PER_SEC));
+		return HRTIMER_RESTART;
+	}
+	/* it was started on the CPU of the thread, or of the one that kicked it */
 	ec_log_event(b, EC_LOG_ANY, 0, KERN_WARNING,
 		     "thread EtherCAT%u-post has not run for a second: a thread of higher priority keeps its CPU, perhaps %u; lost frames are not found meanwhile\n",
 		     b->index, raw_smp_processor_id());

@@ -33,6 +33,24 @@ static void measure(struct ec_post *post)
 	}
 }
 
+static void fail(struct ec_post *post, int err)
+{
+	unsigned int i;
+
+	for (i = 0; i < post->n; i++)
+		if (post->dg[i].err == -EINPROGRESS)
+			post->dg[i].err = err;
+}
+
+/* The last access to a post of a caller that sleeps: it may be gone then. */
+static void wake_caller(struct ec_post *post)
+{
+	struct ec_post_wait *wait = post->wait;
+
+	if (!post->done && !--wait->pending)
+		complete(&wait->done);
+}
+
 static void make_ready(struct ec_carry *c, struct ec_post *post)
 {
 	lockdep_assert_held(&c->lock);
@@ -96,8 +114,13 @@ void ec_post_send(struct ec_post *post, u64 due_ns)
 	post->tries = 0;
 	post->sides = post->sides ?: post->links->sides;
 	raw_spin_lock_irqsave(&c->lock, flags);
-	if (!c->closed)
+	if (!c->closed) {
 		make_ready(c, post);
+	} else {
+		/* a caller that sleeps must not do so for ever */
+		fail(post, -ENODEV);
+		wake_caller(post);
+	}
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	if (!post->done)
 		return;
@@ -173,15 +196,6 @@ void ec_post_cancel(struct ec_post *post)
 	}
 }
 
-static void fail(struct ec_post *post, int err)
-{
-	unsigned int i;
-
-	for (i = 0; i < post->n; i++)
-		if (post->dg[i].err == -EINPROGRESS)
-			post->dg[i].err = err;
-}
-
 /**
  * ec_post_give_up() - a caller that sleeps wants to wait no longer
  * @post: its posts, with the same @wait
@@ -230,15 +244,6 @@ void ec_post_refuse(struct ec_carry *c, struct ec_post *post, int err, struct li
 	fail(post, err);
 	post->running = true;
 	list_add_tail(&post->list, posts);
-}
-
-/* The last access to a post of a caller that sleeps: it may be gone then. */
-static void wake_caller(struct ec_post *post)
-{
-	struct ec_post_wait *wait = post->wait;
-
-	if (!post->done && !--wait->pending)
-		complete(&wait->done);
 }
 
 /**

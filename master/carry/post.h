@@ -16,7 +16,7 @@
  *   comes later finds nothing.
  *
  * A post belongs to its user, who provides its memory and that of its datagrams. While it is
- * READY or FLYING nobody else changes them. Nothing is allocated for a frame.
+ * READY or FLYING no other thread changes them. Nothing is allocated for a frame.
  */
 #ifndef EC_POST_H
 #define EC_POST_H
