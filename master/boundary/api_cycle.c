@@ -6,6 +6,8 @@
  */
 #include <linux/sched.h>
 #include "../../lib/ecrt/ecrt_int.h"
+#include "../cycle/receive.h"
+#include "../cycle/send.h"
 #include "../link/device.h"
 
 /* May the devices be used here? */

@@ -113,7 +113,7 @@ static int make_image(struct ec_master *m, struct ec_ioc_activate *i)
 	ec_sessions_lock(&m->sessions);
 	s = ec_session_of(&m->sessions, &api->file);
 	api->wanted = s ? &s->wanted : NULL;
-	if (s && s->cycle.kernel.period_ns)
+	if (s && s->cycle.setup.kernel.period_ns)
 		size = ec_session_place(s);
 	ec_sessions_unlock(&m->sessions);
 	/* one that is too large is refused with the reason */

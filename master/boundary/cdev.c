@@ -7,7 +7,7 @@
 #include <linux/slab.h>
 #include "cdev.h"
 #include "../wire/compat.h"
-#include "../cycle/cycle_thread.h"
+#include "../cycle/cycle_wait.h"
 #include "master.h"
 #include "../session/session.h"
 

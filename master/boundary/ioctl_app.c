@@ -387,7 +387,7 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 	case -ENOSPC:
 		return ec_refuse(call, ret,
 				 "the cycle leaves no wire time for acyclic frames, which need %u ns (the kernel log has the figures), and the limit of delayed cycles is 0; choose a longer cycle, overlap inputs and outputs, or see ecrt_master_set_late_cycles()",
-				 ec_cycle_need_ns());
+				 ec_layout_need_ns());
 	case -EDQUOT:
 		return ec_ioc_limit(call, ret);
 	case -ENOMEM:
@@ -398,7 +398,7 @@ static int activate_failed(struct ec_call *call, const struct ec_session *s, int
 	case -ENODEV:
 		return ec_refuse(call, ret,
 				 "CPU %d is not online; choose another one for the cycle",
-				 s->cycle.kernel.cpu);
+				 s->cycle.setup.kernel.cpu);
 	default:
 		return ec_refuse(call, ret, "activation failed (%pe)", ERR_PTR(ret));
 	}

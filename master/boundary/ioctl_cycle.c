@@ -3,7 +3,7 @@
 #include <linux/capability.h>
 #include <linux/cpumask.h>
 #include <linux/sched/signal.h>
-#include "../cycle/cycle_thread.h"
+#include "../cycle/cycle_wait.h"
 #include "../config/domain.h"
 #include "ioctl.h"
 #include "master.h"
@@ -66,9 +66,9 @@ int ec_ioc_cycle(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	call->session->cycle.kernel = *i;
-	call->session->cycle.priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
-	call->session->cycle.may_interrupt = permitted(PRIORITY_ALL) == PRIORITY_ALL;
+	call->session->cycle.setup.kernel = *i;
+	call->session->cycle.setup.priority = permitted(i->priority ?: EC_CYCLE_PRIORITY);
+	call->session->cycle.setup.may_interrupt = permitted(PRIORITY_ALL) == PRIORITY_ALL;
 	return 0;
 }
 
@@ -113,7 +113,7 @@ static int copy_failed(struct ec_call *call, const struct ec_ioc_copy *i, int re
 int ec_ioc_copy(struct ec_call *call)
 {
 	struct ec_ioc_copy *i = call->arg;
-	int ret = ec_copy_add(&call->session->cycle, i);
+	int ret = ec_copy_add(&call->session->cycle.setup.copies, &call->session->wanted, i);
 
 	return ret ? copy_failed(call, i, ret) : 0;
 }

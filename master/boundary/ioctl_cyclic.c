@@ -6,6 +6,8 @@
 #include <linux/uaccess.h>
 #include "ioctl.h"
 #include "master.h"
+#include "../cycle/receive.h"
+#include "../cycle/send.h"
 #include "../session/request.h"
 #include "../session/session.h"
 

@@ -11,6 +11,7 @@
 #include "ioctl.h"
 #include "master.h"
 #include "../base/once64.h"
+#include "../cycle/cycle_stats.h"
 #include "../session/session.h"
 #include "../bus/find.h"
 #include "../bus/slave.h"
@@ -107,16 +108,16 @@ int ec_ioc_device(struct ec_call *call)
 
 static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 {
-	const struct ec_cyc_wire *w = ec_dc_begun(c->dc) ? &c->clocked : &c->plain;
+	const struct ec_cyc_wire *w = ec_dc_begun(c->dc) ? &c->layout.clocked : &c->layout.plain;
 
 	i->cycle_interval_us = READ_ONCE(c->links->access.interval_us);
-	i->cycle_datagrams = c->n_dgrams;
+	i->cycle_datagrams = c->layout.n_dgrams;
 	i->cycle_frames = w->frames;
 	i->cycle_wire_ns = w->ns;
 	i->sent_frames = READ_ONCE(c->last.frames);
 	i->sent_wire_ns = READ_ONCE(c->last.ns);
 	i->acyclic_slack_ns = ec_access_slack_ns(c->links);
-	i->acyclic_need_ns = ec_cycle_need_ns();
+	i->acyclic_need_ns = ec_layout_need_ns();
 	i->late_per_s = READ_ONCE(c->carry->share.late_per_s);
 	i->late_cycles = READ_ONCE(c->carry->share.late_cycles);
 }
@@ -446,7 +447,7 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 		return -ENOMEM;
 	ret = ec_show_begin(&call->master->base->show);
 	if (!ret) {
-		ec_late_get(&call->master->cycles, i, st);
+		ec_cycle_stats_get(&call->master->cycles, i, st);
 		ec_show_end(&call->master->base->show);
 	}
 	i->size = call->size;
@@ -458,7 +459,7 @@ int ec_ioc_cycle_stats(struct ec_call *call)
 int ec_ioc_cycle_reset(struct ec_call *call)
 {
 	ec_sessions_lock(&call->master->sessions);
-	ec_late_reset(&call->master->cycles);
+	ec_cycle_stats_reset(&call->master->cycles);
 	ec_sessions_unlock(&call->master->sessions);
 	return 0;
 }

@@ -49,6 +49,6 @@ int ec_ioc_late(struct ec_call *call)
 		return ec_refuse(call, -EINVAL, "%u delayed cycles per second; use 0 to %u",
 				 i->per_s,
 				 LATE_MAX);
-	call->session->cycle.late_per_s = i->per_s;
+	call->session->cycle.setup.late_per_s = i->per_s;
 	return 0;
 }

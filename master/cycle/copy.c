@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/minmax.h>
 #include <linux/slab.h>
-#include "cycle.h"
-#include "../config/domain.h"
 #include "../base/limits.h"
+#include "../config/config.h"
+#include "../config/domain.h"
+#include "copy.h"
 
 /**
  * struct step - a copy with everything found out
@@ -64,9 +65,9 @@ static void copy_bits(u8 *to, u32 to_bit, const u8 *from, u32 from_bit, u32 bits
 }
 
 /* Do the bits belong to one slave's process data of that direction? */
-static bool inside(const struct ec_cycle *c, u32 domain, u32 bit, u32 bits, u8 dir)
+static bool inside(const struct ec_wanted *w, u32 domain, u32 bit, u32 bits, u8 dir)
 {
-	const struct ec_domain *d = c->wanted->domains[domain];
+	const struct ec_domain *d = w->domains[domain];
 	unsigned int i;
 
 	for (i = 0; i < d->n_fmmus; i++) {
@@ -87,7 +88,8 @@ static bool overlap(const struct ec_ioc_copy *a, const struct ec_ioc_copy *b)
 
 /**
  * ec_copy_add() - one more copy
- * @c: cycle, not active
+ * @c: copies of a cycle that is not active
+ * @w: its domains
  * @copy: what to copy; nothing of it is checked yet
  *
  * Context: Process, lock of the configuration held. May sleep.
@@ -95,90 +97,95 @@ static bool overlap(const struct ec_ioc_copy *a, const struct ec_ioc_copy *b)
  * slave; -ERANGE the target is not output of one slave; -EEXIST another copy has
  * that target; -ENOSPC; -ENOMEM.
  */
-int ec_copy_add(struct ec_cycle *c, const struct ec_ioc_copy *copy)
+int ec_copy_add(struct ec_copies *c, const struct ec_wanted *w, const struct ec_ioc_copy *copy)
 {
 	unsigned int i;
 
-	lockdep_assert_held(c->wanted->lock);
-	if (copy->from_domain >= c->wanted->n_domains || copy->to_domain >= c->wanted->n_domains)
+	lockdep_assert_held(w->lock);
+	if (copy->from_domain >= w->n_domains || copy->to_domain >= w->n_domains)
 		return -ENOENT;
-	if (!copy->bits || !inside(c, copy->from_domain, copy->from_bit, copy->bits,
+	if (!copy->bits || !inside(w, copy->from_domain, copy->from_bit, copy->bits,
 				   EC_CFG_DIR_INPUT))
 		return -EDOM;
-	if (!inside(c, copy->to_domain, copy->to_bit, copy->bits, EC_CFG_DIR_OUTPUT))
+	if (!inside(w, copy->to_domain, copy->to_bit, copy->bits, EC_CFG_DIR_OUTPUT))
 		return -ERANGE;
-	for (i = 0; i < c->n_copies; i++)
-		if (overlap(copy, &c->copies[i]))
+	for (i = 0; i < c->n; i++)
+		if (overlap(copy, &c->list[i]))
 			return -EEXIST;
-	if (c->n_copies >= EC_MAX_COPIES)
+	if (c->n >= EC_MAX_COPIES)
 		return -ENOSPC;
-	if (!c->copies)
-		c->copies = kvcalloc(EC_MAX_COPIES, sizeof(*c->copies), GFP_KERNEL_ACCOUNT);
-	if (!c->copies)
+	if (!c->list)
+		c->list = kvcalloc(EC_MAX_COPIES, sizeof(*c->list), GFP_KERNEL_ACCOUNT);
+	if (!c->list)
 		return -ENOMEM;
-	c->copies[c->n_copies++] = *copy;
+	c->list[c->n++] = *copy;
 	return 0;
 }
 
 /**
- * ec_copy_begin() - copies are done from now on
- * @c: cycle whose domains have offsets
+ * ec_copy_begin() - prepare the copies of an activation
+ * @c: copies
+ * @w: domains, whose offsets are set
+ * @copying: result for kvfree(); NULL: there are no copies
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_copy_begin(struct ec_cycle *c)
+int ec_copy_begin(const struct ec_copies *c, const struct ec_wanted *w,
+		  struct ec_copying **copying)
 {
-	size_t bytes = 0, steps = c->n_copies * sizeof(struct step);
+	size_t bytes = 0, steps = c->n * sizeof(struct step);
 	struct ec_copying *k;
 	unsigned int i;
 
-	lockdep_assert_held(c->wanted->lock);
-	if (!c->n_copies)
+	lockdep_assert_held(w->lock);
+	*copying = NULL;
+	if (!c->n)
 		return 0;
-	for (i = 0; i < c->n_copies; i++)
-		bytes += DIV_ROUND_UP(c->copies[i].bits, 8);
+	for (i = 0; i < c->n; i++)
+		bytes += DIV_ROUND_UP(c->list[i].bits, 8);
 	k = kvzalloc(sizeof(*k) + steps + bytes, GFP_KERNEL_ACCOUNT);
 	if (!k)
 		return -ENOMEM;
-	k->n = c->n_copies;
+	k->n = c->n;
 	k->last = (u8 *)k->steps + steps;
 	for (bytes = 0, i = 0; i < k->n; i++) {
-		const struct ec_ioc_copy *copy = &c->copies[i];
+		const struct ec_ioc_copy *copy = &c->list[i];
 
 		k->steps[i] = (struct step){
 			.domain = copy->from_domain, .to_domain = copy->to_domain,
 			.bits = copy->bits, .last = bytes,
-			.from = 8 * c->wanted->domains[copy->from_domain]->offset + copy->from_bit,
-			.to = 8 * c->wanted->domains[copy->to_domain]->offset + copy->to_bit,
+			.from = 8 * w->domains[copy->from_domain]->offset + copy->from_bit,
+			.to = 8 * w->domains[copy->to_domain]->offset + copy->to_bit,
 		};
 		bytes += DIV_ROUND_UP(copy->bits, 8);
 	}
-	c->copying = k;
+	*copying = k;
 	return 0;
 }
 
 /**
  * ec_copy_run() - copy inputs to outputs in the image
- * @c: active cycle with copies
+ * @k: copies of an active cycle
+ * @st: its status page
+ * @domains: what it has received; their images may be the application's
  *
  * While the working counter of the source's domain is not complete the last
- * values stay; they are zero at first. The image may be the application's.
+ * values stay; initially they are zero.
  *
  * Context: The master's single cyclic caller, between receive and send. RT-safe.
  */
-void ec_copy_run(struct ec_cycle *c)
+void ec_copy_run(struct ec_copying *k, const struct ec_status *st,
+		 const struct ec_cyc_domain *domains)
 {
-	struct ec_copying *k = c->copying;
-	const struct ec_status *st = c->shared->status;
 	unsigned int i;
 
 	for (i = 0; i < k->n; i++) {
 		const struct step *p = &k->steps[i];
 
 		if (st->domains[p->domain].wc_state == EC_STATUS_WC_COMPLETE)
-			copy_bits(k->last + p->last, 0, c->domains[p->domain].image, p->from,
+			copy_bits(k->last + p->last, 0, domains[p->domain].image, p->from,
 				  p->bits);
-		copy_bits(c->domains[p->to_domain].image, p->to, k->last + p->last, 0, p->bits);
+		copy_bits(domains[p->to_domain].image, p->to, k->last + p->last, 0, p->bits);
 	}
 }

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Cycles of a master: which one runs, and for whom. */
+#include <linux/delay.h>
+#include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/rcupdate.h>
+#include "../config/domain.h"
 #include "cycle.h"
 #include "waiters.h"
 
@@ -43,7 +46,7 @@ void ec_cycle_init(struct ec_cycle *c, struct ec_cycles *cycles, struct ec_wante
 	c->riders = cycles->riders;
 	c->dc = cycles->dc;
 	c->wanted = wanted;
-	c->late_per_s = EC_LATE_PER_S;
+	c->setup.late_per_s = EC_LATE_PER_S;
 }
 
 /**
@@ -54,16 +57,74 @@ void ec_cycle_init(struct ec_cycle *c, struct ec_cycles *cycles, struct ec_wante
  */
 void ec_cycle_clear(struct ec_cycle *c)
 {
-	kvfree(c->copies);
-	c->copies = NULL;
-	c->n_copies = 0;
-	c->late_per_s = EC_LATE_PER_S;
-	memset(&c->kernel, 0, sizeof(c->kernel));
-	c->priority = 0;
-	c->may_interrupt = false;
+	kvfree(c->setup.copies.list);
+	c->setup = (struct ec_cycle_setup){ .late_per_s = EC_LATE_PER_S };
+	c->watch = (struct ec_cycle_watch){ };
 	c->place = EC_CYCLE_PLACE_THREAD;
-	c->cpu_lost = false;
-	c->cpu_losses = 0;
+}
+
+/**
+ * ec_cycle_layout() - lay out the datagrams of a cycle and prepare its parts, once
+ * @c: cycle whose domains have offsets, with @shared; ec_cycle_free() must follow, also after an
+ *	error
+ *
+ * Context: Process, lock of the configuration held. May sleep.
+ * Return: 0; -EOVERFLOW and -ENOMEM as ec_layout_make().
+ */
+int ec_cycle_layout(struct ec_cycle *c)
+{
+	int ret;
+
+	lockdep_assert_held(c->wanted->lock);
+	ret = ec_layout_make(&c->layout, c->wanted, c->links->max_datagrams, c->shared->image_size);
+	if (ret)
+		return ret;
+	ec_for_each_domain(d, c->wanted)
+		c->domains[d->index] = (struct ec_cyc_domain){
+			.expected = d->expected, .max_age = d->max_age,
+			/* offsets are those of the image of all domains; a thread exchanges those */
+			.image = d->memory && !c->setup.kernel.period_ns ? d->memory - d->offset :
+									   c->shared->image,
+		};
+	c->clock = (struct ec_dc_datagrams){
+		.dc = c->dc, .access = &c->links->access, .clocked_ns = c->layout.clocked.ns,
+	};
+	c->late = (struct ec_late){ .status = c->shared->status, .access = &c->links->access };
+	return ec_copy_begin(&c->setup.copies, c->wanted, &c->copying);
+}
+
+/* Replies to what is in flight will not be received. */
+static void forget_flights(struct ec_cycle *c)
+{
+	unsigned int i;
+
+	for (i = 0; i < c->n_flight; i++) {
+		struct ec_slot *slot = c->flight[i].slot;
+
+		while (!ec_slot_cancel(slot, ktime_get_ns())) {
+			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
+				ec_slot_put(slot);
+				break;
+			}
+			/* being copied at this moment */
+			usleep_range(20, 50);
+		}
+	}
+	c->n_flight = 0;
+}
+
+/**
+ * ec_cycle_free() - free what a layout and its frames occupy
+ * @c: cycle that does not run any more
+ *
+ * Context: Process. May sleep.
+ */
+void ec_cycle_free(struct ec_cycle *c)
+{
+	forget_flights(c);
+	ec_layout_free(&c->layout);
+	kvfree(c->copying);
+	memset_startat(c, 0, layout);
 }
 
 /**

@@ -15,7 +15,8 @@
 #include "../base/once64.h"
 #include "../config/domain.h"
 #include "cycle_run.h"
-#include "cycle_thread.h"
+#include "receive.h"
+#include "send.h"
 #include "waiters.h"
 
 #define INDEX_MASK	3
@@ -133,7 +134,7 @@ static noinline void tell_stall(struct ec_cycle_thread *t)
 	t->stall_told = ec_events_admit(&t->stalls, ktime_get_ns());
 	if (!t->stall_told)
 		return;
-	ec_event(t->cycle->base, EC_EVENT_STALL, t->cycle->kernel.stall, t->unfed,
+	ec_event(t->cycle->base, EC_EVENT_STALL, t->cycle->setup.kernel.stall, t->unfed,
 		 t->stalls.more - 1);
 	t->stalls.more = 0;
 }
@@ -145,7 +146,7 @@ static void stop_outputs(struct ec_cycle_thread *t)
 	struct ec_status_cycle *st = ec_cycle_run_status(t);
 	unsigned int i;
 
-	switch (t->cycle->kernel.stall) {
+	switch (t->cycle->setup.kernel.stall) {
 	case EC_STALL_STOP:
 		WRITE_ONCE(st->state, EC_CYCLE_STATE_STOPPED);
 		return;
@@ -163,7 +164,7 @@ static void stop_outputs(struct ec_cycle_thread *t)
 static void feed(struct ec_cycle_thread *t)
 {
 	struct ec_status_cycle *st = ec_cycle_run_status(t);
-	u32 limit = t->cycle->kernel.stall_cycles;
+	u32 limit = t->cycle->setup.kernel.stall_cycles;
 
 	if (take_outputs(t)) {
 		if (unlikely(t->stall_told))
@@ -260,7 +261,7 @@ static void cycle_run_publish(struct ec_cycle_thread *t)
 /* Cycles whose time has passed are left out, so that the phase stays; how many. */
 static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
 {
-	u32 period = t->cycle->kernel.period_ns;
+	u32 period = t->cycle->setup.kernel.period_ns;
 	s64 late = now - t->next_ns;
 	u64 skipped;
 
@@ -303,7 +304,7 @@ static u64 turn(struct ec_cycle_thread *t, u64 skipped)
 bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 {
 	struct ec_cycle *c = t->cycle;
-	struct ec_ioc_send send = { .flags = c->kernel.dc };
+	struct ec_ioc_send send = { .flags = c->setup.kernel.dc };
 	u64 due = t->next_ns, now = ktime_get_ns();
 	s32 correction;
 	int ret;
@@ -315,7 +316,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 	else if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)
 		ec_cycle_receive(c);
 	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
-	c->dc_lead = t->lock.time - t->next_ns;
+	c->clock.lead = t->lock.time - t->next_ns;
 	feed(t);
 	choose_source(t);
 	if (t->ops && t->ops->cycle)
@@ -323,12 +324,12 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 	if (ec_cycle_run_status(t)->state <= EC_CYCLE_STATE_STALLED) {
 		ret = entered ? ec_cycle_do_send(c, &send) : ec_cycle_send(c, &send);
 		if (!ret)
-			ec_late_count(c, ec_read64(&c->links->access.last_send_ns) - due);
+			ec_late_count(&c->late, ec_read64(&c->links->access.last_send_ns) - due);
 	}
 	cycle_run_publish(t);
 	ec_cycle_run_wake(c, entered);
 	t->end_ns = ktime_get_ns();
-	ec_late_work(c, t->end_ns - now);
-	t->next_ns += c->kernel.period_ns + correction;
+	ec_late_work(&c->late, t->end_ns - now);
+	t->next_ns += c->setup.kernel.period_ns + correction;
 	return ec_cycle_run_status(t)->state != EC_CYCLE_STATE_STOPPED;
 }

@@ -11,7 +11,12 @@
 #include "pll.h"
 
 struct task_struct;
-struct ec_cycle_ops;
+
+/** struct ec_cycle_ops - what the thread reports to higher layers; each may be NULL */
+struct ec_cycle_ops {
+	/** @cycle: a cycle begins; RT-safe, also in hard interrupt */
+	void (*cycle)(struct ec_cycle *c);
+};
 
 /* outputs side by side in the image */
 struct ec_cycle_area {
@@ -115,14 +120,22 @@ static inline struct ec_exchange_buffer *ec_cycle_run_buffer(const struct ec_cyc
 	return t->cycle->shared->exchange + EC_EXCHANGE_FIRST + n * t->stride;
 }
 
+/**
+ * ec_cycle_thread_task() - the thread that runs the cycle
+ * @c: cycle
+ *
+ * Context: lock of the configuration held.
+ * Return: thread; NULL when the application runs the cycle.
+ */
+static inline struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c)
+{
+	lockdep_assert_held(c->wanted->lock);
+	return c->thread ? c->thread->task : NULL;
+}
+
 void ec_cycle_run_deal(struct ec_cycle_thread *t);
 bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered);
 void ec_cycle_run_wake(struct ec_cycle *c, bool atomic);
 void ec_cycle_run_end(struct ec_cycle *c);
-
-/* cycle_timer.c */
-void ec_cycle_timer_init(struct ec_cycle_thread *t);
-void ec_cycle_timer_exit(struct ec_cycle_thread *t);
-bool ec_cycle_timer_run(struct ec_cycle_thread *t);
 
 #endif

@@ -4,8 +4,8 @@
 #include <linux/err.h>
 #include <linux/sched.h>
 #include <uapi/linux/sched/types.h>
-#include "cycle.h"
-#include "cycle_thread.h"
+#include "cycle_run.h"
+#include "cycle_sched.h"
 
 /**
  * ec_cycle_sched_set() - give a thread the priority of the cycle
@@ -17,14 +17,14 @@
 void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task)
 {
 	const struct sched_attr attr = {
-		.size = sizeof(attr), .sched_policy = c->priority ? SCHED_FIFO : SCHED_NORMAL,
-		.sched_priority = c->priority,
+		.size = sizeof(attr), .sched_policy = c->setup.priority ? SCHED_FIFO : SCHED_NORMAL,
+		.sched_priority = c->setup.priority,
 	};
 	int ret = sched_setattr_nocheck(task, &attr);
 
 	if (ret)
 		ec_warn(c, "kernel cycle: cannot set SCHED_FIFO priority %u (%pe)\n",
-			c->priority, ERR_PTR(ret));
+			c->setup.priority, ERR_PTR(ret));
 }
 
 /**
@@ -37,17 +37,17 @@ void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task)
  */
 void ec_cycle_sched_log(const struct ec_cycle *c)
 {
-	u32 wanted = c->kernel.priority ?: EC_CYCLE_PRIORITY;
+	u32 wanted = c->setup.kernel.priority ?: EC_CYCLE_PRIORITY;
 
 	lockdep_assert_held(c->wanted->lock);
-	if (!c->priority)
+	if (!c->setup.priority)
 		ec_warn(c,
 			"cycle thread runs SCHED_OTHER: SCHED_FIFO %u needs CAP_SYS_NICE or RLIMIT_RTPRIO %u of the application (/etc/security/limits.d)\n",
 			wanted, wanted);
-	else if (c->priority < wanted)
+	else if (c->setup.priority < wanted)
 		ec_warn(c,
 			"cycle thread runs SCHED_FIFO %u: %u exceeds RLIMIT_RTPRIO of the application (/etc/security/limits.d)\n",
-			c->priority, wanted);
+			c->setup.priority, wanted);
 }
 
 #define NO_RIGHT \
@@ -69,11 +69,11 @@ void ec_cycle_sched_log_place(struct ec_cycle *c)
 		[EC_CYCLE_PLACE_LONG] = "the interrupt left too little time to other threads of its CPU; set a longer period",
 		[EC_CYCLE_PLACE_DEBUG] = "debug level 2 prints frames",
 	};
-	u32 fresh = READ_ONCE(c->places) & ~c->places_logged;
+	u32 fresh = READ_ONCE(c->places) & ~c->watch.places_logged;
 	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
-	c->places_logged |= fresh;
+	c->watch.places_logged |= fresh;
 	if (fresh & BIT(EC_CYCLE_PLACE_INTERRUPT))
 		ec_info(c, "kernel cycle runs in the interrupt of its timer\n");
 	for (i = 0; i < ARRAY_SIZE(why); i++)
@@ -84,9 +84,9 @@ void ec_cycle_sched_log_place(struct ec_cycle *c)
 /* What a takeover has changed. */
 static void log_right(const struct ec_cycle *c)
 {
-	if (!(c->kernel.flags & EC_CYCLE_FLAG_INTERRUPT))
+	if (!(c->setup.kernel.flags & EC_CYCLE_FLAG_INTERRUPT))
 		return;
-	if (c->may_interrupt)
+	if (c->setup.may_interrupt)
 		ec_info(c, "kernel cycle runs in the interrupt of its timer, as the new application permits\n");
 	else
 		ec_warn(c, "kernel cycle runs in its thread: %s\n", NO_RIGHT);
@@ -107,17 +107,17 @@ void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority, bool may_interrup
 	struct task_struct *task = ec_cycle_thread_task(c);
 
 	lockdep_assert_held(c->wanted->lock);
-	if (task && c->may_interrupt != may_interrupt) {
-		WRITE_ONCE(c->may_interrupt, may_interrupt);
+	if (task && c->setup.may_interrupt != may_interrupt) {
+		WRITE_ONCE(c->setup.may_interrupt, may_interrupt);
 		/* else the monitor repeats it */
-		c->places_logged |= BIT(EC_CYCLE_PLACE_RIGHT) | BIT(EC_CYCLE_PLACE_INTERRUPT);
+		c->watch.places_logged |= BIT(EC_CYCLE_PLACE_RIGHT) | BIT(EC_CYCLE_PLACE_INTERRUPT);
 		log_right(c);
 	}
-	if (!task || c->priority == priority)
+	if (!task || c->setup.priority == priority)
 		return;
-	c->priority = priority;
+	c->setup.priority = priority;
 	ec_cycle_sched_set(c, task);
-	if (priority == (c->kernel.priority ?: EC_CYCLE_PRIORITY))
+	if (priority == (c->setup.kernel.priority ?: EC_CYCLE_PRIORITY))
 		ec_info(c, "cycle thread runs SCHED_FIFO %u, as the new application permits\n",
 			priority);
 	else
@@ -135,7 +135,7 @@ void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority, bool may_interrup
  */
 void ec_cycle_thread_check_cpu(struct ec_cycle *c)
 {
-	int cpu = c->kernel.cpu;
+	int cpu = c->setup.kernel.cpu;
 	struct task_struct *task = ec_cycle_thread_task(c);
 
 	lockdep_assert_held(c->wanted->lock);
@@ -143,16 +143,16 @@ void ec_cycle_thread_check_cpu(struct ec_cycle *c)
 		return;
 	if (cpumask_equal(task->cpus_ptr, cpumask_of(cpu)))
 		return;
-	if (!c->cpu_lost) {
-		c->cpu_lost = true;
-		c->cpu_losses++;
+	if (!c->watch.cpu_lost) {
+		c->watch.cpu_lost = true;
+		c->watch.cpu_losses++;
 		ec_warn(c,
 			"CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
 			cpu, cpu);
 	}
 	/* on its way down a CPU is still online */
 	if (cpu_active(cpu) && !set_cpus_allowed_ptr(task, cpumask_of(cpu))) {
-		c->cpu_lost = false;
+		c->watch.cpu_lost = false;
 		ec_info(c, "cycle thread runs on CPU %d again\n", cpu);
 	}
 }

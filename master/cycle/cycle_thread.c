@@ -11,9 +11,9 @@
 #include <linux/slab.h>
 #include "../base/once64.h"
 #include "../config/domain.h"
-#include "cycle_run.h"
+#include "cycle_sched.h"
 #include "cycle_thread.h"
-#include "waiters.h"
+#include "cycle_timer.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)
 #define ADOPT_MS	1000	/* for a takeover, besides two periods */
@@ -50,10 +50,10 @@ static bool cycle_thread_sleep(const struct ec_cycle_thread *t)
 static int cycle_thread_run(void *data)
 {
 	struct ec_cycle_thread *t = data;
-	const struct ec_ioc_cycle *k = &t->cycle->kernel;
+	const struct ec_ioc_cycle *k = &t->cycle->setup.kernel;
 	u64 now;
 
-	if (t->cycle->priority)
+	if (t->cycle->setup.priority)
 		ec_cycle_sched_set(t->cycle, current);
 	now = ktime_get_ns();
 	t->epoch_ns = ktime_get_real_ns() - now - EPOCH_2000_NS;
@@ -136,7 +136,7 @@ static void free_thread(struct ec_cycle_thread *t)
 int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_cycle_ops *ops)
 {
 	struct ec_cycle_thread *t = kzalloc(sizeof(*t), GFP_KERNEL_ACCOUNT);
-	int ret, cpu = c->kernel.cpu;
+	int ret, cpu = c->setup.kernel.cpu;
 
 	lockdep_assert_held(c->wanted->lock);
 	if (!t)
@@ -175,19 +175,6 @@ err:
 }
 
 /**
- * ec_cycle_thread_task() - the thread that runs the cycle
- * @c: cycle
- *
- * Context: lock of the configuration held.
- * Return: thread; NULL when the application runs the cycle.
- */
-struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c)
-{
-	lockdep_assert_held(c->wanted->lock);
-	return c->thread ? c->thread->task : NULL;
-}
-
-/**
  * ec_cycle_thread_start() - the kernel begins to run the cycle
  * @c: active cycle; nothing happens when the application runs the cycle
  *
@@ -201,10 +188,10 @@ void ec_cycle_thread_start(struct ec_cycle *c)
 	ec_cycle_sched_log(c);
 	WRITE_ONCE(c->place, EC_CYCLE_PLACE_THREAD);
 	c->places = 0;
-	c->places_logged = 0;
-	WRITE_ONCE(c->links->access.interval_us, max(1u, c->kernel.period_ns / (u32)NSEC_PER_USEC));
+	c->watch.places_logged = 0;
+	WRITE_ONCE(c->links->access.interval_us, max(1u, c->setup.kernel.period_ns / (u32)NSEC_PER_USEC));
 	c->links->access.interval_set = true;
-	WRITE_ONCE(ec_cycle_run_status(c->thread)->state, c->kernel.flags & EC_CYCLE_FLAG_WAIT ?
+	WRITE_ONCE(ec_cycle_run_status(c->thread)->state, c->setup.kernel.flags & EC_CYCLE_FLAG_WAIT ?
 		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
 	ec_write64(&c->cycles->number, 0);
 	WRITE_ONCE(c->cycles->run, c->cycles->run + 1);
@@ -268,7 +255,7 @@ bool ec_cycle_thread_ended(const struct ec_cycle *c)
 int ec_cycle_thread_adopt(struct ec_cycle *c)
 {
 	struct ec_cycle_thread *t = c->thread;
-	u32 limit_ms = 2 * c->kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
+	u32 limit_ms = 2 * c->setup.kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
 
 	lockdep_assert_held(c->wanted->lock);
 	reinit_completion(&t->adopted);

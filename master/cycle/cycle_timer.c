@@ -9,9 +9,7 @@
 #include <linux/sched.h>
 #include <linux/smp.h>
 #include "../wire/compat.h"
-#include "cycle_run.h"
-#include "cycle_thread.h"
-#include "waiters.h"
+#include "cycle_timer.h"
 
 #define LONG_CYCLES	1000	/* in the thread, after those that left it no time */
 #define LONG_NS		NSEC_PER_MSEC	/* more than that, or half of the period, is too long */
@@ -25,9 +23,9 @@ static u32 cycle_timer_enter(const struct ec_cycle_thread *t)
 {
 	struct ec_cycle *c = t->cycle;
 
-	if (!READ_ONCE(c->may_interrupt))
+	if (!READ_ONCE(c->setup.may_interrupt))
 		return EC_CYCLE_PLACE_RIGHT;
-	if (c->kernel.cpu >= 0 && c->kernel.cpu != raw_smp_processor_id())
+	if (c->setup.kernel.cpu >= 0 && c->setup.kernel.cpu != raw_smp_processor_id())
 		return EC_CYCLE_PLACE_CPU;
 	if (t->in_thread)
 		return EC_CYCLE_PLACE_LONG;
@@ -56,7 +54,7 @@ static void note_place(struct ec_cycle *c, u32 place)
  */
 static bool leaves_time(struct ec_cycle_thread *t, u64 due)
 {
-	u32 half = t->cycle->kernel.period_ns / 2;
+	u32 half = t->cycle->setup.kernel.period_ns / 2;
 
 	/* by when it was due: one that came after its period has left out others */
 	t->tight = t->end_ns > due + half ? t->tight + 1 : 0;
@@ -116,7 +114,7 @@ void ec_cycle_timer_init(struct ec_cycle_thread *t)
 {
 	hrtimer_setup(&t->timer, tick, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_PINNED_HARD);
 	t->panic.notifier_call = on_panic;
-	if (t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)
+	if (t->cycle->setup.kernel.flags & EC_CYCLE_FLAG_INTERRUPT)
 		atomic_notifier_chain_register(&panic_notifier_list, &t->panic);
 }
 
@@ -128,7 +126,7 @@ void ec_cycle_timer_init(struct ec_cycle_thread *t)
  */
 void ec_cycle_timer_exit(struct ec_cycle_thread *t)
 {
-	if (t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)
+	if (t->cycle->setup.kernel.flags & EC_CYCLE_FLAG_INTERRUPT)
 		atomic_notifier_chain_unregister(&panic_notifier_list, &t->panic);
 }
 
@@ -171,7 +169,7 @@ bool ec_cycle_timer_run(struct ec_cycle_thread *t)
 {
 	u32 place;
 
-	if (likely(!(t->cycle->kernel.flags & EC_CYCLE_FLAG_INTERRUPT)))
+	if (likely(!(t->cycle->setup.kernel.flags & EC_CYCLE_FLAG_INTERRUPT)))
 		return true;
 	place = cycle_timer_enter(t);
 	note_place(t->cycle, place);

@@ -5,7 +5,7 @@
 #include <linux/sched/signal.h>
 #include "../base/once64.h"
 #include "cycle_run.h"
-#include "cycle_thread.h"
+#include "cycle_wait.h"
 #include "waiters.h"
 
 /* The cycle that the kernel runs for @owner, or NULL. RCU read side. */

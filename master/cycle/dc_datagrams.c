@@ -5,8 +5,11 @@
  * data of the first frame, so that their distance to the send is always the
  * same. Nothing here allocates, prints or waits.
  */
+#include "../clock/dc.h"
+#include "../link/access.h"
 #include "../wire/regs.h"
-#include "cycle.h"
+#include "dc_datagrams.h"
+#include "layout.h"
 
 #define SYNC_REF	EC_SEND_FLAG_SYNC_REF
 #define SYNC_SLAVES	EC_SEND_FLAG_SYNC_SLAVES
@@ -38,28 +41,28 @@ static u16 time_bytes(u32 dc)
 }
 
 /* Comparisons a send may have beyond one: half of what the cycle leaves. */
-static u32 most(const struct ec_cycle *c)
+static u32 most(const struct ec_dc_datagrams *k)
 {
-	u64 used = c->clocked.ns + ec_cycle_need_ns();
-	u64 budget = ec_access_interval_us(&c->links->access) * 900ULL;
+	u64 used = k->clocked_ns + ec_layout_need_ns();
+	u64 budget = ec_access_interval_us(k->access) * 900ULL;
 
 	return budget > used ? min_t(u64, BOOST, (budget - used) / (2 * ONE_MORE_NS)) : 0;
 }
 
 /* Comparisons of this send beyond one. */
-static u32 boost(const struct ec_cycle *c)
+static u32 boost(const struct ec_dc_datagrams *k)
 {
-	u32 left = READ_ONCE(c->dc->mode) == EC_DC_READ ? 0 : READ_ONCE(c->dc->extra_dgrams);
-	u32 n = min(left, most(c));
+	u32 left = READ_ONCE(k->dc->mode) == EC_DC_READ ? 0 : READ_ONCE(k->dc->extra_dgrams);
+	u32 n = min(left, most(k));
 
 	if (n)
-		WRITE_ONCE(c->dc->extra_dgrams, left - n);
+		WRITE_ONCE(k->dc->extra_dgrams, left - n);
 	return n;
 }
 
 /**
  * ec_dc_datagrams_reserve_ns() - wire time of more comparisons that are to come
- * @c: its cyclic layout
+ * @k: of the active cycle
  *
  * Known as long as the clocks are being set, so that acyclic frames are not made
  * longer than what is left then.
@@ -67,16 +70,16 @@ static u32 boost(const struct ec_cycle *c)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: ns.
  */
-u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
+u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k)
 {
-	if (!ec_dc_busy(c->dc) && !READ_ONCE(c->dc->extra_dgrams))
+	if (!ec_dc_busy(k->dc) && !READ_ONCE(k->dc->extra_dgrams))
 		return 0;
-	return most(c) * ONE_MORE_NS;
+	return most(k) * ONE_MORE_NS;
 }
 
 /**
  * ec_dc_datagrams_wanted() - clock datagrams of this send
- * @c: its cyclic layout
+ * @k: of the active cycle
  * @flags: EC_SEND_FLAG_*, at least one of EC_CYC_CLOCKS
  *
  * Datagrams that the application wants and the master does not send count as not returned.
@@ -85,23 +88,23 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_cycle *c)
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
  * half how many more times the time goes to the slaves; 0: none.
  */
-u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
+u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags)
 {
 	flags &= EC_CYC_CLOCKS;
-	c->dc_asked |= flags;
-	if (!READ_ONCE(c->dc->wanted))
-		WRITE_ONCE(c->dc->wanted, true);
-	if (READ_ONCE(c->dc->mode) == EC_DC_IDLE)
+	k->asked |= flags;
+	if (!READ_ONCE(k->dc->wanted))
+		WRITE_ONCE(k->dc->wanted, true);
+	if (READ_ONCE(k->dc->mode) == EC_DC_IDLE)
 		return 0;
 	/* a clock that moves cannot be approached by others: first they become near each other */
-	if (c->dc_hold || (READ_ONCE(c->dc->mode) == EC_DC_READ && ec_dc_busy(c->dc)))
+	if (k->hold || (READ_ONCE(k->dc->mode) == EC_DC_READ && ec_dc_busy(k->dc)))
 		flags &= ~SYNC_REF;
 	if (!flags)
 		return 0;
 	if (flags & SYNC_SLAVES)
-		flags |= boost(c) << SHIFT;
+		flags |= boost(k) << SHIFT;
 	/* slaves in front of the reference have a negative delay, of 32 bits */
-	if (READ_ONCE(c->dc->ref_wide) && !READ_ONCE(c->dc->clocks_upstream))
+	if (READ_ONCE(k->dc->ref_wide) && !READ_ONCE(k->dc->clocks_upstream))
 		flags |= WIDE;
 	return flags;
 }
@@ -112,14 +115,14 @@ u32 ec_dc_datagrams_wanted(struct ec_cycle *c, u32 flags)
  * Slaves upstream of the reference clock, and all when it does not reply, take the time that was
  * sent: a prediction from its last replies, at its last rate as long as a cycle is in holdover.
  */
-static u64 predicted(const struct ec_cycle *c, u64 now)
+static u64 predicted(const struct ec_dc_datagrams *k, u64 now)
 {
-	u64 since = now - c->dc_time_ns;
+	u64 since = now - k->time_ns;
 	s64 us = min(div_u64(since, NSEC_PER_USEC), PREDICT_US);
 
-	if (!c->dc_time)
-		return ec_dc_clock_at(c->dc, now);
-	return c->dc_time + since + div_s64(us * c->dc_ppb, USEC_PER_SEC);
+	if (!k->time)
+		return ec_dc_clock_at(k->dc, now);
+	return k->time + since + div_s64(us * k->ppb, USEC_PER_SEC);
 }
 
 #define RATE_NS	(100 * NSEC_PER_MSEC)
@@ -128,38 +131,38 @@ static u64 predicted(const struct ec_cycle *c, u64 now)
  * The rate of the reference over some time; a jump is none. Each has the jitter of two sends, and
  * the mean may have to do for long.
  */
-static void learn_rate(struct ec_cycle *c)
+static void learn_rate(struct ec_dc_datagrams *k)
 {
-	u64 since = c->dc_time_ns - c->dc_then_ns;
-	s64 more = (s64)(c->dc_time - c->dc_then - since);
+	u64 since = k->time_ns - k->then_ns;
+	s64 more = (s64)(k->time - k->then - since);
 	s32 ppb;
 
-	if (c->dc_then_ns && since < RATE_NS)
+	if (k->then_ns && since < RATE_NS)
 		return;
-	if (c->dc_then_ns && abs(more) < div_u64(since, 1000) && since < 10 * RATE_NS) {
+	if (k->then_ns && abs(more) < div_u64(since, 1000) && since < 10 * RATE_NS) {
 		ppb = (s32)div64_s64(more * (s64)NSEC_PER_SEC, since);
-		c->dc_ppb = c->dc_ppb ? c->dc_ppb + (ppb - c->dc_ppb) / 8 : ppb;
+		k->ppb = k->ppb ? k->ppb + (ppb - k->ppb) / 8 : ppb;
 	}
-	c->dc_then = c->dc_time;
-	c->dc_then_ns = c->dc_time_ns;
+	k->then = k->time;
+	k->then_ns = k->time_ns;
 }
 
-static u64 clock_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
+static u64 clock_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 sent_ns)
 {
 	u64 t = len == 8 ? get_unaligned_le64(data) :
-			   ec_dc_extend32(c->dc, get_unaligned_le32(data), sent_ns);
+			   ec_dc_extend32(k->dc, get_unaligned_le32(data), sent_ns);
 
-	ec_dc_clock(c->dc, t, sent_ns);
+	ec_dc_clock(k->dc, t, sent_ns);
 	return t;
 }
 
-static void take_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
+static void take_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 sent_ns)
 {
 
-	c->dc_time = clock_time(c, data, len, sent_ns);
-	c->dc_time_ns = sent_ns;
-	c->dc_back |= SYNC_SLAVES;
-	learn_rate(c);
+	k->time = clock_time(k, data, len, sent_ns);
+	k->time_ns = sent_ns;
+	k->back |= SYNC_SLAVES;
+	learn_rate(k);
 }
 
 /*
@@ -167,27 +170,27 @@ static void take_time(struct ec_cycle *c, const u8 *data, u16 len, u64 sent_ns)
  * what was sent comes back with a working counter that looks good. An answer is another
  * time, or the same with the working counter as ever; once it was silent, only another.
  */
-static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data,
-		     u16 len)
+static bool answered(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
+		     const u8 *data, u16 len)
 {
 	bool frmw = data[-EC_DGRAM_HDR] == EC_CMD_FRMW;
 	u16 wkc = get_unaligned_le16(data + len);
 	u8 sent[8];
 
-	put_unaligned_le64(f->dc_sent, sent);
+	put_unaligned_le64(f->time, sent);
 	if (!wkc ||
-	    (frmw && !memcmp(data, sent, len) && (c->dc_silent || wkc != c->dc_wkc))) {
-		c->dc_silent++;
+	    (frmw && !memcmp(data, sent, len) && (k->silent || wkc != k->wkc))) {
+		k->silent++;
 		return false;
 	}
-	c->dc_wkc = frmw ? wkc : 0;
-	c->dc_silent = 0;
+	k->wkc = frmw ? wkc : 0;
+	k->silent = 0;
 	return true;
 }
 
 /**
  * ec_dc_datagrams_fill() - add the clock datagrams to an empty frame
- * @c: active cycle
+ * @k: of the active cycle
  * @fb: frame
  * @index: of its slot
  * @dc: as from ec_dc_datagrams_wanted()
@@ -197,28 +200,28 @@ static bool answered(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_datagrams_fill(struct ec_cycle *c, struct ec_frame_buf *fb, u8 index, u32 dc,
+void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 now)
 {
-	u16 ref = READ_ONCE(c->dc->ref_station);
+	u16 ref = READ_ONCE(k->dc->ref_station);
 	/* the slaves in front must not get a time that is unknown */
-	bool quiet = READ_ONCE(c->dc->mode) == EC_DC_READ ||
-		     (c->dc->clocks_upstream && !c->dc_time);
+	bool quiet = READ_ONCE(k->dc->mode) == EC_DC_READ ||
+		     (k->dc->clocks_upstream && !k->time);
 	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;
 	u8 t[8], *p;
 
 	for (i = 0; i < refs(dc); i++) {
 		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
-		put_unaligned_le32((u32)(now + c->dc_lead), p);
+		put_unaligned_le32((u32)(now + k->lead), p);
 	}
-	c->dc_sent = predicted(c, now);
+	k->sent = predicted(k, now);
 	/* clock frames of the worker carry it as well */
-	if (c->dc_silent)
-		ec_dc_clock_predict(c->dc, c->dc_sent, now);
+	if (k->silent)
+		ec_dc_clock_predict(k->dc, k->sent, now);
 	/* some ns more, else an answer exactly as predicted would look like silence */
-	c->dc_sent += (c->dc_silent ?: !c->dc_wkc) % 4;
-	put_unaligned_le64(c->dc_sent, t);
+	k->sent += (k->silent ?: !k->wkc) % 4;
+	put_unaligned_le64(k->sent, t);
 	for (i = 0; i < syncs(dc); i++) {
 		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memcpy(p, t, time_bytes(dc));
@@ -240,39 +243,40 @@ static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
 
 /**
  * ec_dc_datagrams_take() - results of the clock datagrams of a returned frame
- * @c: active cycle
- * @f: the frame
+ * @k: of the active cycle
+ * @f: what was sent in that frame
+ * @sent_ns: when it was sent (ktime)
  * @data: data of the first datagram, matched against what was sent
  *
  * Context: The master's single cyclic caller. RT-safe.
  * Return: data of the first datagram of process data.
  */
-const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *data)
+const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_flight *f, u64 sent_ns,
+			       const u8 *data)
 {
-	u64 sent_ns = f->slot->sent_ns;
-	u16 len = time_bytes(f->dc);
-	u32 dc = f->dc;
+	u16 len = time_bytes(f->dgrams);
+	u32 dc = f->dgrams;
 	unsigned int i;
 
 	for (i = 0; i < refs(dc); i++)
 		data = dc_datagrams_skip(data, 4);
 	if (dc & SYNC_SLAVES) {
-		if (answered(c, f, data, len))
-			take_time(c, data, len, sent_ns);
+		if (answered(k, f, data, len))
+			take_time(k, data, len, sent_ns);
 		for (i = 0; i < syncs(dc); i++)
 			data = dc_datagrams_skip(data, len);
 	}
 	if (dc & REF_TIME) {
 		if (get_unaligned_le16(data + len)) {
-			c->dc_time64 = clock_time(c, data, len, sent_ns);
-			c->dc_back |= REF_TIME;
+			k->time64 = clock_time(k, data, len, sent_ns);
+			k->back |= REF_TIME;
 		}
 		data = dc_datagrams_skip(data, len);
 	}
 	if (dc & MONITOR) {
 		if (get_unaligned_le16(data + 4)) {
-			c->dc_diff = get_unaligned_le32(data);
-			c->dc_back |= MONITOR;
+			k->diff = get_unaligned_le32(data);
+			k->back |= MONITOR;
 		}
 		data = dc_datagrams_skip(data, 4);
 	}
@@ -281,25 +285,24 @@ const u8 *ec_dc_datagrams_take(struct ec_cycle *c, const struct ec_cyc_flight *f
 
 /**
  * ec_dc_datagrams_judge() - give the application the results of its clock datagrams
- * @c: active cycle
+ * @k: of the active cycle
+ * @st: its status page
  *
  * Context: The master's single cyclic caller. RT-safe.
  */
-void ec_dc_datagrams_judge(struct ec_cycle *c)
+void ec_dc_datagrams_judge(struct ec_dc_datagrams *k, struct ec_status *st)
 {
-	struct ec_status *st = c->shared->status;
-
-	if (c->dc_asked & SYNC_SLAVES) {
-		WRITE_ONCE(st->dc_time, c->dc_time);
-		WRITE_ONCE(st->dc_time_valid, !!(c->dc_back & SYNC_SLAVES));
+	if (k->asked & SYNC_SLAVES) {
+		WRITE_ONCE(st->dc_time, k->time);
+		WRITE_ONCE(st->dc_time_valid, !!(k->back & SYNC_SLAVES));
 	}
-	if (c->dc_asked & REF_TIME) {
-		WRITE_ONCE(st->dc_time64, c->dc_time64);
-		WRITE_ONCE(st->dc_time64_valid, !!(c->dc_back & REF_TIME));
+	if (k->asked & REF_TIME) {
+		WRITE_ONCE(st->dc_time64, k->time64);
+		WRITE_ONCE(st->dc_time64_valid, !!(k->back & REF_TIME));
 	}
-	if (c->dc_asked & MONITOR)
-		WRITE_ONCE(st->dc_monitor, c->dc_back & MONITOR ?
-			   c->dc_diff & ~(u32)EC_DC_DIFF_AHEAD : ~0u);
-	c->dc_asked = 0;
-	c->dc_back = 0;
+	if (k->asked & MONITOR)
+		WRITE_ONCE(st->dc_monitor, k->back & MONITOR ?
+			   k->diff & ~(u32)EC_DC_DIFF_AHEAD : ~0u);
+	k->asked = 0;
+	k->back = 0;
 }

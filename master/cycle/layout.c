@@ -1,27 +1,25 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The datagrams of a cycle, laid out once at activation. */
-#include <linux/delay.h>
-#include <linux/ktime.h>
 #include <linux/slab.h>
-#include "cycle.h"
 #include "../base/grow.h"
+#include "../base/limits.h"
+#include "../config/config.h"
+#include "../config/domain.h"
+#include "layout.h"
 #include "logical.h"
-#include "../base/once64.h"
-#include "../bus/slave.h"
 
 #define DC_BYTES	(4 + 8 + 4)	/* of the three clock datagrams */
 #define DC_DGRAMS	3
-#define MEASURED	1000	/* sends after which the measured interval is right */
 
-/* a domain on its way into the layout */
-struct layout {
-	struct ec_cycle *c;
+/* a domain that is being added to the layout */
+struct adding {
+	struct ec_layout *to;
 	struct ec_domain *d;
 	struct ec_logical l;
 };
 
 /* Slaves with data of @dir in the stretch; each counts once. */
-static u16 layout_count_slaves(const struct layout *o, const struct ec_stretch *st, u8 dir)
+static u16 layout_count_slaves(const struct adding *o, const struct ec_stretch *st, u8 dir)
 {
 	const struct ec_domain_fmmu *r = o->l.refs;
 	unsigned int i, j;
@@ -38,40 +36,40 @@ static u16 layout_count_slaves(const struct layout *o, const struct ec_stretch *
 	return n;
 }
 
-static struct ec_cyc_dgram *add_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd,
+static struct ec_cyc_dgram *add_dgram(struct adding *o, const struct ec_stretch *st, u8 cmd,
 				      u16 expected)
 {
-	struct ec_cycle *c = o->c;
+	struct ec_layout *l = o->to;
 	struct ec_cyc_dgram *g;
 
-	if (c->n_dgrams >= EC_MAX_CYCLE_DGRAMS)
+	if (l->n_dgrams >= EC_MAX_CYCLE_DGRAMS)
 		return ERR_PTR(-EOVERFLOW);
-	g = ec_grow(c->dgrams, c->n_dgrams, sizeof(*g));
+	g = ec_grow(l->dgrams, l->n_dgrams, sizeof(*g));
 	if (!g)
 		return ERR_PTR(-ENOMEM);
-	c->dgrams = g;
-	g += c->n_dgrams++;
+	l->dgrams = g;
+	g += l->n_dgrams++;
 	*g = (struct ec_cyc_dgram){
 		.domain = o->d->index, .cmd = cmd, .logical = o->d->offset + st->start,
-		.expected = expected, .first_copy = c->n_areas,
+		.expected = expected, .first_copy = l->n_areas,
 	};
 	return g;
 }
 
 /* One more area of the datagram added last; whole ones side by side are one copy. */
-static int add_area(struct ec_cycle *c, u16 *count, u32 offset, u16 pos, u16 len, bool cut)
+static int add_area(struct ec_layout *l, u16 *count, u32 offset, u16 pos, u16 len, bool cut)
 {
-	struct ec_cyc_area *a = c->areas + c->n_areas - 1;
+	struct ec_cyc_area *a = l->areas + l->n_areas - 1;
 
 	if (*count && !cut && a->pos + a->len == pos && a->offset + a->len == offset) {
 		a->len += len;
 		return 0;
 	}
-	a = ec_grow(c->areas, c->n_areas, sizeof(*a));
+	a = ec_grow(l->areas, l->n_areas, sizeof(*a));
 	if (!a)
 		return -ENOMEM;
-	c->areas = a;
-	a[c->n_areas++] = (struct ec_cyc_area){ .offset = offset, .pos = pos, .len = len,
+	l->areas = a;
+	a[l->n_areas++] = (struct ec_cyc_area){ .offset = offset, .pos = pos, .len = len,
 						.count = 1 };
 	++*count;
 	return 0;
@@ -98,19 +96,19 @@ static bool belongs(const struct ec_cyc_dgram *g, const struct ec_config_fmmu *f
 }
 
 /* An input area of several datagrams: it is taken when all of them are back. */
-static int add_cut(struct ec_cycle *c, u32 offset, u32 len)
+static int add_cut(struct ec_layout *l, u32 offset, u32 len)
 {
-	struct ec_cyc_cut *k = c->cuts;
+	struct ec_cyc_cut *k = l->cuts;
 
-	if (c->n_cuts && k[c->n_cuts - 1].offset == offset) {
-		k[c->n_cuts - 1].parts++;
+	if (l->n_cuts && k[l->n_cuts - 1].offset == offset) {
+		k[l->n_cuts - 1].parts++;
 		return 0;
 	}
-	k = ec_grow(c->cuts, c->n_cuts, sizeof(*k));
+	k = ec_grow(l->cuts, l->n_cuts, sizeof(*k));
 	if (!k)
 		return -ENOMEM;
-	c->cuts = k;
-	k[c->n_cuts++] = (struct ec_cyc_cut){ .offset = offset, .len = len, .parts = 1 };
+	l->cuts = k;
+	k[l->n_cuts++] = (struct ec_cyc_cut){ .offset = offset, .len = len, .parts = 1 };
 	return 0;
 }
 
@@ -126,9 +124,9 @@ static bool follows(const struct ec_cyc_area *a, const struct ec_cyc_area *b)
 }
 
 /* The last @count areas, as few as it takes. */
-static void fold_areas(struct ec_cycle *c, u16 *count)
+static void fold_areas(struct ec_layout *l, u16 *count)
 {
-	struct ec_cyc_area *a = c->areas + c->n_areas - *count, *last = a;
+	struct ec_cyc_area *a = l->areas + l->n_areas - *count, *last = a;
 	unsigned int i;
 
 	for (i = 1; i < *count; i++) {
@@ -143,15 +141,15 @@ static void fold_areas(struct ec_cycle *c, u16 *count)
 	}
 	if (*count) {
 		*count = last - a + 1;
-		c->n_areas = last - c->areas + 1;
+		l->n_areas = last - l->areas + 1;
 	}
 }
 
 /* Areas of the datagram added last, of one part. */
-static int add_areas(struct layout *o, const struct ec_stretch *st, enum part part, u16 *count)
+static int add_areas(struct adding *o, const struct ec_stretch *st, enum part part, u16 *count)
 {
-	struct ec_cycle *c = o->c;
-	struct ec_cyc_dgram *g = &c->dgrams[c->n_dgrams - 1];
+	struct ec_layout *l = o->to;
+	struct ec_cyc_dgram *g = &l->dgrams[l->n_dgrams - 1];
 	unsigned int i;
 	int ret = 0;
 
@@ -163,38 +161,38 @@ static int add_areas(struct layout *o, const struct ec_stretch *st, enum part pa
 		if (from >= to || !belongs(g, f, to - from == f->size, part))
 			continue;
 		if (part == CUT) {
-			ret = add_cut(c, offset, f->size);
+			ret = add_cut(l, offset, f->size);
 			if (ret)
 				break;
 		}
-		ret = add_area(c, count, offset + from - f->logical, from - st->start, to - from,
+		ret = add_area(l, count, offset + from - f->logical, from - st->start, to - from,
 			       part == CUT);
 		if (part == CUT && !ret)
-			c->areas[c->n_areas - 1].cut = c->n_cuts - 1;
+			l->areas[l->n_areas - 1].cut = l->n_cuts - 1;
 		g->len = max_t(u16, g->len, to - st->start);
 	}
 	if (!ret && part != CUT)
-		fold_areas(c, count);
+		fold_areas(l, count);
 	return ret;
 }
 
-static u32 area_bytes(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
+static u32 area_bytes(const struct ec_layout *l, const struct ec_cyc_dgram *g)
 {
 	u32 i, n = 0;
 
 	for (i = 0; i < g->n_copies; i++)
-		n += c->areas[g->first_copy + i].len * c->areas[g->first_copy + i].count;
+		n += l->areas[g->first_copy + i].len * l->areas[g->first_copy + i].count;
 	return n;
 }
 
 /* A single area covers it, so nothing of it lies elsewhere, and it brings inputs. */
-static bool is_solid(const struct ec_cycle *c, const struct ec_cyc_dgram *g)
+static bool is_solid(const struct ec_layout *l, const struct ec_cyc_dgram *g)
 {
-	return !g->holes && g->n_copies == 1 && c->areas[g->first_copy].count == 1 &&
+	return !g->holes && g->n_copies == 1 && l->areas[g->first_copy].count == 1 &&
 	       g->n_plain && g->n_inputs == g->n_plain;
 }
 
-static int layout_fill_dgram(struct layout *o, const struct ec_stretch *st, u8 cmd, u16 expected)
+static int layout_fill_dgram(struct adding *o, const struct ec_stretch *st, u8 cmd, u16 expected)
 {
 	struct ec_cyc_dgram *g = add_dgram(o, st, cmd, expected);
 	int ret;
@@ -206,12 +204,12 @@ static int layout_fill_dgram(struct layout *o, const struct ec_stretch *st, u8 c
 	g->first_input = g->first_copy + g->n_copies;
 	g->n_whole += g->n_plain;
 	g->n_inputs += g->n_whole;
-	g->holes = area_bytes(o->c, g) != g->len;
-	g->solid = is_solid(o->c, g);
+	g->holes = area_bytes(o->to, g) != g->len;
+	g->solid = is_solid(o->to, g);
 	return ret;
 }
 
-static int add_stretch(struct layout *o, const struct ec_stretch *st)
+static int add_stretch(struct adding *o, const struct ec_stretch *st)
 {
 	u16 out = layout_count_slaves(o, st, EC_CFG_DIR_OUTPUT);
 	u16 in = layout_count_slaves(o, st, EC_CFG_DIR_INPUT);
@@ -233,32 +231,33 @@ static int add_stretch(struct layout *o, const struct ec_stretch *st)
 }
 
 /* The first datagram of a domain that wants frames of its own, or comes behind one. */
-static void begin_frame(struct ec_cycle *c, const struct ec_domain *d, unsigned int first)
+static void begin_frame(struct ec_layout *l, const struct ec_wanted *w, const struct ec_domain *d,
+			unsigned int first)
 {
-	struct ec_cyc_dgram *g = c->dgrams + first;
+	struct ec_cyc_dgram *g = l->dgrams + first;
 	u32 options = d->options;
 
 	if (first)
-		options |= c->wanted->domains[g[-1].domain]->options;
+		options |= w->domains[g[-1].domain]->options;
 	g->new_frame = options & EC_DOMAIN_OPT_OWN_FRAME;
 }
 
-static int layout_domain(struct ec_cycle *c, struct ec_domain *d)
+static int layout_domain(struct ec_layout *l, const struct ec_wanted *w, struct ec_domain *d)
 {
-	struct layout o = { .c = c, .d = d };
-	unsigned int i, first = c->n_dgrams;
+	struct adding o = { .to = l, .d = d };
+	unsigned int i, first = l->n_dgrams;
 	int ret = ec_logical_place(d, &o.l);
 
 	d->expected = 0;
 	for (i = 0; i < o.l.n_stretches && !ret; i++)
 		ret = add_stretch(&o, &o.l.stretches[i]);
 	ec_logical_free(&o.l);
-	d->n_dgrams = c->n_dgrams - first;
+	d->n_dgrams = l->n_dgrams - first;
 	d->dgram_bytes = 0;
-	for (i = first; i < c->n_dgrams; i++)
-		d->dgram_bytes += EC_DGRAM_OVERHEAD + c->dgrams[i].len;
+	for (i = first; i < l->n_dgrams; i++)
+		d->dgram_bytes += EC_DGRAM_OVERHEAD + l->dgrams[i].len;
 	if (!ret && d->n_dgrams)
-		begin_frame(c, d, first);
+		begin_frame(l, w, d, first);
 	return ret;
 }
 
@@ -266,16 +265,16 @@ static int layout_domain(struct ec_cycle *c, struct ec_domain *d)
  * Frames of a cycle that sends all domains, packed as the send packs them, and
  * how long they occupy the wire.
  */
-static struct ec_cyc_wire layout_plan(const struct ec_cycle *c, unsigned int max_datagrams,
+static struct ec_cyc_wire layout_plan(const struct ec_layout *l, unsigned int max_datagrams,
 				      bool clocks)
 {
 	unsigned int count = clocks ? DC_DGRAMS : 0, own = 0, i;
 	size_t body = clocks ? DC_BYTES + DC_DGRAMS * EC_DGRAM_OVERHEAD : 0;
 	struct ec_cyc_wire w = { 0 };
 
-	for (i = 0; i <= c->n_dgrams; i++) {
-		const struct ec_cyc_dgram *g = c->dgrams + i;
-		bool end = i == c->n_dgrams;
+	for (i = 0; i <= l->n_dgrams; i++) {
+		const struct ec_cyc_dgram *g = l->dgrams + i;
+		bool end = i == l->n_dgrams;
 
 		if (count && (end || count >= max_datagrams || (own && g->new_frame) ||
 			      body + EC_DGRAM_OVERHEAD + g->len > EC_FRAME_BODY_MAX)) {
@@ -293,141 +292,53 @@ static struct ec_cyc_wire layout_plan(const struct ec_cycle *c, unsigned int max
 }
 
 /**
- * ec_cycle_layout() - lay out the datagrams of a cycle, once
- * @c: cycle whose domains have offsets; ec_cycle_free() frees the layout, also after an error
+ * ec_layout_make() - lay out the datagrams of a cycle, once
+ * @l: zeroed; ec_layout_free() frees it, also after an error
+ * @w: slave configurations and domains, whose offsets are set
+ * @max_datagrams: most datagrams of a frame
+ * @image_size: bytes of the image of all domains
+ *
+ * Sets the expected working counters of the domains.
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -EOVERFLOW beyond EC_MAX_CYCLE_DGRAMS or EC_MAX_CYCLE_FRAMES;
  * -ENOMEM.
  */
-int ec_cycle_layout(struct ec_cycle *c)
+int ec_layout_make(struct ec_layout *l, struct ec_wanted *w, unsigned int max_datagrams,
+		   size_t image_size)
 {
 	int ret;
 
-	lockdep_assert_held(c->wanted->lock);
-	ec_for_each_config(s, c->wanted) {
+	lockdep_assert_held(w->lock);
+	ec_for_each_config(s, w) {
 		s->lrw = false;
 		s->in_ring = false;
 	}
-	ec_for_each_domain(d, c->wanted) {
-		ret = layout_domain(c, d);
+	ec_for_each_domain(d, w) {
+		ret = layout_domain(l, w, d);
 		if (ret)
 			return ret;
-		c->domains[d->index] = (struct ec_cyc_domain){
-			.expected = d->expected, .max_age = d->max_age,
-			/* offsets are those of the image of all domains; a thread exchanges those */
-			.image = d->memory && !c->kernel.period_ns ? d->memory - d->offset :
-								     c->shared->image,
-		};
 	}
-	if (c->n_cuts) {
-		c->stage = kvzalloc(c->shared->image_size, GFP_KERNEL_ACCOUNT);
-		if (!c->stage)
+	if (l->n_cuts) {
+		l->stage = kvzalloc(image_size, GFP_KERNEL_ACCOUNT);
+		if (!l->stage)
 			return -ENOMEM;
 	}
-	c->plain = layout_plan(c, c->links->max_datagrams, false);
-	c->clocked = layout_plan(c, c->links->max_datagrams, true);
-	return c->clocked.frames > EC_MAX_CYCLE_FRAMES ? -EOVERFLOW : 0;
-}
-
-/* Wire time of a minimum Ethernet frame: less does no acyclic frame need. */
-u32 ec_cycle_need_ns(void)
-{
-	return ec_frame_wire_ns(EC_ETH_MIN);
-}
-
-/* Does an acyclic frame fit beside a cycle of @interval_ns? If not the log says so. */
-static bool has_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
-{
-	u64 budget = div_u64(interval_ns * 9, 10);
-	u32 slack = budget > wire_ns ? min_t(u64, budget - wire_ns, ~0u) : 0;
-
-	if (slack >= ec_cycle_need_ns())
-		return true;
-	c->room_logged = true;
-	ec_warn(c,
-		"cyclic frames use %u ns of %llu ns; %u ns free for acyclic frames, minimum %u ns: lengthen the cycle or overlap PDOs\n",
-		wire_ns, interval_ns, slack, ec_cycle_need_ns());
-	ec_event(c->base, EC_EVENT_WIRE_TIME, wire_ns, min_t(u64, interval_ns, ~0u), slack,
-		 ec_cycle_need_ns());
-	return false;
+	l->plain = layout_plan(l, max_datagrams, false);
+	l->clocked = layout_plan(l, max_datagrams, true);
+	return l->clocked.frames > EC_MAX_CYCLE_FRAMES ? -EOVERFLOW : 0;
 }
 
 /**
- * ec_cycle_check_room() - do acyclic frames fit beside the cycle?
- * @c: cycle with a layout
- * @clocks: the application uses distributed clocks
- *
- * Without them no slave gets to OP. As long as the interval is not set it is not
- * known yet; ec_cycle_tell_room() looks later.
- *
- * Context: Process, lock of the configuration held. May sleep.
- * Return: 0; -ENOSPC: they do not, and may make no cycle late.
- */
-int ec_cycle_check_room(struct ec_cycle *c, bool clocks)
-{
-	u64 interval = c->kernel.period_ns ?:
-		       ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC;
-	const struct ec_cyc_wire *w = clocks ? &c->clocked : &c->plain;
-
-	lockdep_assert_held(c->wanted->lock);
-	c->room_logged = false;
-	c->links->access.wire_ns = w->ns;
-	WRITE_ONCE(c->carry->share.late_per_s, c->late_per_s);
-	c->carry->share.late_cycles = 0;
-	if (!c->kernel.period_ns && !c->links->access.interval_set)
-		return 0;
-	return has_room(c, interval, w->ns) || c->late_per_s ? 0 : -ENOSPC;
-}
-
-/**
- * ec_cycle_tell_room() - the same in the log, once the interval is measured
- * @c: active cycle
- *
- * Context: The monitor thread, lock of the configuration held. May sleep.
- */
-void ec_cycle_tell_room(struct ec_cycle *c)
-{
-	lockdep_assert_held(c->wanted->lock);
-	if (!c->room_logged && !c->links->access.interval_set &&
-	    ec_read64(&c->sends) > MEASURED)
-		has_room(c, ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC,
-			 READ_ONCE(c->links->access.wire_ns));
-}
-
-/* What is still on its way will not be received. */
-static void forget_flights(struct ec_cycle *c)
-{
-	unsigned int i;
-
-	for (i = 0; i < c->n_flight; i++) {
-		struct ec_slot *slot = c->flight[i].slot;
-
-		while (!ec_slot_cancel(slot, ktime_get_ns())) {
-			if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
-				ec_slot_put(slot);
-				break;
-			}
-			/* being copied at this moment */
-			usleep_range(20, 50);
-		}
-	}
-	c->n_flight = 0;
-}
-
-/**
- * ec_cycle_free() - give back what a layout and its frames occupy
- * @c: cycle that does not run any more
+ * ec_layout_free() - free what a layout has allocated
+ * @l: of a cycle that does not run any more
  *
  * Context: Process. May sleep.
  */
-void ec_cycle_free(struct ec_cycle *c)
+void ec_layout_free(struct ec_layout *l)
 {
-	forget_flights(c);
-	kvfree(c->dgrams);
-	kvfree(c->areas);
-	kvfree(c->cuts);
-	kvfree(c->stage);
-	kvfree(c->copying);
-	memset_startat(c, 0, dgrams);
+	kvfree(l->dgrams);
+	kvfree(l->areas);
+	kvfree(l->cuts);
+	kvfree(l->stage);
 }

@@ -20,9 +20,9 @@
 void ec_pll_init(struct ec_pll *l, const struct ec_cycle *c)
 {
 	memset(l, 0, sizeof(*l));
-	l->follow = c->kernel.dc & EC_CYCLE_DC_FOLLOW;
-	l->phase = l->follow ? c->kernel.phase_ns : 0;
-	ec_dc_lock_init(&l->pi, c->kernel.period_ns);
+	l->follow = c->setup.kernel.dc & EC_CYCLE_DC_FOLLOW;
+	l->phase = l->follow ? c->setup.kernel.phase_ns : 0;
+	ec_dc_lock_init(&l->pi, c->setup.kernel.period_ns);
 }
 
 /* Application time of a cycle: whole periods after the last one. */
@@ -69,12 +69,12 @@ static bool measured(struct ec_pll *l, const struct ec_cycle *c, s32 *error)
 	u64 time = 0, then;
 	s64 ahead;
 
-	if (!c->dc_time_ns || c->dc_time_ns == l->seen)
+	if (!c->clock.time_ns || c->clock.time_ns == l->seen)
 		return false;
-	l->seen = c->dc_time_ns;
-	if (!origin(l, c->dc_time_ns, &time))
+	l->seen = c->clock.time_ns;
+	if (!origin(l, c->clock.time_ns, &time))
 		return false;
-	then = c->dc_time - l->phase;
+	then = c->clock.time - l->phase;
 	ahead = (s64)(then - time);
 	*error = ec_dc_lock_wrap(ahead, l->pi.period);
 	if (ahead != *error)
@@ -138,10 +138,10 @@ void ec_pll_log(struct ec_cycle *c)
 
 	lockdep_assert_held(c->wanted->lock);
 	/* while clocks are measured no frame asks the reference */
-	if (lock == c->lock_logged ||
+	if (lock == c->watch.lock_logged ||
 	    (lock == EC_CYCLE_LOCK_HOLD && ec_dc_busy(c->dc)))
 		return;
-	c->lock_logged = lock;
+	c->watch.lock_logged = lock;
 	if (lock != EC_CYCLE_LOCK_OFF)
 		ec_event(c->base, EC_EVENT_LOCK, lock, READ_ONCE(st->phase_error),
 			 READ_ONCE(st->rate_ppb));

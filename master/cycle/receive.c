@@ -7,8 +7,8 @@
 #include <linux/ktime.h>
 #include <linux/rcupdate.h>
 #include "../base/bytes.h"
-#include "cycle.h"
 #include "../base/once64.h"
+#include "receive.h"
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
 static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d, u32 send,
@@ -18,16 +18,16 @@ static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 	unsigned int i;
 
 	for (i = d->n_whole; i < d->n_inputs; i++) {
-		const struct ec_cyc_area *in = &c->areas[d->first_input + i];
-		struct ec_cyc_cut *cut = &c->cuts[in->cut];
+		const struct ec_cyc_area *in = &c->layout.areas[d->first_input + i];
+		struct ec_cyc_cut *cut = &c->layout.cuts[in->cut];
 
 		if (cut->send != send) {
 			cut->send = send;
 			cut->have = 0;
 		}
-		memcpy(c->stage + in->offset, data + in->pos, in->len);
+		memcpy(c->layout.stage + in->offset, data + in->pos, in->len);
 		if (++cut->have == cut->parts)
-			memcpy(image + cut->offset, c->stage + cut->offset, cut->len);
+			memcpy(image + cut->offset, c->layout.stage + cut->offset, cut->len);
 	}
 }
 
@@ -48,7 +48,7 @@ static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
 static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 			const struct ec_cyc_flight *f, const u8 *data, bool complete)
 {
-	const struct ec_cyc_area *in = &c->areas[d->first_input];
+	const struct ec_cyc_area *in = &c->layout.areas[d->first_input];
 	u8 *image = c->domains[d->domain].image;
 	bool direct = f->direct && !ec_cyc_from_image(d);
 	const struct ec_cyc_area *end;
@@ -67,7 +67,7 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	d->wrote = c->send;
 	/* the outputs come back as well: those of the image are not needed now */
 	if (complete && d->solid && direct && c->direct) {
-		memcpy(image + c->areas[d->first_copy].offset, data, d->len);
+		memcpy(image + c->layout.areas[d->first_copy].offset, data, d->len);
 		return;
 	}
 	end = in + (complete ? d->n_whole : d->n_plain);
@@ -107,13 +107,13 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 /* Returns the events that the slaves have shown in the IRQ field. */
 static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
-	struct ec_cyc_dgram *d = &c->dgrams[f->first];
+	struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
 	const u8 *data = f->slot->reply + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 	u16 irq = 0;
 
-	if (f->dc)
-		data = ec_dc_datagrams_take(c, f, data);
+	if (f->clocks.dgrams)
+		data = ec_dc_datagrams_take(&c->clock, &f->clocks, f->slot->sent_ns, data);
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
@@ -214,14 +214,14 @@ static void receive_judge(struct ec_cycle *c)
 }
 
 /**
- * ec_cycle_tell_stale() - log domains whose data came back too old, once each
+ * ec_cycle_log_stale() - log domains whose data came back too old, once each
  * @c: active cycle
  *
  * The cycle itself prints nothing.
  *
  * Context: Process, lock of the configuration held.
  */
-void ec_cycle_tell_stale(struct ec_cycle *c)
+void ec_cycle_log_stale(struct ec_cycle *c)
 {
 	unsigned int i;
 
@@ -313,8 +313,8 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	receive_judge(c);
 	flags = ec_status_begin(st);
 	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
-	if (c->dc_asked | c->dc_back)
-		ec_dc_datagrams_judge(c);
+	if (c->clock.asked | c->clock.back)
+		ec_dc_datagrams_judge(&c->clock, st);
 	WRITE_ONCE(st->cycle, c->sends);
 	ec_status_end(st, flags);
 	return 0;

@@ -4,8 +4,8 @@
 #include <linux/ktime.h>
 #include <linux/rcupdate.h>
 #include "../base/bytes.h"
-#include "cycle.h"
 #include "../base/once64.h"
+#include "send.h"
 
 /*
  * Room for one more frame. When none has come back for long, the oldest is
@@ -41,7 +41,7 @@ struct send {
 /* Outputs, and the last value of inputs. */
 static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram *d, u8 *data)
 {
-	const struct ec_cyc_area *a = &c->areas[d->first_copy];
+	const struct ec_cyc_area *a = &c->layout.areas[d->first_copy];
 	const u8 *image = c->domains[d->domain].image;
 	unsigned int i;
 
@@ -62,7 +62,7 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
 			 struct send *send)
 {
-	const struct ec_cyc_dgram *d = &c->dgrams[g];
+	const struct ec_cyc_dgram *d = &c->layout.dgrams[g];
 	unsigned int room, dc, first = g;
 	u64 queued = send->what->queued;
 	struct ec_frame_buf fb;
@@ -70,10 +70,10 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 
 	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	if (send->dc)
-		ec_dc_datagrams_fill(c, &fb, slot->index, send->dc, send->now);
+		ec_dc_datagrams_fill(&c->clock, &fb, slot->index, send->dc, send->now);
 	dc = fb.count;
 	room = max(c->links->max_datagrams, dc) - dc;
-	for (; g < c->n_dgrams && room; g++, d++) {
+	for (; g < c->layout.n_dgrams && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
 		if (d->new_frame && fb.count > dc)
@@ -104,8 +104,8 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->queued = send->what->queued;
 	f->missed = false;
 	f->direct = c->direct;
-	f->dc = send->dc;
-	f->dc_sent = c->dc_sent;
+	f->clocks.dgrams = send->dc;
+	f->clocks.time = c->clock.sent;
 	f->riding = send->riding;
 }
 
@@ -123,7 +123,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	if (!slot) {
 		ec_links_count(c->links, c->links->sides, tx_errors);
 		send->dc = 0;
-		return c->n_dgrams;
+		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
 	frame = ec_links_tx_get(c->links, c->links->sides, &tx) ?: slot->frame;
@@ -149,8 +149,8 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 static u32 wire_ns(const struct ec_cycle *c)
 {
 	if (!ec_dc_begun(c->dc))
-		return c->plain.ns;
-	return c->clocked.ns + ec_dc_datagrams_reserve_ns(c);
+		return c->layout.plain.ns;
+	return c->layout.clocked.ns + ec_dc_datagrams_reserve_ns(&c->clock);
 }
 
 /**
@@ -162,7 +162,7 @@ static u32 wire_ns(const struct ec_cycle *c)
  */
 void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	c->dc_hold = ec_dc_update_app_time(c->dc, what, &c->dc_lead);
+	c->clock.hold = ec_dc_update_app_time(c->dc, what, &c->clock.lead);
 }
 
 /**
@@ -181,22 +181,22 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (!ec_links_attached(c->links))
 		return -ENODEV;
 	if (!c->thread)
-		ec_late_send(c, send.now);
+		ec_late_send(&c->late, send.now);
 	ec_write64(&c->links->access.last_send_ns, send.now);
 	if (unlikely(READ_ONCE(c->links->access.stopped)))
 		WRITE_ONCE(c->links->access.stopped, false);
 	if (c->copying)
-		ec_copy_run(c);
+		ec_copy_run(c->copying, c->shared->status, c->domains);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
 	if (unlikely(what->queued & ~c->sent_once))
 		ec_write64(&c->sent_once, c->sent_once | what->queued);
 	if (what->flags & EC_CYC_CLOCKS)
-		send.dc = ec_dc_datagrams_wanted(c, what->flags);
+		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
-	while (g < c->n_dgrams || send.dc) {
-		if (send.dc || what->queued & BIT_ULL(c->dgrams[g].domain))
+	while (g < c->layout.n_dgrams || send.dc) {
+		if (send.dc || what->queued & BIT_ULL(c->layout.dgrams[g].domain))
 			g = send_frame(c, g, &send);
 		else
 			g++;

@@ -5,7 +5,9 @@
 #include <linux/slab.h>
 #include "../base/once64.h"
 #include "../cycle/pll.h"
+#include "../cycle/cycle_stats.h"
 #include "../cycle/cycle_thread.h"
+#include "../cycle/wire_time.h"
 #include "../mailbox/emerg.h"
 #include "request.h"
 #include "session.h"
@@ -254,7 +256,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_cycle_thread_stop(&s->cycle);
 	ec_session_note_counts(s, false, true);
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
-	ec_late_end(&s->cycle);
+	ec_cycle_stats_end(&s->cycle);
 	s->wanted.active = false;
 	s->timeout_log.open = false;
 	ec_requests_end(s);
@@ -455,7 +457,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	if (s && owner && s->cycle.owner != owner)
 		s = NULL;
 	if (s && owner && s->cycle.thread && !s->ending &&
-	    s->cycle.kernel.flags & EC_CYCLE_FLAG_DETACH) {
+	    s->cycle.setup.kernel.flags & EC_CYCLE_FLAG_DETACH) {
 		ec_cycle_set_owner(&s->cycle, NULL, NULL);
 		ec_event(ss->base, EC_EVENT_DETACHED, s->owner_pid);
 		ec_info(ss,
@@ -513,7 +515,7 @@ static u16 ref_choice(const struct ec_session *s)
 /* Does the session need clocks for sure: SYNC signals, or a cycle of the kernel with clocks? */
 static bool uses_clocks(const struct ec_session *s)
 {
-	if (s->cycle.kernel.dc)
+	if (s->cycle.setup.kernel.dc)
 		return true;
 	ec_for_each_config(c, &s->wanted)
 		if (c->sync.assign)
@@ -588,7 +590,7 @@ u32 ec_session_place(struct ec_session *s)
 static int session_fits(const struct ec_session *s, size_t image_size)
 {
 	/* with six images for the exchange; requests have a copy of their data */
-	size_t images = s->cycle.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
+	size_t images = s->cycle.setup.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
 
 	lockdep_assert_held(&s->sessions->lock);
 	return atomic_long_read(&s->sessions->memory) + images * image_size + EC_STATUS_BYTES +
@@ -603,7 +605,7 @@ static int session_fits(const struct ec_session *s, size_t image_size)
  * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
  * the application runs the cycle; -EOVERFLOW when the image or a cycle
  * is too large; -EDQUOT more memory than EC_MAX_SESSION_BYTES; -ENOSPC as
- * ec_cycle_check_room(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
+ * ec_wire_time_check(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
  */
 int ec_session_activate(struct ec_session *s)
 {
@@ -616,7 +618,7 @@ int ec_session_activate(struct ec_session *s)
 	if (s->wanted.active)
 		return -EBUSY;
 	ec_for_each_domain(d, &s->wanted)
-		if (d->division > 1 && !s->cycle.kernel.period_ns)
+		if (d->division > 1 && !s->cycle.setup.kernel.period_ns)
 			return -EOPNOTSUPP;
 	offset = ec_session_place(s);
 	if (offset > EC_MAX_IMAGE)
@@ -629,9 +631,9 @@ int ec_session_activate(struct ec_session *s)
 		return -ENOMEM;
 	if (s->preset)
 		memcpy(s->cycle.shared->image, s->preset, offset);
-	ret = ec_requests_begin(s) ?: ec_copy_begin(&s->cycle) ?: ec_cycle_layout(&s->cycle) ?:
-	      ec_cycle_check_room(&s->cycle, uses_clocks(s));
-	if (!ret && s->cycle.kernel.period_ns)
+	ret = ec_requests_begin(s) ?: ec_cycle_layout(&s->cycle) ?:
+	      ec_wire_time_check(&s->cycle, uses_clocks(s));
+	if (!ret && s->cycle.setup.kernel.period_ns)
 		ret = ec_cycle_thread_create(&s->cycle, offset, &cycle_ops);
 	if (ret) {
 		ec_cycle_free(&s->cycle);
@@ -651,11 +653,11 @@ int ec_session_activate(struct ec_session *s)
 	WRITE_ONCE(ss->links->access.stopped, false);
 	s->notes = (struct ec_count_notes){ };
 	ec_session_note_counts(s, true, false);
-	s->cycle.lock_logged = EC_CYCLE_LOCK_OFF;
+	s->cycle.watch.lock_logged = EC_CYCLE_LOCK_OFF;
 	s->cycle.slaves_down = false;
 	ec_bus_unhold(ss->bus);
 	/* one that waits for outputs takes the links with its first frame */
-	if (!s->cycle.thread || !(s->cycle.kernel.flags & EC_CYCLE_FLAG_WAIT))
+	if (!s->cycle.thread || !(s->cycle.setup.kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
 	ec_cycle_set_active(ss->cycles, &s->cycle);
 	/* the grid of SYNC is that of the thread's own time, which it keeps its phase to */
@@ -675,9 +677,9 @@ int ec_session_activate(struct ec_session *s)
 	ec_config_log_differences(&s->wanted);
 	ec_session_begin_active(s);
 	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
-		s->wanted.n_domains, offset, s->cycle.n_dgrams);
+		s->wanted.n_domains, offset, s->cycle.layout.n_dgrams);
 	ec_event(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, offset,
-		 s->cycle.n_dgrams);
+		 s->cycle.layout.n_dgrams);
 	return 0;
 }
 

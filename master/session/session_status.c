@@ -2,7 +2,10 @@
 /* The state of the bus for an active session, and log messages about its application. */
 #include "../config/why.h"
 #include "../cycle/pll.h"
+#include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
+#include "../cycle/receive.h"
+#include "../cycle/wire_time.h"
 #include "../base/once64.h"
 #include "request.h"
 #include "session.h"
@@ -176,8 +179,8 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		ec_cycle_thread_check_cpu(&s->cycle);
 		ec_cycle_sched_log_place(&s->cycle);
 		ec_dc_app_log(ss->dc);
-		ec_cycle_tell_room(&s->cycle);
-		ec_cycle_tell_stale(&s->cycle);
+		ec_wire_time_log(&s->cycle);
+		ec_cycle_log_stale(&s->cycle);
 		if (!s->cycle.thread || ec_cycle_thread_ended(&s->cycle))
 			ec_requests_notice(&s->cycle);
 		status_bus(s);

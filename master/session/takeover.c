@@ -4,6 +4,7 @@
  * the same: all that reaches a slave or decides where something lies in the mapped memory. The
  * two are compared, not hashes of them, so that the first difference can be reported.
  */
+#include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
 #include "request.h"
 #include "session.h"
@@ -146,15 +147,15 @@ static bool domain_differs(const struct ec_domain *a, const struct ec_domain *b,
 	       NUMBER(phase, "domain %u is first sent in cycle %u, not %u", a->index);
 }
 
-static bool cycle_differs(const struct ec_cycle *a, const struct ec_cycle *b,
+static bool cycle_differs(const struct ec_cycle_setup *a, const struct ec_cycle_setup *b,
 			  const struct text *t)
 {
 	unsigned int i;
 
-	if (NUMBER(n_copies, "it has %u copies, not %u"))
+	if (NUMBER(copies.n, "it has %u copies, not %u"))
 		return true;
-	for (i = 0; i < a->n_copies; i++)
-		if (CONTENT(copies[i], "copy %u", i))
+	for (i = 0; i < a->copies.n; i++)
+		if (CONTENT(copies.list[i], "copy %u", i))
 			return true;
 	if (!b->kernel.period_ns)
 		return differs(t, "the kernel runs its cycle");
@@ -190,7 +191,7 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 	if (a->n_specs != b->n_specs || a->request_bytes != b->request_bytes ||
 	    (a->n_specs && memcmp(a->specs, b->specs, a->n_specs * sizeof(*a->specs))))
 		return differs(t, "its %u SDO and register requests", a->n_specs);
-	return cycle_differs(&a->cycle, &b->cycle, t);
+	return cycle_differs(&a->cycle.setup, &b->cycle.setup, t);
 }
 
 /*
@@ -199,7 +200,7 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
  */
 static void adopt_late(struct ec_session *s, u32 per_s)
 {
-	s->cycle.late_per_s = per_s;
+	s->cycle.setup.late_per_s = per_s;
 	WRITE_ONCE(s->sessions->links->carry->share.late_per_s, per_s);
 }
 
@@ -225,16 +226,16 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 
 	if (session_differs(s, candidate, &t))
 		return -EEXIST;
-	if (!candidate->cycle.late_per_s && ec_access_slack_ns(ss->links) < ec_cycle_need_ns())
+	if (!candidate->cycle.setup.late_per_s && ec_access_slack_ns(ss->links) < ec_layout_need_ns())
 		return -ENOSPC;
 	ret = ec_cycle_thread_adopt(&s->cycle);
 	if (ret)
 		return ret;
 	if (s->requests)
 		ec_requests_describe(s);
-	adopt_late(s, candidate->cycle.late_per_s);
-	ec_cycle_thread_inherit(&s->cycle, candidate->cycle.priority,
-				candidate->cycle.may_interrupt);
+	adopt_late(s, candidate->cycle.setup.late_per_s);
+	ec_cycle_thread_inherit(&s->cycle, candidate->cycle.setup.priority,
+				candidate->cycle.setup.may_interrupt);
 	WRITE_ONCE(ss->candidate, NULL);
 	ec_session_fill_status(s);
 	ec_cycle_set_owner(&s->cycle, candidate->cycle.owner,

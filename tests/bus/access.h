@@ -161,12 +161,12 @@ static inline struct ec_status_domain *bus_domain_status(const struct bus *b, u3
 
 static inline struct ec_cyc_dgram *bus_dgrams(const struct bus *b)
 {
-	return bus_cycle(b)->dgrams;
+	return bus_cycle(b)->layout.dgrams;
 }
 
 static inline unsigned int bus_n_dgrams(const struct bus *b)
 {
-	return bus_cycle(b)->n_dgrams;
+	return bus_cycle(b)->layout.n_dgrams;
 }
 
 /* frames of the cycle on their way */
@@ -189,17 +189,17 @@ static inline const struct ec_cyc_wire *bus_last_wire(const struct bus *b)
 
 static inline const struct ec_cyc_wire *bus_plain_wire(const struct bus *b)
 {
-	return &bus_cycle(b)->plain;
+	return &bus_cycle(b)->layout.plain;
 }
 
 static inline const struct ec_cyc_wire *bus_clocked_wire(const struct bus *b)
 {
-	return &bus_cycle(b)->clocked;
+	return &bus_cycle(b)->layout.clocked;
 }
 
 static inline struct ec_schedule *bus_schedule(const struct bus *b)
 {
-	return &bus_cycle(b)->schedule;
+	return &bus_cycle(b)->late.schedule;
 }
 
 /* the image of the application from which it sends, or NULL */
@@ -211,7 +211,7 @@ static inline const u8 *bus_direct(const struct bus *b)
 /* the time for the reference clock is wrong: it is not sent */
 static inline bool bus_dc_hold(const struct bus *b)
 {
-	return bus_cycle(b)->dc_hold;
+	return bus_cycle(b)->clock.hold;
 }
 
 static inline bool bus_room_logged(const struct bus *b)

@@ -476,9 +476,9 @@ static void ref_silent(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, heard(r, 100), 100u);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
 	run(r, 3);
-	last = c->dc_time_ns;
+	last = c->clock.time_ns;
 	KUNIT_EXPECT_EQ(test, heard(r, 20), 0u);
-	KUNIT_EXPECT_EQ(test, c->dc_time_ns, last);
+	KUNIT_EXPECT_EQ(test, c->clock.time_ns, last);
 	/* another stands in */
 	until(r, 3);
 	run(r, 1000);

@@ -126,9 +126,9 @@ static void image_cut(struct kunit *test)
 	cyc_map_all(c, 0, 2, 0);
 	cyc_activate(c);
 	cycle = bus_cycle(b);
-	KUNIT_ASSERT_EQ(test, cycle->n_cuts, 1u);
-	KUNIT_EXPECT_EQ(test, cycle->cuts[0].parts, 3);
-	KUNIT_EXPECT_EQ(test, cycle->cuts[0].len, 4000u);
+	KUNIT_ASSERT_EQ(test, cycle->layout.n_cuts, 1u);
+	KUNIT_EXPECT_EQ(test, cycle->layout.cuts[0].parts, 3);
+	KUNIT_EXPECT_EQ(test, cycle->layout.cuts[0].len, 4000u);
 	KUNIT_EXPECT_EQ(test, bus_plain_wire(b)->frames, 6u);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 3000), ~0ull);
 	c->each = count_outputs;

@@ -158,7 +158,7 @@ static struct kcyc *taken_with(struct bus *b, u32 priority)
 {
 	struct kcyc *n = kcyc_configure(b, hold);
 
-	bus_candidate(b)->cycle.priority = priority;
+	bus_candidate(b)->cycle.setup.priority = priority;
 	KUNIT_ASSERT_EQ_MSG(b->test, kcyc_activate(n), 0, "%s", b->app.reason);
 	KUNIT_ASSERT_TRUE(b->test, n->taken_over);
 	return n;

@@ -256,7 +256,7 @@ static void timer_needs_right(struct kunit *test)
 	u32 hard;
 
 	bus_lock(b);
-	ec_cycle_thread_inherit(c, c->priority, false);
+	ec_cycle_thread_inherit(c, c->setup.priority, false);
 	bus_unlock(b);
 	kcyc_wait_cycles(a, 2);
 	hard = spy.hard;
@@ -264,7 +264,7 @@ static void timer_needs_right(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_RIGHT);
 	KUNIT_EXPECT_EQ(test, spy.hard, hard);
 	bus_lock(b);
-	ec_cycle_thread_inherit(c, c->priority, true);
+	ec_cycle_thread_inherit(c, c->setup.priority, true);
 	bus_unlock(b);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, place(a), (u32)EC_CYCLE_PLACE_INTERRUPT);

@@ -100,7 +100,7 @@ static void late_measured(struct kunit *test)
 	struct ec_status_cycle *st = kunit_kzalloc(test, sizeof(*st), GFP_KERNEL);
 
 	expect_ten_late(test, c);
-	ec_late_get(bus_cycles(c->b), &info, st);
+	ec_cycle_stats_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, info.interval_set, 0u);
 	KUNIT_EXPECT_GT(test, info.interval_ns, 999000u);
 	KUNIT_EXPECT_LT(test, info.interval_ns, 1001000u);
@@ -224,14 +224,14 @@ static void late_buckets(struct kunit *test)
 	for (i = 0; i < EC_CYCLE_BUCKETS; i++) {
 		u64 was = st->late[i];
 
-		ec_late_count(cycle, bucket_from(i));
-		ec_late_count(cycle, bucket_from(i + 1) - 1);
+		ec_late_count(&cycle->late, bucket_from(i));
+		ec_late_count(&cycle->late, bucket_from(i + 1) - 1);
 		KUNIT_EXPECT_EQ(test, st->late[i], was + 2);
 	}
 	KUNIT_EXPECT_EQ(test, bucket_from(EC_CYCLE_BUCKETS), 1ull << 32);
-	ec_late_count(cycle, -5);
+	ec_late_count(&cycle->late, -5);
 	KUNIT_EXPECT_EQ(test, st->late_min, 0u);
-	ec_late_count(cycle, 1ll << 40);
+	ec_late_count(&cycle->late, 1ll << 40);
 	KUNIT_EXPECT_EQ(test, st->late_max, U32_MAX);
 }
 
@@ -244,20 +244,20 @@ static void late_kept(struct kunit *test)
 
 	KUNIT_ASSERT_NOT_NULL(test, st);
 	cyc_run(c, 9);
-	ec_late_get(bus_cycles(c->b), &info, st);
+	ec_cycle_stats_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, info.active, 1u);
 	KUNIT_EXPECT_EQ(test, info.kind, (u32)EC_CYCLE_BY_APP);
 	KUNIT_EXPECT_EQ(test, info.interval_set, 1u);
 	KUNIT_EXPECT_EQ(test, info.interval_ns, PERIOD_US * 1000u);
 	KUNIT_EXPECT_EQ(test, st->late_count, 10ull);
 	cyc_release(c);
-	ec_late_get(bus_cycles(c->b), &info, st);
+	ec_cycle_stats_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, info.active, 0u);
 	KUNIT_EXPECT_EQ(test, info.kind, (u32)EC_CYCLE_BY_APP);
 	KUNIT_EXPECT_EQ(test, st->late_count, 10ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 10ull);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
-	ec_late_get(bus_cycles(c->b), &info, st);
+	ec_cycle_stats_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 0ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 0ull);
 }
@@ -272,11 +272,11 @@ static void late_reset_pending(struct kunit *test)
 	KUNIT_ASSERT_NOT_NULL(test, st);
 	cyc_run(c, 9);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CYCLE_RESET, NULL), 0);
-	ec_late_get(bus_cycles(c->b), &info, st);
+	ec_cycle_stats_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 0ull);
 	KUNIT_EXPECT_EQ(test, st->late_max, 0u);
 	cyc_run(c, 5);
-	ec_late_get(bus_cycles(c->b), &info, st);
+	ec_cycle_stats_get(bus_cycles(c->b), &info, st);
 	KUNIT_EXPECT_EQ(test, st->late_count, 5ull);
 	KUNIT_EXPECT_EQ(test, between(st, 0, 1ull << 32), 5ull);
 }

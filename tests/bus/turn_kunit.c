@@ -128,7 +128,7 @@ static struct cyc *full(struct cyc *c, u32 late_per_s)
 	bus_set_interval(c->b, 5);
 	cyc_run(c, 10);
 	KUNIT_ASSERT_EQ(test, bus_access_mode(c->b), EC_ACCESS_CYCLIC);
-	KUNIT_ASSERT_LT(test, bus_slack_ns(c->b), ec_cycle_need_ns());
+	KUNIT_ASSERT_LT(test, bus_slack_ns(c->b), ec_layout_need_ns());
 	return c;
 }
 

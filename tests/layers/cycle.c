@@ -5,6 +5,8 @@
 #include "master/base/once64.h"
 #include "master/cycle/cycle.h"
 #include "master/cycle/cycle_thread.h"
+#include "master/cycle/receive.h"
+#include "master/cycle/send.h"
 #include "master/link/device.h"
 #include "plant.h"
 
@@ -132,12 +134,12 @@ static void layout_counts_each_slave_once(void)
 
 	if (!b)
 		return;
-	CHECK_EQ(b->cycle.n_dgrams, 1);
-	CHECK_EQ(b->cycle.dgrams[0].cmd, EC_CMD_LRW);
-	CHECK_EQ(b->cycle.dgrams[0].len, 2);
+	CHECK_EQ(b->cycle.layout.n_dgrams, 1);
+	CHECK_EQ(b->cycle.layout.dgrams[0].cmd, EC_CMD_LRW);
+	CHECK_EQ(b->cycle.layout.dgrams[0].len, 2);
 	/* LRW: 2 for outputs, 1 for inputs */
 	CHECK_EQ(b->p.wanted.domains[0]->expected, 3);
-	CHECK_EQ(b->cycle.plain.frames, 1);
+	CHECK_EQ(b->cycle.layout.plain.frames, 1);
 	bench_free(b);
 }
 
@@ -174,8 +176,8 @@ static void kernel_runs_cycles_for_no_one(void)
 		return;
 	mutex_lock(&b->p.lock);
 	sh = b->cycle.shared;
-	b->cycle.kernel.period_ns = 500000;
-	b->cycle.kernel.cpu = -1;
+	b->cycle.setup.kernel.period_ns = 500000;
+	b->cycle.setup.kernel.cpu = -1;
 	CHECK_EQ(ec_cycle_thread_create(&b->cycle, sh->image_size, NULL), 0);
 	mutex_unlock(&b->p.lock);
 	activate(b);

@@ -4,6 +4,8 @@
 #include <linux/kthread.h>
 #include <linux/slab.h>
 #include "master/config/apply.h"
+#include "master/cycle/receive.h"
+#include "master/cycle/send.h"
 #include "master/link/device.h"
 #include "master/session/session.h"
 #include "scanned.h"

@@ -1,0 +1,73 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The clock datagrams of a cycle, and the time of the reference clock that they bring. */
+#ifndef EC_DC_DATAGRAMS_H
+#define EC_DC_DATAGRAMS_H
+
+#include <linux/types.h>
+#include "ethercat.h"
+
+struct ec_access;
+struct ec_dc;
+struct ec_frame_buf;
+
+/* flags of a send that make datagrams */
+#define EC_CYC_CLOCKS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
+			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME)
+
+/** struct ec_dc_datagrams - clock datagrams of an active cycle; the cyclic caller's */
+struct ec_dc_datagrams {
+	/** @dc: distributed clocks of the master; immutable, as are the next two */
+	struct ec_dc *dc;
+	/** @access: interval of the cycle */
+	const struct ec_access *access;
+	/** @clocked_ns: wire time of the cycle with one of each clock datagram */
+	u32 clocked_ns;
+	/** @asked: those the application wanted since the last receive, EC_SEND_FLAG_* */
+	u32 asked;
+	/** @back: which of them were received */
+	u32 back;
+	/** @sent: time in the last send that went to the slaves, ns */
+	u64 sent;
+	/** @wkc: working counter of the last reply of the reference clock */
+	u16 wkc;
+	/** @silent: sends since then that it has not answered, as far as is known */
+	u32 silent;
+	/** @time: last time of the reference clock, ns */
+	u64 time;
+	/** @time_ns: when the frame that brought it was sent (ktime) */
+	u64 time_ns;
+	/** @time64: whole time of the reference clock when it was last asked for, ns */
+	u64 time64;
+	/** @then: the same some time ago, to learn the rate of that clock */
+	u64 then;
+	/** @then_ns: when that was (ktime) */
+	u64 then_ns;
+	/** @ppb: how much faster than ktime the reference clock runs, 1e-9 */
+	s32 ppb;
+	/** @diff: last value of register 0x092C, of all slaves */
+	u32 diff;
+	/** @hold: the time for the reference clock is wrong: it is not sent */
+	bool hold;
+	/** @lead: that time less ktime, ns */
+	u64 lead;
+};
+
+/**
+ * struct ec_dc_flight - the clock datagrams of a frame in flight
+ * @dgrams: as from ec_dc_datagrams_wanted()
+ * @time: time that was sent in them, ns
+ */
+struct ec_dc_flight {
+	u32 dgrams;
+	u64 time;
+};
+
+u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k);
+u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags);
+void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index, u32 dc,
+			  u64 now);
+const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
+			       u64 sent_ns, const u8 *data);
+void ec_dc_datagrams_judge(struct ec_dc_datagrams *k, struct ec_status *st);
+
+#endif

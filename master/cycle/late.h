@@ -1,0 +1,61 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* How far each send of a cycle is from its schedule. */
+#ifndef EC_LATE_H
+#define EC_LATE_H
+
+#include <linux/types.h>
+#include "ethercat.h"
+
+struct ec_access;
+
+#define EC_SCHEDULE_GAPS	15
+
+/**
+ * struct ec_schedule - when the application is expected to send; the cyclic
+ *	caller's
+ * @due_ns: when the last send was due (ktime)
+ * @last_ns: when it was
+ * @interval_ns: distance of two sends, set or measured
+ * @sends: sends so far, up to the end of the measurement
+ * @gaps: the last times between two sends while it is measured, ns
+ * @n_gaps: such times so far
+ * @block_ns: begin of the sends whose mean is checked next (ktime)
+ * @before_ns: begin of those before, 0: none
+ * @n_block: sends since @block_ns
+ * @far: gaps in a row that are far from @interval_ns, to the same side
+ * @far_side: 1: longer, -1: shorter
+ * @mean_side: the same of the last mean, 0: near
+ */
+struct ec_schedule {
+	u64 due_ns;
+	u64 last_ns;
+	u32 interval_ns;
+	u32 sends;
+	u32 gaps[EC_SCHEDULE_GAPS];
+	u64 block_ns;
+	u64 before_ns;
+	u32 n_block;
+	u8 far;
+	s8 far_side;
+	s8 mean_side;
+	u32 n_gaps;
+};
+
+/** struct ec_late - the figures of a cycle while it is active; the cyclic caller's */
+struct ec_late {
+	/** @status: page with the figures; immutable, as is the next one */
+	struct ec_status *status;
+	/** @access: interval and last send of the cycle */
+	struct ec_access *access;
+	/** @reset: the cyclic caller sets the figures to zero; set by any caller, cleared by it */
+	bool reset;
+	/** @schedule: when an application that runs the cycle is expected to send */
+	struct ec_schedule schedule;
+};
+
+void ec_late_forget(struct ec_status_cycle *st);
+void ec_late_count(struct ec_late *l, s64 ns);
+void ec_late_send(struct ec_late *l, u64 now);
+void ec_late_work(struct ec_late *l, s64 ns);
+
+#endif

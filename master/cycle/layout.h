@@ -1,0 +1,135 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The datagrams of a cycle, and what is copied into and out of them. */
+#ifndef EC_LAYOUT_H
+#define EC_LAYOUT_H
+
+#include <linux/types.h>
+#include "../wire/frame.h"
+
+struct ec_wanted;
+
+/**
+ * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use but for @wrote
+ *	and @before
+ * @domain: index
+ * @cmd: LRD, LWR or LRW
+ * @new_frame: shares no frame with the datagrams before
+ * @holes: @n_copies areas do not cover it: clear it first
+ * @solid: all of it lies in the image as it lies in the datagram
+ * @wrote: low half of the number of the last send before its inputs were last written
+ * @before: the same without what incomplete replies of that receive have written
+ * @logical: logical address
+ * @len: bytes
+ * @expected: working counter when every slave takes part
+ * @first_copy: first of what is copied into it, in struct ec_layout.areas
+ * @n_copies: how many
+ * @first_input: first of its inputs there
+ * @n_plain: inputs that were sent with their last value
+ * @n_whole: these, and inputs that come in the place of outputs
+ * @n_inputs: these, and inputs of which other datagrams have a part
+ */
+struct ec_cyc_dgram {
+	u16 domain;
+	u8 cmd;
+	bool new_frame : 1;
+	bool holes : 1;
+	bool solid : 1;
+	u16 wrote;
+	u16 before;
+	u32 logical;
+	u16 len;
+	u16 expected;
+	u32 first_copy;
+	u16 n_copies;
+	u16 n_plain;
+	u16 n_whole;
+	u16 n_inputs;
+	u32 first_input;
+};
+
+/* It has inputs only, and their last values are in the image. */
+static inline bool ec_cyc_from_image(const struct ec_cyc_dgram *d)
+{
+	return d->cmd == EC_CMD_LRD;
+}
+
+/**
+ * struct ec_cyc_area - process data to copy into or out of a datagram: values of one
+ *	size at equal distances, as slaves of a kind in a row have them
+ * @offset: byte in the image
+ * @pos: byte in the datagram
+ * @len: bytes of a value
+ * @count: values
+ * @offset_stride: from one to the next in the image, bytes
+ * @pos_stride: in the datagram
+ * @cut: number in struct ec_layout.cuts, for inputs of several datagrams
+ */
+struct ec_cyc_area {
+	u32 offset;
+	u16 pos;
+	u16 len;
+	u16 count;
+	u16 offset_stride;
+	u16 pos_stride;
+	u16 cut;
+};
+
+/**
+ * struct ec_cyc_cut - inputs that are larger than a datagram
+ * @offset: byte in the image
+ * @len: bytes
+ * @parts: datagrams that have a part of them
+ * @have: of them back
+ * @send: number of the send they belong to
+ */
+struct ec_cyc_cut {
+	u32 offset;
+	u32 len;
+	u16 parts;
+	u16 have;
+	u32 send;
+};
+
+/**
+ * struct ec_cyc_wire - frames, and how long they occupy the wire
+ * @frames: how many
+ * @ns: at 100 Mbit/s, preamble, padding, FCS and gap included
+ */
+struct ec_cyc_wire {
+	u32 frames;
+	u32 ns;
+};
+
+/** struct ec_layout - datagrams of a cycle; immutable while it is active */
+struct ec_layout {
+	/** @dgrams: datagrams in the order of their domains */
+	struct ec_cyc_dgram *dgrams;
+	/** @n_dgrams: entries in @dgrams */
+	unsigned int n_dgrams;
+	/** @areas: what is copied, in the order of the datagrams */
+	struct ec_cyc_area *areas;
+	/** @n_areas: entries in @areas */
+	unsigned int n_areas;
+	/** @cuts: inputs of several datagrams; their counts are the cyclic caller's */
+	struct ec_cyc_cut *cuts;
+	/** @n_cuts: entries in @cuts */
+	unsigned int n_cuts;
+	/** @stage: an image in which their parts are collected, or NULL; the cyclic caller's */
+	u8 *stage;
+	/** @plain: frames of a cycle that sends all domains */
+	struct ec_cyc_wire plain;
+	/** @clocked: the same with all clock datagrams */
+	struct ec_cyc_wire clocked;
+};
+
+/* Wire time of a minimum Ethernet frame: no acyclic frame needs less, ns. */
+static inline u32 ec_layout_need_ns(void)
+{
+	return ec_frame_wire_ns(EC_ETH_MIN);
+}
+
+int ec_layout_make(struct ec_layout *l, struct ec_wanted *w, unsigned int max_datagrams,
+		   size_t image_size);
+void ec_layout_free(struct ec_layout *l);
+
+#endif

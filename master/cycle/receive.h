@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Receive of the cyclic caller. */
+#ifndef EC_RECEIVE_H
+#define EC_RECEIVE_H
+
+#include "cycle.h"
+
+int ec_cycle_do_receive(struct ec_cycle *c);
+void ec_cycle_log_stale(struct ec_cycle *c);
+
+/**
+ * ec_cycle_receive() - ec_cycle_do_receive(), with the links entered and left
+ * @c: active cycle
+ *
+ * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
+ * Return: 0 or -ENODEV.
+ */
+static inline int ec_cycle_receive(struct ec_cycle *c)
+{
+	int ret;
+
+	if (!ec_links_attached(c->links))
+		return -ENODEV;
+	ec_links_enter(c->links);
+	ret = ec_cycle_do_receive(c);
+	ec_links_leave(c->links);
+	return ret;
+}
+
+#endif
