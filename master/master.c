@@ -9,6 +9,8 @@
 #include "boundary/master.h"
 #include "monitor.h"
 #include "config/apply.h"
+#include "session/reserve.h"
+#include "session/session_attach.h"
 
 static void master_device(struct ec_links *l, const struct ec_link *link, bool attached)
 {
@@ -110,7 +112,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		goto err;
 	ec_cycles_init(&m->cycles, m->base, &m->carry, &m->riders, &m->dc);
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
-	      ec_sessions_init(&m->sessions);
+	      ec_sessions_init(&m->sessions, ec_session_again);
 	if (ret)
 		goto err;
 	ec_setup_init(&m->bus);

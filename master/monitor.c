@@ -14,6 +14,8 @@
 #include "carry/xfer.h"
 #include "bus/scan.h"
 #include "wire/regs.h"
+#include "session/session_attach.h"
+#include "session/session_status.h"
 
 #define PERIOD_MS	20
 #define SLACK_MS	4	/* by which a look may be earlier while all is well */

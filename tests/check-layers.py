@@ -25,7 +25,7 @@ MOST_OPS = 12
 MOST_IN_CIRCLE = 4
 # Rooms of the largest circle of each layer: they only go down. None: printed only.
 MOST_ROOMS = {"wire": 2, "base": 2, "link": 5, "carry": 5, "mailbox": 0, "bus": 11, "clock": 7,
-              "config": 4, "cycle": 0, "session": 10, "boundary": None, "top": 2}
+              "config": 4, "cycle": 0, "session": 0, "boundary": None, "top": 2}
 MOST_ROOMS_OF_NEW = 6
 
 top = os.path.abspath(os.path.join(os.path.dirname(__file__), ".."))

@@ -9,6 +9,7 @@
 #include "../cycle/receive.h"
 #include "../cycle/send.h"
 #include "../link/device.h"
+#include "../session/reserve.h"
 
 /* May the devices be used here? */
 static bool place_is_right(const struct ec_links *l)

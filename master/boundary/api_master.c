@@ -3,6 +3,8 @@
 #include <linux/delay.h>
 #include "cdev.h"
 #include "../../lib/ecrt/ecrt_int.h"
+#include "../session/reserve.h"
+#include "../session/session_attach.h"
 
 ec_master_t *ecrt_request_master(unsigned int master_index)
 {

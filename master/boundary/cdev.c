@@ -9,6 +9,7 @@
 #include "../wire/compat.h"
 #include "../cycle/cycle_wait.h"
 #include "master.h"
+#include "../session/reserve.h"
 #include "../session/session.h"
 
 static struct class *ec_class;

@@ -5,7 +5,11 @@
 #include "../config/domain.h"
 #include "ioctl.h"
 #include "master.h"
+#include "../session/activate.h"
+#include "../session/reserve.h"
 #include "../session/session.h"
+#include "../session/session_attach.h"
+#include "../session/takeover.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
 

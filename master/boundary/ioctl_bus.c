@@ -3,7 +3,10 @@
 #include "api.h"
 #include "ioctl.h"
 #include "master.h"
+#include "../session/activate.h"
+#include "../session/reserve.h"
 #include "../session/session.h"
+#include "../session/session_attach.h"
 #include "../bus/slave.h"
 #include "../carry/xfer.h"
 

@@ -9,6 +9,7 @@
 #include "../cycle/receive.h"
 #include "../cycle/send.h"
 #include "../session/request.h"
+#include "../session/reserve.h"
 #include "../session/session.h"
 
 /**

@@ -4,6 +4,7 @@
 #include "../config/config.h"
 #include "ioctl.h"
 #include "../session/request.h"
+#include "../session/request_layout.h"
 #include "../session/session.h"
 
 static const u32 limits[] = {

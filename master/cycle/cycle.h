@@ -173,7 +173,7 @@ struct ec_cycle {
 
 	/** @layout: datagrams; ec_cycle_free() sets it and all that follows to zero */
 	struct ec_layout layout;
-	/** @copying: the copies of @setup while active, or NULL; the cyclic caller's, as is all below */
+	/** @copying: the copies while active, or NULL; the cyclic caller's, as is all below */
 	struct ec_copying *copying;
 	/** @clock: clock datagrams */
 	struct ec_dc_datagrams clock;

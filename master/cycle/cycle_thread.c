@@ -189,10 +189,12 @@ void ec_cycle_thread_start(struct ec_cycle *c)
 	WRITE_ONCE(c->place, EC_CYCLE_PLACE_THREAD);
 	c->places = 0;
 	c->watch.places_logged = 0;
-	WRITE_ONCE(c->links->access.interval_us, max(1u, c->setup.kernel.period_ns / (u32)NSEC_PER_USEC));
+	WRITE_ONCE(c->links->access.interval_us,
+		   max(1u, c->setup.kernel.period_ns / (u32)NSEC_PER_USEC));
 	c->links->access.interval_set = true;
-	WRITE_ONCE(ec_cycle_run_status(c->thread)->state, c->setup.kernel.flags & EC_CYCLE_FLAG_WAIT ?
-		   EC_CYCLE_STATE_WAITING : EC_CYCLE_STATE_RUNNING);
+	WRITE_ONCE(ec_cycle_run_status(c->thread)->state,
+		   c->setup.kernel.flags & EC_CYCLE_FLAG_WAIT ? EC_CYCLE_STATE_WAITING :
+								EC_CYCLE_STATE_RUNNING);
 	ec_write64(&c->cycles->number, 0);
 	WRITE_ONCE(c->cycles->run, c->cycles->run + 1);
 	rcu_assign_pointer(c->cycles->by_kernel, c);

@@ -62,5 +62,5 @@ void ec_wire_time_log(struct ec_cycle *c)
 	if (!c->watch.wire_logged && !c->links->access.interval_set &&
 	    ec_read64(&c->sends) > MEASURED)
 		leaves_room(c, ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC,
-			 READ_ONCE(c->links->access.wire_ns));
+			    READ_ONCE(c->links->access.wire_ns));
 }

@@ -4,8 +4,9 @@
  * configured: often it is a coupler. It goes to OP with them, as applications
  * wait until the AL states of the whole bus are OP.
  */
-#include "session.h"
 #include "../bus/slave.h"
+#include "ref_clock.h"
+#include "session.h"
 
 #define SM_KIND		0x0f	/* mode and direction, register 0x0804 */
 #define SM_OUTPUTS	0x04	/* buffered, written by the master */

@@ -4,6 +4,8 @@
 #include <linux/slab.h>
 #include "request.h"
 #include "request_int.h"
+#include "request_layout.h"
+#include "request_run.h"
 #include "session.h"
 #include "../bus/slave.h"
 

@@ -20,23 +20,8 @@ struct ec_emerg;
 struct ec_request_record;
 struct ec_session;
 
-/**
- * struct ec_request_spec - a request to be made by activation
- * @config: of the slave
- * @kind: EC_REQUEST_*
- * @size: room for data, bytes
- */
-struct ec_request_spec {
-	u32 config;
-	u32 kind;
-	u32 size;
-};
-
-int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index);
-size_t ec_requests_bytes(const struct ec_session *s);
 int ec_requests_begin(struct ec_session *s);
 void ec_requests_end(struct ec_session *s);
-void ec_requests_describe(const struct ec_session *s);
 void ec_requests_kick(struct ec_session *s);
 void ec_requests_attach(const struct ec_session *s, const struct ec_config *c);
 struct ec_request_record *ec_requests_record(const struct ec_session *s, u32 index, u8 **data);

@@ -157,12 +157,4 @@ static inline u64 ec_request_begin_ns(const struct ec_request *r)
 	return r->timeout_ms ? r->since_ns + (u64)r->timeout_ms * NSEC_PER_MSEC : 0;
 }
 
-int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
-void ec_request_run(struct ec_request *r, struct ec_slave *s);
-
-/* request_layout.c */
-unsigned int ec_requests_lanes(const struct ec_session *s);
-size_t ec_requests_buf_bytes(const struct ec_session *s);
-void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq);
-
 #endif

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The memory of requests: what an application maps, and where each request has its part. */
 #include <linux/slab.h>
-#include "request.h"
 #include "request_int.h"
+#include "request_layout.h"
 #include "session.h"
 #include "../bus/slave.h"
 

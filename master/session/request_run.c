@@ -4,6 +4,7 @@
 #include "../mailbox/coe.h"
 #include "../mailbox/foe.h"
 #include "request_int.h"
+#include "request_run.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
 #include "../mailbox/voe.h"

@@ -4,7 +4,7 @@
 #include "../config/why.h"
 #include "../mailbox/emerg.h"
 #include "request.h"
-#include "session.h"
+#include "session_attach.h"
 
 /**
  * ec_session_owns() - is the slave of a configuration its own?

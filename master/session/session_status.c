@@ -7,8 +7,9 @@
 #include "../cycle/receive.h"
 #include "../cycle/wire_time.h"
 #include "../base/once64.h"
+#include "clocks.h"
 #include "request.h"
-#include "session.h"
+#include "session_status.h"
 #include "../bus/slave.h"
 #include "../bus/survey.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
-#include "session.h"
+#include "sessions.h"
 
 #define WAIT_US	100	/* between two attempts to get the session lock */
 #define TRIES	20
@@ -8,14 +8,15 @@
 /**
  * ec_sessions_init() - no application uses the master
  * @ss: sessions of a master, zeroed but for the pointers to lower layers
+ * @again: work that lets slaves that failed begin again, of @ss->again
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM; ec_sessions_exit() must follow both.
  */
-int ec_sessions_init(struct ec_sessions *ss)
+int ec_sessions_init(struct ec_sessions *ss, work_func_t again)
 {
 	mutex_init(&ss->lock);
-	INIT_WORK(&ss->again, ec_session_again);
+	INIT_WORK(&ss->again, again);
 	/* what a request waits for is in another queue, see ec_bus_init() */
 	ss->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
 				    ss->base->index);
@@ -119,4 +120,18 @@ bool ec_sessions_trylock(struct ec_sessions *ss)
 		usleep_range(WAIT_US, 2 * WAIT_US);
 	}
 	return false;
+}
+
+/**
+ * ec_sessions_forget_times() - application time and interval are those of one application
+ * @ss: sessions of a master
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_sessions_forget_times(struct ec_sessions *ss)
+{
+	lockdep_assert_held(&ss->lock);
+	ec_dc_end(ss->dc);
+	WRITE_ONCE(ss->links->access.interval_us, EC_INTERVAL_US);
+	ss->links->access.interval_set = false;
 }

@@ -6,8 +6,10 @@
  */
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
-#include "request.h"
-#include "session.h"
+#include "clear.h"
+#include "request_layout.h"
+#include "session_status.h"
+#include "takeover.h"
 
 /* the description of the first difference */
 struct text {
@@ -226,7 +228,8 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 
 	if (session_differs(s, candidate, &t))
 		return -EEXIST;
-	if (!candidate->cycle.setup.late_per_s && ec_access_slack_ns(ss->links) < ec_layout_need_ns())
+	if (!candidate->cycle.setup.late_per_s &&
+	    ec_access_slack_ns(ss->links) < ec_layout_need_ns())
 		return -ENOSPC;
 	ret = ec_cycle_thread_adopt(&s->cycle);
 	if (ret)

@@ -216,12 +216,12 @@ static inline bool bus_dc_hold(const struct bus *b)
 
 static inline bool bus_room_logged(const struct bus *b)
 {
-	return bus_cycle(b)->room_logged;
+	return bus_cycle(b)->watch.wire_logged;
 }
 
 static inline u32 bus_cycle_late_per_s(const struct bus *b)
 {
-	return bus_cycle(b)->late_per_s;
+	return bus_cycle(b)->setup.late_per_s;
 }
 
 /* number of the newest send of which the domain has data */
@@ -335,5 +335,6 @@ static inline u64 bus_app_time(const struct bus *b)
 }
 
 #include "access_link.h"
+#include "master/session/reserve.h"
 
 #endif

@@ -5,6 +5,7 @@
 #include "master/clock/dc.h"
 #include "master/boundary/ioctl.h"
 #include "master/config/why.h"
+#include "master/session/activate.h"
 
 #define TWO	"slave a drive in=8 out=8 drift=40ppm clock=3s\n" \
 		"slave b drive in=8 out=8 drift=-70ppm clock=9s\n"

@@ -5,6 +5,7 @@
 #include "cyc.h"
 #include "master/mailbox/coe.h"
 #include "master/mailbox/mailbox.h"
+#include "master/session/session_attach.h"
 
 static const char text[] =
 	"segment seed=9 response=200us transition=200us\n"

@@ -6,6 +6,7 @@
 #include "bus.h"
 #include "devices/sim/esc_int.h"
 #include "master/boundary/ioctl.h"
+#include "master/session/reserve.h"
 
 /* in the ring: the hub, what is at its port 1, what is at its port 2 */
 static const char text[] =

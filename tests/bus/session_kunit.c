@@ -4,6 +4,7 @@
 #include "kapp.h"
 #include "kcyc.h"
 #include "master/cycle/cycle_thread.h"
+#include "master/session/reserve.h"
 
 static const char one[] = "segment seed=8\nslave a drive in=8 out=8 mbox=128 serial=11\n";
 

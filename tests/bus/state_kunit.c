@@ -4,6 +4,7 @@
 #include "kapp.h"
 #include "master/clock/dc.h"
 #include "master/boundary/ioctl.h"
+#include "master/session/activate.h"
 
 /* the last one is nobody's */
 static const char line[] =

@@ -9,6 +9,7 @@
 #include "devices/sim/app.h"
 #include "master/boundary/ioctl.h"
 #include "master/power.h"
+#include "master/session/reserve.h"
 
 static const char two[] = "slave a io in=8 out=8\nslave b io in=8 out=8\n";
 

@@ -7,7 +7,10 @@
 #include "master/cycle/receive.h"
 #include "master/cycle/send.h"
 #include "master/link/device.h"
+#include "master/session/activate.h"
+#include "master/session/reserve.h"
 #include "master/session/session.h"
+#include "master/session/session_attach.h"
 #include "scanned.h"
 
 static const char text[] =
@@ -66,7 +69,7 @@ static struct bench *bench_new(void)
 	b->ss.cycles = &b->cycles;
 	ec_cycles_init(&b->cycles, &b->s.seg.base, &b->s.seg.carry, &b->s.seg.riders, &b->dc);
 	ec_setup_init(&b->s.bus);
-	if (CHECK_EQ(ec_sessions_init(&b->ss), 0)) {
+	if (CHECK_EQ(ec_sessions_init(&b->ss, ec_session_again), 0)) {
 		ec_dc_init(&b->dc, &b->s.seg.base, &b->s.seg.links, &b->s.bus, b->ss.service);
 		if (scanned_scan(&b->s, SLAVES)) {
 			b->s.bus.slaves[AXIS]->read_pdos = true;

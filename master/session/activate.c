@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Begin and end of the cyclic exchange of a session. */
+#include <linux/slab.h>
+#include "../bus/slave.h"
+#include "../config/why.h"
+#include "../cycle/cycle_stats.h"
+#include "../cycle/cycle_thread.h"
+#include "../cycle/wire_time.h"
+#include "activate.h"
+#include "clear.h"
+#include "clocks.h"
+#include "ref_clock.h"
+#include "request.h"
+#include "request_layout.h"
+#include "session_attach.h"
+#include "session_status.h"
+
+static const struct ec_cycle_ops cycle_ops = {
+	.cycle = ec_requests_notice,
+};
+
+/**
+ * session_fits() - is there memory for an activation within the limit?
+ * @s: session
+ * @image_size: bytes of all domains
+ *
+ * Context: Process, session lock held.
+ * Return: 0 or -EDQUOT.
+ */
+static int session_fits(const struct ec_session *s, size_t image_size)
+{
+	/* with six images for the exchange; requests have a copy of their data */
+	size_t images = s->cycle.setup.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
+
+	lockdep_assert_held(&s->sessions->lock);
+	return atomic_long_read(&s->sessions->memory) + images * image_size + EC_STATUS_BYTES +
+	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
+}
+
+/* Memory and layout of the cycle, and the thread that runs it. */
+static int activate_prepare(struct ec_session *s, u32 image_bytes)
+{
+	struct ec_cycle *c = &s->cycle;
+	int ret;
+
+	ret = session_fits(s, image_bytes);
+	if (ret)
+		return ret;
+	c->shared = ec_shared_create(&s->sessions->memory, image_bytes, ec_requests_bytes(s));
+	if (!c->shared)
+		return -ENOMEM;
+	if (s->preset)
+		memcpy(c->shared->image, s->preset, image_bytes);
+	ret = ec_requests_begin(s) ?: ec_cycle_layout(c) ?:
+	      ec_wire_time_check(c, ec_clocks_used(s));
+	if (!ret && c->setup.kernel.period_ns)
+		ret = ec_cycle_thread_create(c, image_bytes, &cycle_ops);
+	if (!ret)
+		return 0;
+	ec_cycle_free(c);
+	ec_requests_end(s);
+	ec_shared_put(c->shared);
+	c->shared = NULL;
+	return ret;
+}
+
+/* The counts of the log and the events begin. */
+static void activate_counts(struct ec_session *s)
+{
+	struct ec_status *st = s->cycle.shared->status;
+
+	st->config_count = s->wanted.n_configs;
+	st->dc_monitor = ~0u;
+	ec_for_each_domain(d, &s->wanted)
+		st->domains[d->index].expected = d->expected;
+	s->timeout_log.logged = atomic_read(&s->sessions->links->access.timeouts);
+	WRITE_ONCE(s->sessions->links->access.stopped, false);
+	s->notes = (struct ec_count_notes){ };
+	ec_session_note_counts(s, true, false);
+	s->cycle.watch.lock_logged = EC_CYCLE_LOCK_OFF;
+	s->cycle.slaves_down = false;
+}
+
+/* The cycle may run from now on, and the kernel's does. */
+static void activate_cycle(struct ec_session *s)
+{
+	struct ec_sessions *ss = s->sessions;
+	struct ec_cycle *c = &s->cycle;
+
+	/* one that waits for outputs takes the links with its first frame */
+	if (!c->thread || !(c->setup.kernel.flags & EC_CYCLE_FLAG_WAIT))
+		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
+	ec_cycle_set_active(ss->cycles, c);
+	/* the grid of SYNC is that of the thread's own time, which it keeps its phase to */
+	if (c->thread)
+		ec_dc_app_forget(ss->dc);
+	if (ec_clocks_begin_now(s))
+		ec_dc_begin(ss->dc, ec_clocks_choice(s));
+	c->shared->status->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
+	ec_session_fill_status(s);
+	ec_cycle_thread_start(c);
+}
+
+/* Its slaves go to OP. */
+static void activate_slaves(struct ec_session *s)
+{
+	ec_bus_need_workers(s->sessions->bus, s->wanted.n_configs);
+	ec_for_each_config(c, &s->wanted)
+		if (c->slave)
+			ec_slave_request(c->slave, EC_AL_OP);
+	ec_ref_clock_raise(s);
+}
+
+/**
+ * ec_session_activate() - lay out process data, hand the links to the cycle
+ * @s: session
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: 0; -EBUSY when active already; -EOPNOTSUPP a domain has a division and
+ * the application runs the cycle; -EOVERFLOW when the image or a cycle
+ * is too large; -EDQUOT more memory than EC_MAX_SESSION_BYTES; -ENOSPC as
+ * ec_wire_time_check(); -ENODEV when the CPU of the cycle is offline; -ENOMEM.
+ */
+int ec_session_activate(struct ec_session *s)
+{
+	struct ec_sessions *ss = s->sessions;
+	u32 bytes;
+	int ret;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (s->wanted.active)
+		return -EBUSY;
+	ec_for_each_domain(d, &s->wanted)
+		if (d->division > 1 && !s->cycle.setup.kernel.period_ns)
+			return -EOPNOTSUPP;
+	bytes = ec_session_place(s);
+	if (bytes > EC_MAX_IMAGE)
+		return -EOVERFLOW;
+	ret = activate_prepare(s, bytes);
+	if (ret)
+		return ret;
+	/* from now on workers go by the configurations, which do not change */
+	smp_store_release(&s->wanted.active, true);
+	activate_counts(s);
+	ec_bus_unhold(ss->bus);
+	activate_cycle(s);
+	activate_slaves(s);
+	ec_requests_kick(s);
+	ec_config_log_differences(&s->wanted);
+	ec_session_begin_active(s);
+	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
+		s->wanted.n_domains, bytes, s->cycle.layout.n_dgrams);
+	ec_event(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, bytes,
+		 s->cycle.layout.n_dgrams);
+	return 0;
+}
+
+/**
+ * ec_session_deactivate() - stop process data, free what was configured
+ * @s: session
+ *
+ * The caller ends the session, or holds the list of slaves.
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: 0, or -EINVAL when it was not active.
+ */
+int ec_session_deactivate(struct ec_session *s)
+{
+	struct ec_sessions *ss = s->sessions;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (!s->wanted.active)
+		return -EINVAL;
+	ec_cycle_set_active(ss->cycles, NULL);
+	ec_cycle_thread_stop(&s->cycle);
+	ec_session_note_counts(s, false, true);
+	ec_access_change(ss->links, EC_ACCESS_DIRECT);
+	ec_cycle_stats_end(&s->cycle);
+	s->wanted.active = false;
+	s->timeout_log.open = false;
+	ec_requests_end(s);
+	ec_session_clear(s);
+	ec_cycle_free(&s->cycle);
+	ec_shared_put(s->cycle.shared);
+	s->cycle.shared = NULL;
+	ec_sessions_forget_times(ss);
+	if ((u32)atomic_read(&ss->links->access.timeouts) != s->timeout_log.logged)
+		ec_warn(ss, "%u%s\n",
+			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged,
+			ec_timeouts_text(&s->timeout_log));
+	ec_info(ss, "session deactivated\n");
+	ec_event(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
+	return 0;
+}
+
+/**
+ * ec_session_slaves_down() - take the slaves to PREOP, the cycle goes on
+ * @s: session
+ *
+ * The state changes while process data and SYNC signals still run, so that no
+ * slave sees a fault; the SYNC signals are switched off in PREOP.
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: 0, or -EINVAL when it is not active.
+ */
+int ec_session_slaves_down(struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	if (!s->wanted.active)
+		return -EINVAL;
+	s->ending = true;
+	WRITE_ONCE(s->cycle.slaves_down, true);
+	ec_ref_clock_lower(s);
+	ec_for_each_config(c, &s->wanted)
+		if (c->slave)
+			ec_slave_request(c->slave, EC_AL_PREOP);
+	return 0;
+}

@@ -1,0 +1,30 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The memory of requests: what an application maps, and where each request has its part. */
+#ifndef EC_REQUEST_LAYOUT_H
+#define EC_REQUEST_LAYOUT_H
+
+#include <linux/types.h>
+
+struct ec_requests;
+struct ec_session;
+
+/**
+ * struct ec_request_spec - a request to be made by activation
+ * @config: of the slave
+ * @kind: EC_REQUEST_*
+ * @size: room for data, bytes
+ */
+struct ec_request_spec {
+	u32 config;
+	u32 kind;
+	u32 size;
+};
+
+int ec_requests_add(struct ec_session *s, u32 config, u32 kind, u32 size, u32 *index);
+size_t ec_requests_bytes(const struct ec_session *s);
+size_t ec_requests_buf_bytes(const struct ec_session *s);
+unsigned int ec_requests_lanes(const struct ec_session *s);
+void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq);
+void ec_requests_describe(const struct ec_session *s);
+
+#endif

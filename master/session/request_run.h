@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the kinds of requests differ in: which starts are possible, and the transfer. */
+#ifndef EC_REQUEST_RUN_H
+#define EC_REQUEST_RUN_H
+
+#include <linux/types.h>
+
+struct ec_request;
+struct ec_slave;
+
+int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
+void ec_request_run(struct ec_request *r, struct ec_slave *s);
+
+#endif
