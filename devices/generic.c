@@ -17,7 +17,7 @@
 #include <net/net_namespace.h>
 #include <net/rtnetlink.h>
 #include "ecdev.h"
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 #include "master/link/tap.h"
 #include "master/wire/frame.h"
 

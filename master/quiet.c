@@ -9,7 +9,7 @@
 #include "boundary/master.h"
 #include "link/access.h"
 #include "quiet.h"
-#include "wire/compat.h"
+#include "kernel/compat.h"
 #include "wire/event_ring.h"
 
 #define LOOKS	49	/* of the timer, between two of the monitor: the rates need one a second */

@@ -3,7 +3,7 @@
  * While no cycle polls the rings a timer does, and only while replies are awaited.
  */
 #include "card.h"
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 #include "master/wire/frame.h"
 #include "phy.h"
 

@@ -4,7 +4,7 @@
 #include <linux/errno.h>
 #include <linux/etherdevice.h>
 #include <linux/iopoll.h>
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 #include "nic.h"
 #include "phy.h"
 #include "regs.h"

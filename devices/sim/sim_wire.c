@@ -5,7 +5,7 @@
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
 #include "describe.h"
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 #include "sim_wire.h"
 
 #define FRAMES	320	/* on their way at once; a master has 256 slots */

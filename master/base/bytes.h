@@ -5,7 +5,7 @@
 
 #include <linux/string.h>
 #include <linux/types.h>
-#include "../wire/compat.h"
+#include "../kernel/compat.h"
 
 /**
  * ec_bytes_copy() - copy some bytes

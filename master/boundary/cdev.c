@@ -6,7 +6,7 @@
 #include <linux/poll.h>
 #include <linux/slab.h>
 #include "cdev.h"
-#include "../wire/compat.h"
+#include "../kernel/compat.h"
 #include "../cycle/cycle_wait.h"
 #include "master.h"
 #include "../session/reserve.h"

@@ -11,7 +11,7 @@
 #include <linux/module.h>
 #include <linux/sched.h>
 #include "../base/once64.h"
-#include "../wire/compat.h"
+#include "../kernel/compat.h"
 #include "direct.h"
 #include "flight.h"
 #include "loss.h"

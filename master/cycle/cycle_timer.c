@@ -8,7 +8,7 @@
 #include <linux/panic_notifier.h>
 #include <linux/sched.h>
 #include <linux/smp.h>
-#include "../wire/compat.h"
+#include "../kernel/compat.h"
 #include "cycle_timer.h"
 
 #define LONG_CYCLES	1000	/* in the thread, after those that left it no time */

@@ -3,7 +3,7 @@
 #include <linux/kernel.h>
 #include <linux/string.h>
 #include "spec.h"
-#include "../wire/compat.h"
+#include "../kernel/compat.h"
 
 /* The address of a PCI function, name of a native device: 0000:01:00.0. */
 static bool is_pci(const char *spec)

@@ -4,7 +4,7 @@
 #include <linux/slab.h>
 #include <linux/string.h>
 #include "ethercat_map.h"
-#include "../wire/compat.h"
+#include "../kernel/compat.h"
 #include "emerg.h"
 #include "mbox.h"
 

@@ -2,7 +2,7 @@
 /*
  * The only bridge between the pure wire code and its surroundings: the kernel
  * or a hosted C environment. Everything in master/wire/ includes this file
- * and its neighbours, nothing else.
+ * and its neighbours, nothing else; in the kernel this file includes compat.h.
  */
 #ifndef EC_WIRE_ENV_H
 #define EC_WIRE_ENV_H
@@ -17,7 +17,7 @@
 #include <linux/minmax.h>
 #include <linux/string.h>
 #include <linux/types.h>
-#include "compat.h"	/* get_unaligned_le16() and so on */
+#include "../kernel/compat.h"	/* get_unaligned_le16() and so on */
 
 #else /* hosted */
 

@@ -335,6 +335,5 @@ static inline u64 bus_app_time(const struct bus *b)
 }
 
 #include "access_link.h"
-#include "master/session/reserve.h"
 
 #endif

@@ -16,6 +16,7 @@
 #include "master/boundary/cdev.h"
 #include "master/boundary/master.h"
 #include "master/monitor.h"
+#include "master/session/reserve.h"
 #include "master/session/session.h"
 
 /**

@@ -12,7 +12,7 @@
 #include "devices/intel/phy.h"
 #include "devices/intel/regs.h"
 #include "devices/intel/ring.h"
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 
 #define BAR		0x10000
 #define DESC		16

@@ -2,6 +2,7 @@
 /* The kernel runs the cycle; a case is the application. */
 #include <linux/poll.h>
 #include "kcyc.h"
+#include "master/cycle/cycle_wait.h"
 
 /* Period and phase are exact, nothing is lost, each cycle has its inputs. */
 static void kcyc_period(struct kunit *test)

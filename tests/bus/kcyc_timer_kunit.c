@@ -4,6 +4,7 @@
 #include "kcyc.h"
 #include "master/cycle/cycle_run.h"
 #include "master/link/device.h"
+#include "master/cycle/cycle_sched.h"
 
 static const struct ec_ioc_cycle interrupt = { .flags = EC_CYCLE_FLAG_INTERRUPT };
 

@@ -2,6 +2,7 @@
 /* The histogram of sends against their schedule: known lateness, known figures. */
 #include "cyc.h"
 #include "master/boundary/ioctl.h"
+#include "master/cycle/cycle_stats.h"
 
 #define PERIOD_US	1000
 #define NOISE_NS	5000	/* time passes when it is read, too */

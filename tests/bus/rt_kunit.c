@@ -14,6 +14,8 @@
 #include <linux/slab.h>
 #include "cyc.h"
 #include "master/boundary/ioctl.h"
+#include "master/cycle/receive.h"
+#include "master/cycle/send.h"
 
 #define CYCLES	1000
 #define ALL	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR)

@@ -5,6 +5,7 @@
 #include "kcyc.h"
 #include "master/cycle/cycle_thread.h"
 #include "master/session/reserve.h"
+#include "master/cycle/cycle_sched.h"
 
 static const char one[] = "segment seed=8\nslave a drive in=8 out=8 mbox=128 serial=11\n";
 

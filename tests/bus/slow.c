@@ -4,7 +4,7 @@
 #include <linux/rcupdate.h>
 #include "slow.h"
 #include "devices/ecdev.h"
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 
 #define RING_MAX	64
 #define RX_MAX		64

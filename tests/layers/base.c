@@ -8,7 +8,7 @@
 #include "master/base/budget.h"
 #include "master/base/grow.h"
 #include "master/base/once64.h"
-#include "master/wire/compat.h"
+#include "master/kernel/compat.h"
 
 static struct ec_base *base_new(void)
 {
