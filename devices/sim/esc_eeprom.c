@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* EEPROM and its register interface (esc-registers.md section 11). */
+/* EEPROM and its register interface (ETG.1000.4 clause 6.4). */
 #include "esc_int.h"
 
 #define CONFIG_BYTES	16	/* words 0-7 */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * SyncManagers: who may touch a window of the RAM, in which direction, and
- * when a buffer changes hands (esc-registers.md section 14).
+ * SyncManagers: which side may access a window of the RAM, in which direction, and
+ * when a buffer goes to the other side (ETG.1000.4 clause 6.7).
  *
  * An access begins with the first byte of the window, which opens the buffer,
  * and ends with the last byte, which hands it over; in between it may come in

@@ -42,7 +42,7 @@ static bool all_taken(const struct ec_dg *dg, unsigned int n)
 	return true;
 }
 
-/* Mailbox SyncManagers, EEPROM to the PDI, state: state-machine.md 4.2. */
+/* INIT to PREOP: SyncManagers of the mailbox, EEPROM to the PDI, then the request. */
 static void scan_preop_start(struct job *j)
 {
 	static const u8 preop[2] = { EC_AL_PREOP, 0 }, pdi[1] = { EC_EEP_OWNER_PDI };

@@ -15,7 +15,7 @@
 #include "../carry/xfer.h"
 #include "scan_int.h"
 
-#define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* one access, esc-registers 11 */
+#define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* of one access to the EEPROM */
 #define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */
 #define PROBE_NS	(2 * NSEC_PER_MSEC)	/* while no slave is ready, few are asked */
 #define PROBE		8

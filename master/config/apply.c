@@ -139,8 +139,8 @@ static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
 }
 
 /*
- * SyncManagers that the SII enables in OP only, state-machine.md 4.4: enabled before OP is
- * requested, as some slaves need outputs first. Return: how many were off, or -errno.
+ * SyncManagers that the SII enables in OP only: enabled before OP is requested, as some slaves
+ * need outputs first. Return: how many were off, or -errno.
  */
 static int op_only_on(struct ec_slave *s)
 {
@@ -193,7 +193,7 @@ static void in_init(struct ec_slave *s)
 	s->clean = !ret;
 }
 
-/* state-machine.md 4.1 */
+/* Any state to INIT (ETG.1000.6 clause 6.4.1). */
 static int to_init(struct ec_slave *s)
 {
 	int ret;
@@ -207,7 +207,7 @@ static int to_init(struct ec_slave *s)
 	return 0;
 }
 
-/* The mailbox of PREOP or BOOT, and that state: state-machine.md 4.2. */
+/* INIT to PREOP or BOOT: SyncManagers of the mailbox, EEPROM to the PDI, then the request. */
 static int apply_enter(struct ec_slave *s, u8 state)
 {
 	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
@@ -327,7 +327,7 @@ static int wait_flag(struct ec_slave *s, s32 ms)
 	return 0;
 }
 
-/* state-machine.md 4.3 */
+/* PREOP to SAFEOP: startup commands, PDOs, registers, SYNC signals, then the request. */
 static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret = 0;
@@ -397,7 +397,7 @@ static int wait_outputs(struct ec_slave *s)
 	return -EAGAIN;
 }
 
-/* state-machine.md 4.4 */
+/* SAFEOP to OP: outputs, startup commands, clocks, SyncManagers of OP, then the request. */
 static int to_op(struct ec_slave *s)
 {
 	const struct ec_config *c = ec_setup_of(s)->active_config;

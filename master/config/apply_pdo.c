@@ -120,8 +120,8 @@ static bool assigned_already(struct ec_slave *s, u16 index, const struct ec_pdo_
 }
 
 /*
- * mailbox.md, PDO write procedure: a PDO must not be assigned while it is mapped. A
- * slave that does not let the assignment be changed may let the mapping.
+ * A PDO must not be assigned while its mapping is written (ETG.1000.6 clause 5.6.7.4). A slave
+ * that refuses a change of the assignment may accept one of the mapping.
  */
 static int write_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l)
 {

@@ -110,8 +110,18 @@ words_noticed() {
 	tests/build/texts.py "$tmp/words.c" | grep "words.c:2: 'odd'; write: inconsistent"
 }
 
-t "texts for users have the terms of the glossary" tests/build/texts.py
+# in a comment alone: strings are of the first pass, code is of none
+comment_noticed() {
+	printf '/*\n * The clock\n * is odd.\n */\nint odd; /* see no-such.md */\n' >"$tmp/comment.c"
+	out=$(tests/build/texts.py "$tmp/comment.c") && return 1
+	grep -x "$tmp/comment.c:3: 'odd'; write: inconsistent.*" <<<"$out" &&
+		grep -x "$tmp: 1 hits in comments, limit 0" <<<"$out" &&
+		grep -x "$tmp/comment.c:5: no file no-such.md; write: a clause of .*" <<<"$out"
+}
+
+t "texts for users and comments have the terms of the glossary" tests/build/texts.py
 t "another term is noticed" words_noticed
+t "another term in a comment and a page that does not exist are noticed" comment_noticed
 
 # the archive of the kernel's sources, as level uml; the headers lack the script
 checkpatch() {

@@ -9,7 +9,7 @@ enum access {
 	NONE,	/* does not answer */
 };
 
-/* esc-registers.md; registers that act by themselves have cases of their own */
+/* registers of ETG.1000.4 clause 6; those that act by themselves have cases of their own */
 static const struct {
 	u16 reg;
 	u8 len;

@@ -14,7 +14,7 @@ static s64 abs64(s64 v)
 	return v < 0 ? -v : v;
 }
 
-/* distributed-clocks.md section 3, worked example */
+/* worked example of four slaves: the ways to them take 0, 500, 1700 and 2000 ns */
 static struct bed *example(struct kunit *test)
 {
 	static const int w[4][4] = {
@@ -56,7 +56,7 @@ static void sim_esc_dc_worked_example_gives_published_result(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1004, 0x900, 4), 123456ull);
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1003, 0x918, 8), 5000000ull);
 
-	/* offsets of section 4: all copies agree */
+	/* with these offsets all copies of the system time agree */
 	bed_put(b, 1001, 0x920, 999999000, 8);
 	bed_put(b, 1002, 0x920, 999920500, 8);
 	bed_put(b, 1003, 0x920, 995001700, 8);
