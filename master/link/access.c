@@ -5,7 +5,7 @@
 #include "device.h"
 #include "links.h"
 
-#define SHUT_TRIES	1000	/* to find the cycle owner outside of the links */
+#define SHUT_TRIES	1000	/* attempts to find the cycle owner outside of the links */
 
 /**
  * ec_access_init() - direct access
@@ -57,13 +57,13 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 	change = l->access.mode != mode;
 	if (change) {
 		ec_write64(&l->access.last_send_ns, ktime_get_ns());
-		/* no other poll may be under way when the owner of the cycle comes */
+		/* the devices end their own polls before the cycle owner may enter */
 		if (mode == EC_ACCESS_CYCLIC)
 			own_devices(l, true);
 		WRITE_ONCE(l->access.mode, mode);
 		WRITE_ONCE(l->access.open, mode == EC_ACCESS_CYCLIC);
 		smp_mb();	/* open before busy; pairs with ec_access_enters() */
-		/* the cycle wakes no thread of the master */
+		/* polled: a cycle owner that leaves wakes no thread */
 		while (mode == EC_ACCESS_DIRECT && atomic_read_acquire(&l->access.busy))
 			usleep_range(20, 50);
 		if (mode == EC_ACCESS_DIRECT)
@@ -75,11 +75,11 @@ bool ec_access_change(struct ec_links *l, enum ec_access_mode mode)
 }
 
 /**
- * ec_access_shut() - keep the cycle owner out of the links for a moment, whatever the access
+ * ec_access_shut() - keep the cycle owner out of the links for a moment
  * @l: links
  *
- * Shuts only while the owner is outside, so that it does not lose the time of our sleep. If it
- * comes now, it waits for the lock, or its call returns -EAGAIN.
+ * Shuts while the cycle owner is outside, so that the cycle does not wait while this function
+ * sleeps. A cycle owner that wants to enter now waits for the lock, or its call returns -EAGAIN.
  *
  * Context: Process, with the access lock held; ec_access_reopen() must follow, soon. May sleep.
  */
@@ -93,7 +93,7 @@ void ec_access_shut(struct ec_links *l)
 		smp_mb();	/* open before busy; pairs with ec_access_enters() */
 		if (!atomic_read_acquire(&l->access.busy))
 			return;
-		/* it is hardly ever outside: now it waits */
+		/* the cycle owner is hardly ever outside: after these attempts it has to wait */
 		if (tries++ < SHUT_TRIES)
 			WRITE_ONCE(l->access.open, l->access.mode == EC_ACCESS_CYCLIC);
 		usleep_range(20, 50);
@@ -109,12 +109,12 @@ void ec_access_shut(struct ec_links *l)
 void ec_access_reopen(struct ec_links *l)
 {
 	lockdep_assert_held(&l->access.lock);
-	/* what was changed meanwhile before it enters; pairs with ec_access_enters() */
+	/* the cycle owner sees what was changed meanwhile; pairs with ec_access_enters() */
 	smp_store_release(&l->access.open, l->access.mode == EC_ACCESS_CYCLIC);
 }
 
 /**
- * ec_access_reenter() - take cyclic access again, and enter
+ * ec_access_reenter() - make the access cyclic again, and enter the links
  * @l: links
  *
  * Context: Cycle owner. May sleep.
@@ -128,14 +128,14 @@ void ec_access_reenter(struct ec_links *l)
 }
 
 /**
- * ec_access_try_enter() - take the links for one call, or say why not
+ * ec_access_try_enter() - enter the links for one call, if no sleep is needed
  * @l: links
  *
  * For a caller that must not sleep. While the links are entered the active session
  * stays: deactivation waits for the caller in ec_access_change().
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0; -EBUSY another caller is in them; -EAGAIN access is direct after a cycle
+ * Return: 0; -EBUSY another caller has entered; -EAGAIN access is direct after a cycle
  * timeout, or a device is being attached: a thread that may sleep has to call
  * ec_access_change().
  */
@@ -163,7 +163,7 @@ bool ec_access_timed_out(struct ec_links *l)
 	s64 limit = max_t(s64, 10LL * ec_access_interval_us(&l->access) * NSEC_PER_USEC,
 			  20 * NSEC_PER_MSEC);
 
-	/* it may send between the two readings of the clock */
+	/* signed: the cycle owner may send after the clock was read */
 	return (s64)(ktime_get_ns() - ec_read64(&l->access.last_send_ns)) > limit;
 }
 
@@ -171,9 +171,9 @@ bool ec_access_timed_out(struct ec_links *l)
  * ec_access_timeout() - the cycle owner has not sent for too long: direct access
  * @l: links
  *
- * Mailboxes and tools work again; process data stop, and the watchdogs of the slaves take
- * care of the outputs. The next call of the cycle takes the links back; without a send it is
- * the same timeout that goes on.
+ * Mailboxes and tools work again. Process data stop, and the watchdogs of the slaves act on the
+ * outputs. The next call of the cycle owner makes the access cyclic again. If it sends nothing,
+ * the same cycle timeout continues and is not counted again.
  *
  * Context: Process. May sleep.
  */
@@ -189,7 +189,7 @@ void ec_access_timeout(struct ec_links *l)
 }
 
 /**
- * ec_access_poll() - have overdue frames arrived unnoticed?
+ * ec_access_poll() - let the devices deliver overdue frames that no interrupt has reported
  * @l: links
  *
  * Context: Process. May sleep.
@@ -197,11 +197,11 @@ void ec_access_timeout(struct ec_links *l)
 void ec_access_poll(struct ec_links *l)
 {
 	rt_mutex_lock(&l->access.lock);
-	/* a cycle owner polls itself */
+	/* with cyclic access the cycle owner polls */
 	if (READ_ONCE(l->access.mode) == EC_ACCESS_DIRECT)
 		ec_links_poll(l);
 	rt_mutex_unlock(&l->access.lock);
-	/* without a poll function an interrupt thread delivers */
+	/* for devices without a poll function: their interrupt thread delivers */
 	usleep_range(200, 500);
 }
 

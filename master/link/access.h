@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Bus access: who may use the links.
+ * Bus access: which thread may use the links.
  *
- * Direct: a caller of ec_xfer() sends at once, under the lock. Cyclic: only the cycle owner
- * sends and polls, other callers leave their frames in a queue. After a cycle timeout the
- * access is direct again.
+ * Direct: each thread sends at once, under the access lock. Cyclic: only the cycle owner sends
+ * and polls; it also sends the posts of other threads. After a cycle timeout the access is direct
+ * again. The owner of the bus access is the thread that holds the lock with direct access, or the
+ * cycle owner that has entered the links.
  */
 #ifndef EC_ACCESS_H
 #define EC_ACCESS_H
@@ -27,7 +28,7 @@ struct ec_access {
 	struct rt_mutex lock;
 	/** @mode: enum ec_access_mode; see ec_access_change() */
 	int mode;
-	/** @open: the cycle owner may enter: with cyclic access, but see ec_access_shut() */
+	/** @open: the cycle owner may enter: the access is cyclic, see also ec_access_shut() */
 	bool open;
 	/** @busy: the cycle owner is using the links */
 	atomic_t busy;
@@ -37,7 +38,7 @@ struct ec_access {
 	u32 polls;
 	/** @interval_us: cycle time, configured or measured */
 	u32 interval_us;
-	/** @interval_set: the application has configured it */
+	/** @interval_set: the application has configured @interval_us */
 	bool interval_set;
 	/** @wire_ns: wire time of a cycle: of its layout, or of the last send if that was longer */
 	u32 wire_ns;
@@ -45,7 +46,7 @@ struct ec_access {
 	bool stopped;
 	/** @timeouts: cycle timeouts so far */
 	atomic_t timeouts;
-	/** @timeout_ns: last cyclic send before the last one of them (ktime) */
+	/** @timeout_ns: last cyclic send before the last cycle timeout (ktime) */
 	aligned_u64 timeout_ns;
 };
 
@@ -66,7 +67,7 @@ int ec_access_try_enter(struct ec_links *l);
 u32 ec_access_slack_ns(const struct ec_links *l);
 u16 ec_access_room(const struct ec_links *l);
 
-/* Marks the links as used; false: the owner may not enter, the mark is to be taken back. */
+/* Mark the links as in use. False: the cycle owner must not enter, ec_access_leave() follows. */
 static inline bool ec_access_enters(struct ec_access *a)
 {
 	atomic_set(&a->busy, 1);
@@ -91,13 +92,13 @@ static inline bool ec_access_is_cyclic(const struct ec_access *a)
 	return READ_ONCE(a->mode) == EC_ACCESS_CYCLIC;
 }
 
-/* Does the cycle owner send? A receive alone takes the links, until they time out again. */
+/* Does the cycle owner send? After a cycle timeout a receive alone makes the access cyclic. */
 static inline bool ec_access_runs(const struct ec_access *a)
 {
 	return ec_access_is_cyclic(a) && !READ_ONCE(a->stopped);
 }
 
-/* The caller of the cycle measures it while others plan by it. */
+/* The cycle owner may change it at any time, by its measurement. */
 static inline u32 ec_access_interval_us(const struct ec_access *a)
 {
 	return READ_ONCE(a->interval_us);

@@ -25,7 +25,7 @@ MODULE_PARM_DESC(capture, "1: an interface eccap<N> per master shows its frames 
  * @len: bytes there
  *
  * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
- * Return: false when a program wants the frame and there is no room for it.
+ * Return: false when a program wants the frame and the ring is full.
  */
 bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
 {
@@ -40,7 +40,7 @@ bool ec_capture_sent(struct ec_capture *c, const u8 *frame, size_t len)
  * @len: bytes there
  *
  * Context: Any, in an RCU read section. RT-safe: bounded, no sleep, no allocation.
- * Return: false when a program wants the frame and there is no room for it.
+ * Return: false when a program wants the frame and the ring is full.
  */
 bool ec_capture_received(struct ec_capture *c, const u8 *src, const u8 *data, size_t len)
 {
@@ -98,11 +98,11 @@ static void setup(struct net_device *nd)
 }
 
 /**
- * ec_capture_create() - make the interface of a master, if that is asked for
+ * ec_capture_create() - create the interface of a master, if the parameter is set
  * @l: links
  *
  * Context: Process. May sleep, takes RTNL.
- * Return: 0, -ENOMEM, or -EEXIST when there is such an interface.
+ * Return: 0, -ENOMEM, or -EEXIST when an interface has this name already.
  */
 int ec_capture_create(struct ec_links *l)
 {
@@ -143,7 +143,7 @@ void ec_capture_destroy(struct ec_links *l)
 	if (!c)
 		return;
 	l->capture = NULL;
-	/* first, as its worker may just have begun to show a frame there */
+	/* before the interface, to which its worker may be delivering a frame */
 	ec_tap_exit(&c->tap);
 	unregister_netdev(c->nd);
 	free_netdev(c->nd);

@@ -11,7 +11,7 @@ struct ec_links;
 /**
  * struct ec_capture - private part of the interface
  * @nd: the interface
- * @tap: frames on their way to it
+ * @tap: copies of frames for it
  */
 struct ec_capture {
 	struct net_device *nd;

@@ -12,9 +12,8 @@
 #include "spec.h"
 
 /*
- * Devices and who uses them; taken before any lock of a master.
- * Taken with RTNL held when the device is a netdev, so nothing below may take
- * RTNL.
+ * Protects the lists and the master of each device; taken before any lock of a master.
+ * Taken with RTNL held when the device is a netdev, so code that holds it must not take RTNL.
  */
 static DEFINE_MUTEX(devices_lock);
 static LIST_HEAD(devices);
@@ -31,10 +30,10 @@ static const char *name_of(const struct ec_links *l, unsigned int side)
 }
 
 /**
- * ecdev_wanted() - is there a master configured for this device?
+ * ecdev_wanted() - is a master configured for this device?
  * @name: device name
  * @mac: its address
- * @any: the broadcast address may mean it as well
+ * @any: a master configured for the broadcast address, which means any device, counts as well
  *
  * Context: Process. May sleep.
  * Return: true when one is.
@@ -64,14 +63,14 @@ bool ecdev_wanted(const char *name, const u8 *mac, bool any)
 EXPORT_SYMBOL_GPL(ecdev_wanted);
 
 /**
- * ecdev_waiting() - what masters still wait for
- * @index: start, 0 at first; set behind the one that is returned
+ * ecdev_waiting() - find a master that waits for its main device
+ * @index: number to start with, initially 0; result: the number after @master
  * @master: result: number of the master
  * @name: result: name or MAC address of its main device
  * @size: of @name
  *
  * Context: Process. May sleep.
- * Return: whether there is one.
+ * Return: whether one waits.
  */
 bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size)
 {
@@ -106,7 +105,7 @@ static void report(struct ec_link *link, bool attached)
 		l->ops->device(l, link, attached);
 }
 
-/* The call of a cycle that is under way finds the same device from its begin to its end. */
+/* The device changes between two calls of the cycle owner: each of them uses one device. */
 static void device_publish(struct ecdev *dev, struct ec_link *link)
 {
 	struct ec_links *l = link->links;
@@ -125,7 +124,7 @@ static void device_publish(struct ecdev *dev, struct ec_link *link)
 	rt_mutex_unlock(&l->access.lock);
 }
 
-/* Before the device delivers frames; a cycle that counts does so before or afterwards. */
+/* Called before the device delivers frames, and between two calls of the cycle owner. */
 static void clear_counters(struct ec_link *link)
 {
 	struct ec_links *l = link->links;
@@ -160,8 +159,8 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 }
 
 /*
- * First no caller finds the device any more, then callers that have found it leave. The access
- * stays cyclic as long as there is another link for it.
+ * Removes the device from the link between two calls of the cycle owner. The access stays cyclic
+ * while another link has a device.
  */
 static void withdraw(struct ec_link *link, struct ecdev *dev)
 {
@@ -217,7 +216,7 @@ static void match_locked(struct ecdev *dev)
 	int any;
 
 	lockdep_assert_held(&devices_lock);
-	/* one that names it comes before one that takes any */
+	/* a master that names the device comes before one that takes any device */
 	for (any = 0; any < 2; any++)
 		list_for_each_entry(l, &masters, list)
 			for (side = 0; side < EC_MAX_LINKS; side++)
@@ -228,7 +227,7 @@ static void match_locked(struct ecdev *dev)
 }
 
 /**
- * ec_device_register() - let a master have devices that are offered from now on
+ * ec_device_register() - let a master get devices that are offered from now on
  * @l: its links
  *
  * Context: Process. May sleep.
@@ -290,7 +289,7 @@ static const struct ec_links *rival_of(const struct ec_links *l, const char *nam
 }
 
 /**
- * ec_device_release() - a master gives its main device back, in order to get another one
+ * ec_device_release() - a master releases its main device, in order to get another one
  * @l: its links; they get no main device until ec_device_use()
  * @name: of the device that it is to get
  * @rival: result with -EBUSY: number of the other master
@@ -352,14 +351,14 @@ int ec_device_use(struct ec_links *l, const char *name)
 			match_locked(dev);
 	mutex_unlock(&devices_lock);
 	rtnl_unlock();
-	/* drivers offer what is wanted only */
+	/* drivers offer only devices that a master wants */
 	blocking_notifier_call_chain(&changes, 0, NULL);
 	return ec_links_attached(l) ? 0 : -ENODEV;
 }
 
 /**
- * ecdev_register_notifier() - hear that masters want other devices
- * @nb: called without locks, may sleep; ecdev_wanted() says what they want
+ * ecdev_register_notifier() - register for changes of the devices that masters want
+ * @nb: called without locks, may sleep; see ecdev_wanted()
  *
  * Context: Process. May sleep.
  * Return: 0 or -EEXIST.
@@ -371,7 +370,7 @@ int ecdev_register_notifier(struct notifier_block *nb)
 EXPORT_SYMBOL_GPL(ecdev_register_notifier);
 
 /**
- * ecdev_unregister_notifier() - end that; the function does not run after the return
+ * ecdev_unregister_notifier() - remove a notifier; it does not run after the return
  * @nb: as registered
  *
  * Context: Process. May sleep. Without locks that the function takes.
@@ -414,7 +413,7 @@ struct ecdev *ecdev_offer(const char *name, const u8 *mac,
 EXPORT_SYMBOL_GPL(ecdev_offer);
 
 /**
- * ecdev_withdraw() - the device goes away
+ * ecdev_withdraw() - end the offer of a device; its master loses it
  * @dev: handle, invalid afterwards
  *
  * Context: Process. May sleep.

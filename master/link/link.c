@@ -47,13 +47,13 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 }
 
 /**
- * ec_link_show() - show a frame that leaves to those who watch
+ * ec_link_show() - show a sent frame in the kernel log and to capture programs
  * @link: link
  * @dev: its device
  * @frame: the frame
  * @len: its bytes, with padding
  *
- * Context: The owner of the link, in an RCU read section. RT-safe.
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
  */
 void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size_t len)
 {
@@ -74,13 +74,12 @@ void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size
  * @sides: mask of the links
  * @now: time
  *
- * A link that does not send it does not stop the others: the slot awaits the copies of these
- * only. ec_links_flush() must follow.
+ * A link that fails does not stop the others: the slot awaits only the copies of links that have
+ * sent the frame. ec_links_flush() must follow.
  *
- * Context: The owner of the links, in an RCU read section. RT-safe.
- * Return: 0: one has sent it; -ENODEV without device, -EBUSY without transmit buffer (then no
- * error is counted: whether the frame may wait, the caller knows), -ENETDOWN when the link is
- * down.
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
+ * Return: 0: at least one link has sent it; -ENODEV: no device; -EBUSY: no transmit buffer, not
+ * counted as an error, since the frame may wait; -ENETDOWN: the link is down.
  */
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
@@ -114,7 +113,7 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 		unsent |= BIT(i);
 		ret = err;
 	}
-	/* a reply that came nevertheless makes it a frame as if it was sent */
+	/* a frame whose reply was received counts as sent */
 	return unsent && ec_slot_disarm(slot, unsent) ? ret : 0;
 }
 
@@ -122,7 +121,7 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
  * ec_link_poll() - deliver what the device has received
  * @link: link
  *
- * Context: The owner of the link. RT-safe.
+ * Context: The owner of the bus access. RT-safe.
  */
 void ec_link_poll(struct ec_link *link)
 {
@@ -147,7 +146,7 @@ static __always_inline void poll_cycle(struct ec_link *link)
 }
 
 /**
- * ec_links_poll_cycle() - the same for the cycle
+ * ec_links_poll_cycle() - deliver what the devices have received, for the cycle
  * @l: links
  *
  * Replies to the cycle may stay in the memory of the device: they have to be taken before the
@@ -199,7 +198,7 @@ bool ec_link_look(struct ec_link *link)
 {
 	struct rt_mutex *lock = &link->links->access.lock;
 
-	/* with it the device stays */
+	/* the device stays while the lock is held */
 	rt_mutex_lock(lock);
 	if (link->dev && link->dev->ops->look)
 		link->dev->ops->look(link->dev->priv);
@@ -211,7 +210,7 @@ bool ec_link_look(struct ec_link *link)
  * ec_link_clear_counters() - count from 0 again
  * @link: link; its counters do not change meanwhile
  *
- * The averages follow with the next ec_link_rates_update().
+ * The next ec_link_rates_update() resets the averages.
  *
  * Context: Any.
  */
@@ -232,7 +231,7 @@ static void restart_rates(struct ec_link_rates *r)
 	unsigned int i, j;
 
 	WRITE_ONCE(r->restart, false);
-	/* before the counters are read: if they are cleared after that, there is a next time */
+	/* before the counters are read: a clear after that sets @restart again */
 	smp_mb();
 	memset(r->last, 0, sizeof(r->last));
 	for (i = 0; i < ARRAY_SIZE(r->rate); i++)

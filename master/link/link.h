@@ -24,19 +24,19 @@ struct ec_link_stats {
 	atomic64_t tx_bytes;
 	/** @tx_errors: frames that the device has refused */
 	atomic64_t tx_errors;
-	/** @rx_frames: frames that have come back */
+	/** @rx_frames: received EtherCAT frames */
 	atomic64_t rx_frames;
-	/** @rx_bytes: bytes of them */
+	/** @rx_bytes: bytes of them, likewise */
 	atomic64_t rx_bytes;
-	/** @lost: frames that have not come back in time */
+	/** @lost: frames without a reply in time */
 	atomic64_t lost;
-	/** @late: frames of the cycle that came back only after the next send */
+	/** @late: replies received after the timeout, or after the next cyclic send */
 	atomic64_t late;
-	/** @unmatched: EtherCAT frames that no frame on its way belongs to */
+	/** @unmatched: received EtherCAT frames that match no frame in flight */
 	atomic64_t unmatched;
 	/** @foreign: frames that are no EtherCAT frames of this master */
 	atomic64_t foreign;
-	/** @not_captured: frames without room for a copy in the capture */
+	/** @not_captured: frames that capture programs did not see: their ring was full */
 	atomic64_t not_captured;
 };
 
@@ -54,16 +54,16 @@ struct ec_link_rates {
 
 /**
  * struct ec_link - port to the wire
- * @links: it belongs to, immutable
+ * @links: links of the master, immutable
  * @side: 0 main, 1 backup, immutable
  * @dev: attached device or NULL; changes under the access lock. Used by the
- *	owner of the link; others only in an RCU read section
- * @acyclic: acyclic frames on their way
+ *	owner of the bus access; other threads use it only in an RCU read section
+ * @acyclic: acyclic frames in flight
  * @acyclic_ns: wire time of these frames
- * @places: how many they may be
+ * @places: limit of @acyclic
  * @keep: the cycle owner polls the device, and takes replies to the cycle from its memory
  * @up: link state as last seen by the monitor
- * @slaves: that answered the last broadcast on this link
+ * @slaves: slaves that answered the last broadcast on this link
  * @al_states: OR of their AL states
  * @stats: counters
  * @rates: averages

@@ -7,12 +7,12 @@
  * ec_links_init() - prepare the links of a master, which then wait for their devices
  * @l: zeroed structure
  * @base: of the master
- * @ops: what it wants to know; stays
+ * @ops: callbacks of the master; they stay valid
  * @main: main device: MAC address or device name
  * @backup: backup device, NULL: none
  *
  * Context: Process. May sleep, takes RTNL.
- * Return: 0, -ENOMEM, or -EEXIST when there is such a capture interface.
+ * Return: 0, -ENOMEM, or -EEXIST when the capture interface exists already.
  */
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
 		  const char *main, const char *backup)
@@ -43,7 +43,7 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 }
 
 /**
- * ec_links_exit() - give back all devices and free what ec_links_init() has allocated
+ * ec_links_exit() - release all devices and free what ec_links_init() has allocated
  * @l: links
  *
  * Context: Process. May sleep, takes RTNL.
@@ -56,7 +56,7 @@ void ec_links_exit(struct ec_links *l)
 }
 
 /**
- * ec_links_name() - which device a master is to have
+ * ec_links_name() - get the name of the device that a master is configured for
  * @l: links
  * @i: 0: main device, 1: backup device
  * @buf: result: name, MAC address or PCI address as the user gave it; "": none
@@ -78,11 +78,11 @@ const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t 
 }
 
 /**
- * ec_links_need_thread() - is there a device for frames that cannot be used in a hard interrupt?
+ * ec_links_need_thread() - does a device send only in a thread, not in a hard interrupt?
  * @l: links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether there is.
+ * Return: whether one does.
  */
 bool ec_links_need_thread(const struct ec_links *l)
 {
@@ -98,11 +98,11 @@ bool ec_links_need_thread(const struct ec_links *l)
 }
 
 /**
- * ec_links_one_attached() - is there a device at one of several links?
+ * ec_links_one_attached() - has one of several links a device?
  * @l: links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether there is.
+ * Return: whether one has.
  */
 bool ec_links_one_attached(const struct ec_links *l)
 {
@@ -169,9 +169,9 @@ void ec_links_update_rates(struct ec_links *l)
 }
 
 /**
- * ec_link_saw() - note what the last broadcast has brought back
+ * ec_link_saw() - store the results of the last broadcast
  * @link: link
- * @slaves: that answered
+ * @slaves: slaves that answered
  * @al_states: OR of their AL states
  *
  * Context: The monitor.

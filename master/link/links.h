@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * The layer "link": devices, frame slots, sending, bus access. It knows no slave, and not who
- * waits for a frame.
+ * The layer "link": devices, frame slots, sending, bus access. It knows neither slaves nor the
+ * callers that wait for a frame.
  */
 #ifndef EC_LINKS_H
 #define EC_LINKS_H
@@ -23,11 +23,11 @@ struct ec_links;
 
 /** struct ec_links_ops - what the layer reports to higher ones; each may be NULL */
 struct ec_links_ops {
-	/** @device: a device was attached, or detached and its link is left; may sleep */
+	/** @device: a device was attached or detached; may sleep */
 	void (*device)(struct ec_links *l, const struct ec_link *link, bool attached);
 	/** @changed: the bus access or a device has changed; with the access lock held */
 	void (*changed)(struct ec_links *l);
-	/** @event: a frame of the cycle has brought an event that is watched for; RT-safe */
+	/** @event: a reply to the cycle has one of struct ec_links.events; RT-safe */
 	void (*event)(struct ec_links *l);
 };
 
@@ -52,7 +52,7 @@ struct ec_links {
 	bool closed;
 	/** @link: main and backup */
 	struct ec_link link[EC_MAX_LINKS];
-	/** @capture: for capture programs, NULL: none; immutable while devices are there */
+	/** @capture: for capture programs, NULL: none; immutable while a device is attached */
 	struct ec_capture *capture;
 	/** @sides: mask of the links on which frames are sent, immutable */
 	u8 sides;
@@ -62,20 +62,20 @@ struct ec_links {
 	struct ec_slots slots;
 	/** @access: bus access */
 	struct ec_access access;
-	/** @carry: acyclic datagrams: what the next layer has for these links; immutable */
+	/** @carry: acyclic posts of these links, which the next layer owns; immutable */
 	struct ec_carry *carry;
-	/** @events: ECAT events that are reported at once, once; 0: none */
+	/** @events: ECAT events to report when a reply has one; the report clears them; 0: none */
 	u16 events;
-	/** @max_datagrams: of a frame, immutable */
+	/** @max_datagrams: datagrams in a frame at most, immutable */
 	unsigned int max_datagrams;
-	/** @io_timeout_us: after that a frame counts as lost, immutable */
+	/** @io_timeout_us: after this time a frame counts as lost, immutable */
 	unsigned int io_timeout_us;
 };
 
 #define ec_links_for_each(l, link) \
 	for ((link) = (l)->link; (link) < (l)->link + EC_MAX_LINKS; (link)++)
 
-/* physical state of the way to the slaves, now; false also without device */
+/* Is a link up on which frames are sent? Its physical state now; false also without device. */
 static inline bool ec_links_is_up(const struct ec_links *l)
 {
 	const struct ec_link *link;
@@ -86,7 +86,7 @@ static inline bool ec_links_is_up(const struct ec_links *l)
 	return false;
 }
 
-/* the same, as the monitor saw it last */
+/* the same, as last read by the monitor */
 static inline bool ec_links_seen_up(const struct ec_links *l)
 {
 	const struct ec_link *link;
@@ -97,13 +97,13 @@ static inline bool ec_links_seen_up(const struct ec_links *l)
 	return false;
 }
 
-/* the link at the other end of a ring, as the monitor saw it last */
+/* the link at the other end of a ring, as last read by the monitor */
 static inline bool ec_links_ring_end_up(const struct ec_links *l)
 {
 	return READ_ONCE(l->link[EC_BACKUP].up);
 }
 
-/* one link at least, as the monitor saw it last */
+/* one link at least, as last read by the monitor */
 static inline bool ec_links_any_up(const struct ec_links *l)
 {
 	return ec_links_seen_up(l) || ec_links_ring_end_up(l);
@@ -122,7 +122,7 @@ static inline bool ec_links_any_device(const struct ec_links *l)
 	return ec_links_attached(l) || READ_ONCE(l->link[EC_BACKUP].dev);
 }
 
-/* links that the module parameters name; numbers of ec_links_at() are below */
+/* number of links that the module parameters name, limit for ec_links_at() */
 static inline unsigned int ec_links_n(const struct ec_links *l)
 {
 	return l->backup ? 2 : 1;
@@ -134,10 +134,10 @@ static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsign
 }
 
 /**
- * ec_links_enter() - the cycle owner takes the links for one call; ends with ec_links_leave()
+ * ec_links_enter() - the cycle owner enters the links for one call
  * @l: links
  *
- * Takes cyclic access again after a cycle timeout.
+ * After a cycle timeout it makes the access cyclic again. ec_links_leave() must follow.
  *
  * Context: Cycle owner. Sleeps after a cycle timeout only.
  */
@@ -152,7 +152,7 @@ static inline void ec_links_leave(struct ec_links *l)
 	ec_access_leave(&l->access);
 }
 
-/* the events of all slaves that a frame of the cycle has brought; RT-safe */
+/* report ECAT events of the slaves in a reply to the cycle; RT-safe */
 static inline void ec_links_events(struct ec_links *l, u16 events)
 {
 	if (likely(!(events & READ_ONCE(l->events))))
@@ -162,7 +162,7 @@ static inline void ec_links_events(struct ec_links *l, u16 events)
 		l->ops->event(l);
 }
 
-/* deliver what the devices have received; the owner of the links, RT-safe */
+/* deliver what the devices have received; for the owner of the bus access, RT-safe */
 static inline void ec_links_poll(struct ec_links *l)
 {
 	struct ec_link *link;
@@ -172,7 +172,7 @@ static inline void ec_links_poll(struct ec_links *l)
 			ec_link_poll(link);
 }
 
-/* the device and its next transmit buffer; NULL without one; the owner of the link, RT-safe */
+/* the device and its next transmit buffer or NULL; for the owner of the bus access, RT-safe */
 static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
 {
 	RCU_LOCKDEP_WARN(!rcu_read_lock_held(), "frame built outside of an RCU read section");
@@ -198,11 +198,11 @@ struct ec_tx {
  * @sides: mask of those on which it is to be sent
  * @tx: result, for ec_links_transmit()
  *
- * The next frame that is sent has to be this one.
+ * The next frame that is sent has to be the one built here.
  *
- * Context: The owner of the links, in an RCU read section. RT-safe.
- * Return: EC_ETH_MAX bytes; NULL when frames leave on several links, or the device is full or
- * absent: the frame is built in its slot, and ec_links_transmit() finds out.
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
+ * Return: EC_ETH_MAX bytes. NULL: the frame has to be built in its slot, since it leaves on
+ * several links, or the device is full or absent, which ec_links_transmit() will return.
  */
 static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct ec_tx *tx)
 {
@@ -229,7 +229,7 @@ static inline u64 ec_links_sent(const struct ec_links *l)
 	return n;
 }
 
-/* wire time of the acyclic frames on their way, of the link that has most of them */
+/* wire time of the acyclic frames in flight, on the link with the largest */
 static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 {
 	const struct ec_link *link;
@@ -240,7 +240,7 @@ static inline u32 ec_links_acyclic_ns(const struct ec_links *l)
 	return ns;
 }
 
-/* acyclic frames on their way, likewise */
+/* acyclic frames in flight, on the link with the most */
 static inline unsigned int ec_links_acyclic(const struct ec_links *l)
 {
 	const struct ec_link *link;
@@ -258,7 +258,7 @@ static inline unsigned int ec_links_burst(const struct ec_links *l)
 	const struct ec_link *link;
 
 	ec_links_for_each(l, link) {
-		/* ecdev_withdraw() may run now; it waits for the cycle owner before it goes */
+		/* ecdev_withdraw() may run now; it waits until the cycle owner leaves */
 		const struct ecdev *dev = READ_ONCE(link->dev);
 
 		if (dev && dev->ops->burst)
@@ -274,7 +274,7 @@ static inline unsigned int ec_links_burst(const struct ec_links *l)
  * @buf: the buffer
  * @len: bytes of the frame, with padding
  *
- * Context: The owner of the link, in an RCU read section. RT-safe.
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
  * Return: as ec_links_send().
  */
 static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *dev, u8 *buf,
@@ -305,7 +305,7 @@ static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *
  *
  * ec_links_flush() must follow.
  *
- * Context: The owner of the links, in the RCU read section of ec_links_tx_get(). RT-safe.
+ * Context: The owner of the bus access, in the RCU read section of ec_links_tx_get(). RT-safe.
  * Return: as ec_links_send().
  */
 static __always_inline int ec_links_transmit(struct ec_links *l, struct ec_slot *slot, u8 *frame,
@@ -318,19 +318,19 @@ static __always_inline int ec_links_transmit(struct ec_links *l, struct ec_slot 
 	ec_slot_arm(&l->slots, slot, frame, tx->sides, now);
 	frame[7] |= tx->link->side;
 	ret = ec_link_send_buf(tx->link, tx->dev, frame, ec_slot_padded(slot));
-	/* a reply that came nevertheless makes it a frame as if it was sent */
+	/* a frame whose reply was received counts as sent */
 	return unlikely(ret) && ec_slot_disarm(slot, tx->sides) ? ret : 0;
 }
 
 /**
- * ec_links_flush() - a batch of frames has ended: let the devices send them
+ * ec_links_flush() - let the devices send a batch of frames
  * @l: links
  *
  * One doorbell for all frames of a cycle. Must follow each batch, also when its last frame
  * failed.
  *
- * Context: The owner of the links, in an RCU read section that has begun before the first frame.
- * RT-safe.
+ * Context: The owner of the bus access, in an RCU read section that has begun before the first
+ * frame. RT-safe.
  */
 static inline void ec_links_flush(struct ec_links *l)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* A frame has come: whose is it? */
+/* Received frames: the slot that each belongs to. */
 #include <linux/export.h>
 #include <linux/rcupdate.h>
 #include "capture.h"
@@ -17,8 +17,8 @@ static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
 }
 
 /*
- * Find the slot a frame belongs to and fill it. With @keep a reply to the cycle stays where it is:
- * the cycle owner takes it in this call.
+ * Find the slot that a frame belongs to, and fill it. With @keep a reply to the cycle stays in the
+ * memory of the device: the cycle owner takes it before it leaves the links.
  */
 static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, const u8 *data,
 					   size_t len, bool keep)
@@ -40,7 +40,7 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 		return state == EC_SLOT_SENT ? EC_MATCH_LATE : EC_MATCH_UNMATCHED;
 	}
 	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
-		/* given up; otherwise a second copy of a frame that is back already */
+		/* a cancelled frame; otherwise a second copy of a reply */
 		return atomic_read(&slot->state) == EC_SLOT_QUARANTINE ? EC_MATCH_LATE :
 									 EC_MATCH_UNMATCHED;
 	if (!ec_slot_awaits(slot, side)) {
@@ -52,7 +52,7 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 		ec_slot_release(slot, EC_SLOT_SENT);
 		return EC_MATCH_UNMATCHED;
 	}
-	/* before others may use the slot */
+	/* read before the slot may be used for another frame */
 	done = slot->done;
 	if (keep && !done && slot->sides == BIT(side)) {
 		slot->reply = data;
@@ -102,11 +102,11 @@ void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
 EXPORT_SYMBOL_GPL(ecdev_receive);
 
 /**
- * ecdev_awaits() - are replies to frames awaited that do not belong to the cycle?
+ * ecdev_awaits() - are replies to acyclic frames awaited?
  * @dev: device
  *
  * A device without interrupts polls for them while no cycle runs. A frame counts from
- * before it is sent until its sender has the reply or has given it up.
+ * before it is sent until its reply is received or it is lost.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: whether they are.

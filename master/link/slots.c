@@ -61,7 +61,7 @@ static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
 	if (atomic_cmpxchg(&slot->state, EC_SLOT_FREE, EC_SLOT_BUILD) == EC_SLOT_FREE)
 		return true;
 	return atomic_read(&slot->state) == EC_SLOT_QUARANTINE &&
-	       /* another may have cancelled it after the caller looked at the clock */
+	       /* signed: another thread may have cancelled it after the caller read the clock */
 	       (s64)(now_ns - ec_read64(&slot->sent_ns)) > quarantine_ns &&
 	       atomic_cmpxchg(&slot->state, EC_SLOT_QUARANTINE, EC_SLOT_BUILD) ==
 	       EC_SLOT_QUARANTINE;
@@ -95,7 +95,7 @@ struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns)
 
 	/*
 	 * While all frames are lost the cycle uses up slots faster than the
-	 * quarantine frees them; sequence numbers distinguish the frames, too.
+	 * quarantine frees them. Sequence numbers still distinguish the frames.
 	 */
 	if (!slot && cyclic)
 		slot = search(s, now_ns, 0);
@@ -122,23 +122,24 @@ bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns)
 }
 
 /**
- * ec_slot_settle() - the copies of a frame that have come are all
+ * ec_slot_settle() - stop waiting for the missing copies of a frame
  * @slot: slot that was armed
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true: there is one, the slot is DONE, and @done is not called; false: it is as it was.
+ * Return: true: one copy at least was received, the slot is DONE, and @done is not called; false:
+ * the slot is unchanged.
  */
 bool ec_slot_settle(struct ec_slot *slot)
 {
 	if (!READ_ONCE(slot->back) ||
 	    atomic_cmpxchg(&slot->state, EC_SLOT_SENT, EC_SLOT_FILL) != EC_SLOT_SENT)
 		return false;
-	/* it may have been in use for another frame until now */
+	/* read again: the slot may have been in use for another frame until now */
 	ec_slot_release(slot, slot->back ? EC_SLOT_DONE : EC_SLOT_SENT);
 	return slot->back;
 }
 
-/* The reply: that of the first link that has one. With the last copy the slot is DONE. */
+/* The reply is the copy of the first link that has one. With the last copy the slot is DONE. */
 static bool is_complete(struct ec_slot *slot)
 {
 	bool complete = slot->back == slot->sides;
@@ -150,13 +151,13 @@ static bool is_complete(struct ec_slot *slot)
 }
 
 /**
- * ec_slot_disarm() - take back a frame that was armed, where it was not sent
- * @slot: slot
+ * ec_slot_disarm() - stop waiting for a frame on links that have not sent it
+ * @slot: slot that was armed
  * @sides: mask of these links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true: it is in BUILD again; false: it is on its way on other links, or another station
- * has sent its reply meanwhile, which is taken, or being taken just now.
+ * Return: true: the slot is in BUILD again; false: the frame is in flight on other links, or
+ * another station has sent a reply to it, which is taken, or being taken just now.
  */
 bool ec_slot_disarm(struct ec_slot *slot, u8 sides)
 {

@@ -1,16 +1,16 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * Frame slots. The datagram index names the slot of the frame, so at most 256
- * frames are on their way. A slot's life:
+ * frames are in flight. A slot's life:
  *
  *   FREE -> BUILD -> SENT -> FILL -> DONE -> FREE
  *
- * FILL is the state of a slot whose content one thread uses: the receiver fills it, or it is
- * given up. Entering it is one atomic change: the first wins. What is given up goes through
- * QUARANTINE, and may be used again after 20 ms.
+ * In FILL the content of a slot belongs to one thread, which takes a reply or cancels the frame.
+ * The change to FILL is atomic: the first thread wins. A cancelled slot goes through QUARANTINE,
+ * and may be used again after 20 ms.
  *
- * A mask says on which links a frame is sent. Its slot is DONE when each copy is back, or when
- * those that came are all that will.
+ * A mask says on which links a frame is sent. Its slot is DONE when the copy of each link is
+ * received, or when no more copies are expected.
  */
 #ifndef EC_SLOTS_H
 #define EC_SLOTS_H
@@ -36,18 +36,18 @@ enum ec_slot_state {
  * @state: enum ec_slot_state
  * @index: datagram index, immutable
  * @sides: mask of the links on which it is sent
- * @back: those of them whose copy is back
+ * @back: mask of the links whose copy is received
  * @eth_len: bytes of the Ethernet frame without padding and FCS
  * @seq: sequence number in the source MAC address
- * @sent_ns: when it was sent (ktime)
- * @done: all copies are back, in the context that receives, at state DONE: the slot is its own
- *	then; RT-safe. NULL: the owner looks at @state
+ * @sent_ns: when it was sent, or cancelled (ktime)
+ * @done: called in state DONE with the last copy, in any context: it owns the slot from then on;
+ *	RT-safe. NULL: the owner polls @state
  * @user: for @done
- * @reply: behind the EtherType: what has come back, in state DONE; a copy, or for the cycle in
+ * @reply: in state DONE: received bytes behind the EtherType; in a copy, or for the cycle in
  *	the memory of the device, see struct ec_link.keep
- * @copy: behind the EtherType: memory of the copy of each link. With one link that of the frame
- * @frame: Ethernet frame as it was sent, or only headers of its datagrams, see ec_slot_arm();
- *	with one link its copy when that is back
+ * @copy: memory for the copy of each link, behind the EtherType; with one link that of @frame
+ * @frame: the sent Ethernet frame, or only headers of its datagrams, see ec_slot_arm(); with one
+ *	link the received copy overwrites it
  */
 struct ec_slot {
 	atomic_t state;
@@ -68,9 +68,9 @@ struct ec_slot {
  * struct ec_slots - all slots of one master
  * @slot: the slots
  * @copies: memory of the copies with a second link, else NULL
- * @hint: where to look for a free one
+ * @hint: where the search for a free slot begins
  * @seq: sequence number of the last frame
- * @numbered: the source address of a frame has its number
+ * @numbered: the source address of each frame has its sequence number
  */
 struct ec_slots {
 	struct ec_slot *slot;
@@ -82,8 +82,8 @@ struct ec_slots {
 
 enum ec_match {
 	EC_MATCH_DONE,		/* taken */
-	EC_MATCH_LATE,		/* of an earlier use of the slot */
-	EC_MATCH_UNMATCHED,	/* nothing of this kind is out, or mangled */
+	EC_MATCH_LATE,		/* of a cancelled frame, or an earlier use of the slot */
+	EC_MATCH_UNMATCHED,	/* mangled, or matches no frame in flight */
 };
 
 int ec_slots_init(struct ec_slots *s, bool two);
@@ -94,7 +94,7 @@ bool ec_slot_settle(struct ec_slot *slot);
 bool ec_slot_disarm(struct ec_slot *slot, u8 sides);
 bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
 
-/* to a slot that was just taken */
+/* initial values of a slot that was just taken */
 static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
 {
 	slot->done = NULL;
@@ -106,7 +106,7 @@ static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
 /**
  * ec_slot_get() - take a free slot
  * @s: slots
- * @cyclic: for the cycle, or the monitor; others have a place at the link's gate
+ * @cyclic: for the cycle or the monitor: without a free slot one in quarantine is taken
  * @now_ns: time, to release slots from quarantine
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -135,13 +135,13 @@ static inline void ec_slot_release(struct ec_slot *slot, enum ec_slot_state stat
  * @seq: sequence number that it has to have
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true: the caller ends it by ec_slot_release(); false: the slot is as it was.
+ * Return: true: the slot is in FILL, ec_slot_release() must follow; false: it is unchanged.
  */
 static inline bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, u32 seq)
 {
 	if (atomic_cmpxchg(&slot->state, state, EC_SLOT_FILL) != state)
 		return false;
-	/* it may have been given up and be in use again since; now it stays */
+	/* it may have been in use for another frame until now; in FILL it stays */
 	if (READ_ONCE(slot->seq) == seq)
 		return true;
 	ec_slot_release(slot, state);
@@ -149,7 +149,7 @@ static inline bool ec_slot_hold(struct ec_slot *slot, enum ec_slot_state state, 
 }
 
 /**
- * ec_slot_put() - give back a slot
+ * ec_slot_put() - release a slot
  * @slot: in state BUILD or DONE; free afterwards, but first in quarantine when a copy may still
  *	come
  *
@@ -161,7 +161,7 @@ static inline void ec_slot_put(struct ec_slot *slot)
 }
 
 /**
- * ec_slot_awaits() - is the copy of a link still to come back?
+ * ec_slot_awaits() - is the copy of a link still awaited?
  * @slot: slot in state FILL
  * @side: number of the link
  *
@@ -185,7 +185,7 @@ static inline u8 *ec_slot_body(struct ec_slot *slot)
 }
 
 /*
- * The source address is locally administered: slaves set that bit, too. It carries the side,
+ * The source address is locally administered; slaves set that bit anyway. It carries the side,
  * which a link writes when it sends, and the sequence number.
  */
 static __always_inline void ec_slot_number(struct ec_slots *s, struct ec_slot *slot, u8 *f,
@@ -214,7 +214,7 @@ static __always_inline void ec_slot_note(struct ec_slot *slot, const u8 *frame)
 		memcpy(slot->frame + at, frame + at, EC_DGRAM_HDR);
 		len = get_unaligned_le16(frame + at + 6);
 		at += EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
-		/* the device may have written there, too */
+		/* a device may have written to its buffer: stay within the frame */
 	} while (len & EC_DGRAM_MORE && at + EC_DGRAM_OVERHEAD <= slot->eth_len);
 }
 

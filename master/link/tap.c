@@ -2,8 +2,8 @@
 /*
  * What capture programs see. The cycle only copies a frame into a ring, and only
  * while a program captures; a worker makes socket buffers of the copies. So no
- * program holds a buffer of the cycle, however long it does not read. The first frame
- * wakes the worker, which then looks by itself as long as a program captures.
+ * program holds a buffer of the cycle, even if it never reads. The first frame
+ * wakes the worker, which then runs periodically as long as a program captures.
  */
 #include <linux/etherdevice.h>
 #include <linux/jiffies.h>
@@ -35,7 +35,7 @@ static struct ec_tap_frame *reserve(struct ec_tap *t, bool out)
 	struct ec_tap_frame *f = &t->ring[t->head % EC_TAP_RING];
 
 	lockdep_assert_held(&t->lock);
-	/* a place is written again only after it was shown */
+	/* an entry is overwritten only after it was shown */
 	if (t->head - smp_load_acquire(&t->tail) == EC_TAP_RING) {
 		ec_write64(&t->dropped, t->dropped + 1);
 		return NULL;
@@ -130,7 +130,7 @@ static void show(struct ec_tap *t, const struct ec_tap_frame *f)
 	skb_put_data(skb, f->data, f->len);
 	skb->protocol = eth_type_trans(skb, t->nd);
 	skb->pkt_type = f->out ? PACKET_OUTGOING : PACKET_HOST;
-	/* not dev_queue_xmit_nit(), which takes the time of now */
+	/* not dev_queue_xmit_nit(), which would set the current time */
 	skb->tstamp = f->at;
 	ec_write64(&t->shown, t->shown + 1);
 	ec_write64(&t->bytes, t->bytes + f->len);
@@ -162,7 +162,7 @@ static void worker(struct work_struct *w)
 	/* the head before the frame */
 	while (t->tail != smp_load_acquire(&t->head)) {
 		show(t, &t->ring[t->tail % EC_TAP_RING]);
-		/* shown: the place is free */
+		/* shown: the entry is free */
 		smp_store_release(&t->tail, t->tail + 1);
 		cond_resched();
 	}

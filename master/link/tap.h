@@ -11,12 +11,12 @@
 #include <net/net_namespace.h>
 
 #define EC_TAP_RING	512	/* frames; power of 2 */
-#define EC_TAP_MS	8	/* between two looks of the worker; the timer adds a tick */
+#define EC_TAP_MS	8	/* between two runs of the worker; the timer adds a tick */
 
 struct ec_tap_frame;
 
 /**
- * struct ec_tap - frames on their way to the capture programs of an interface
+ * struct ec_tap - copies of frames for the capture programs of an interface
  * @nd: the interface
  * @lock: protects @head, @awake and @dropped
  * @head: next to be filled, by the sender or receiver of the frame
@@ -24,8 +24,8 @@ struct ec_tap_frame;
  * @shown: frames shown
  * @bytes: of these
  * @dropped: frames that found the ring full, or no memory
- * @awake: @work runs or waits for its time
- * @work: shows the content of the ring, again and again while a program captures
+ * @awake: @work runs or is scheduled
+ * @work: shows the content of the ring, periodically while a program captures
  * @ring: frames
  */
 struct ec_tap {
@@ -45,9 +45,9 @@ struct ec_tap {
  * ec_tap_wanted() - may a program capture at the interface?
  * @t: tap
  *
- * dev_nit_active() is true for a packet socket in any network namespace. Every user can have
- * one in a namespace of his own, which gets no frame from here. So only a handler at this
- * interface or a packet socket in the namespace of the interface costs more than this look.
+ * dev_nit_active() is true for a packet socket in any network namespace, and every user can open
+ * one in a new namespace, which gets no frame from here. So it is called only with a handler at
+ * this interface, or a packet socket in the namespace of the interface.
  *
  * Context: Any, in an RCU read section. RT-safe.
  * Return: false when no program does.

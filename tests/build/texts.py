@@ -91,7 +91,7 @@ COMMENTS = {
     "master/boundary": 25,
     "master/carry": 69,
     "master/cycle": 98,
-    "master/link": 54,
+    "master/link": 0,
     "master/mailbox": 67,
     "master/session": 55,
     "tool": 35,
