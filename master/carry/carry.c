@@ -4,12 +4,12 @@
 #include "carry.h"
 
 #define URGENT_MORE	2	/* frames of the monitor beside those that have a place */
-#define STARVED_NS	NSEC_PER_SEC	/* the thread has not run for so long: that is said */
+#define STARVED_NS	NSEC_PER_SEC	/* the thread has not run for so long: reported */
 
 /**
- * ec_carry_expect() - the thread of the posts is to run
+ * ec_carry_expect() - expect the thread of the posts to run
  * @c: posts of the master
- * @after_ns: when; if it has not a second later, that is said
+ * @after_ns: in how many ns; the log reports it when the thread has not run a second later
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
@@ -36,7 +36,7 @@ void ec_carry_kick(struct ec_carry *c)
 	wake_up_process(t);
 }
 
-/* Frames that may be on their way; the cycle sends as many as fit. */
+/* Set the limit of acyclic frames in flight; a cycle is limited by its free wire time instead. */
 static void set_places(struct ec_link *link)
 {
 	const struct ecdev *dev = READ_ONCE(link->dev);
@@ -51,7 +51,7 @@ static void set_places(struct ec_link *link)
  * ec_carry_changed() - the bus access or a device has changed
  * @l: links
  *
- * Without a cycle buffers of the device are left for the monitor.
+ * With direct access transmit buffers of the device are left for the monitor.
  *
  * Context: Process, with the access lock held.
  */
@@ -67,13 +67,13 @@ void ec_carry_changed(struct ec_links *l)
 }
 
 /**
- * ec_carry_has_place() - may one more frame be on its way?
+ * ec_carry_has_place() - may one more frame be in flight?
  * @c: posts of the master
  * @class: enum ec_post_class
  *
- * Tools must not hold up the monitor, which looks after the application and the link.
+ * Tools must not delay the monitor, which watches the application and the link.
  *
- * Context: The owner of the links. RT-safe.
+ * Context: The owner of the bus access. RT-safe.
  * Return: whether it may.
  */
 bool ec_carry_has_place(const struct ec_carry *c, u8 class)

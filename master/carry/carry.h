@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * The layer "carry": everything acyclic as posts. With direct access who sends a post sends its
- * frame, or the thread does; with cyclic access the cycle owner takes along what fits.
+ * The layer "carry": all acyclic frames consist of posts. With direct access the sender of a post
+ * sends its frame, or the thread of the posts does. With cyclic access the cycle owner sends posts
+ * that fit beside the cycle.
  */
 #ifndef EC_CARRY_H
 #define EC_CARRY_H
@@ -29,13 +30,13 @@ struct ec_flight {
 	struct list_head posts;
 	/** @wire_ns: wire time of the frame */
 	u32 wire_ns;
-	/** @polls: receives of the cycle at the last look */
+	/** @polls: struct ec_access.polls at the send, later at the last overdue check */
 	u32 polls;
-	/** @sides: mask of the links for which it counts */
+	/** @sides: mask of the links whose @acyclic counts it */
 	u8 sides;
 	/** @class: enum ec_post_class of its posts */
 	u8 class;
-	/** @overdue: looks at which it was overdue: at the second one it is lost */
+	/** @overdue: checks at which it was overdue: at the second one it is lost */
 	u8 overdue;
 	/** @built: the frame has been written; its posts may be cancelled */
 	bool built;
@@ -58,11 +59,11 @@ struct ec_carry {
 	struct list_head ready[EC_POST_CLASSES];
 	/** @later: posts that are not due */
 	struct list_head later;
-	/** @due_ns: when the first of these is (ktime), U64_MAX: there is none */
+	/** @due_ns: when the first post of @later is due (ktime), U64_MAX: none */
 	u64 due_ns;
 	/** @n_ready: entries in @ready and @later */
 	unsigned int n_ready;
-	/** @flying: slots whose frame is on its way */
+	/** @flying: slots whose frame is in flight */
 	DECLARE_BITMAP(flying, EC_SLOTS);
 	/** @n_flying: bits in @flying */
 	unsigned int n_flying;
@@ -72,39 +73,39 @@ struct ec_carry {
 	aligned_u64 stuck_ns;
 	/** @stuck_class: of that frame, enum ec_post_class */
 	u8 stuck_class;
-	/** @full_ns: since when the transmit ring takes nothing (ktime), 0: it does */
+	/** @full_ns: since when the transmit ring is full (ktime), 0: it is not */
 	aligned_u64 full_ns;
-	/** @held: posts were left because the link is busy; of the owner of the links */
+	/** @held: the link is busy, posts wait; written by the owner of the bus access */
 	bool held;
-	/** @closed: nothing is sent any more */
+	/** @closed: no post is sent any more */
 	bool closed;
 
-	/** @share: what a cyclic send carries of the posts */
+	/** @share: limits of the posts that a cyclic send carries */
 	struct ec_share share;
 
-	/** @thread: finds what is lost; sends with direct access what no caller sends */
+	/** @thread: finds lost frames; with direct access sends posts that no caller sends */
 	struct task_struct *thread;
 	/** @kicked: @thread has something to do */
 	bool kicked;
-	/** @watched: @thread looks each millisecond: a caller has waited for longer */
+	/** @watched: @thread checks each millisecond, since a caller has waited that long */
 	bool watched;
-	/** @overdue: a frame was overdue at the last look; of @thread */
+	/** @overdue: a frame was overdue at the last check; for @thread only */
 	bool overdue;
 	/** @rests: @thread sleeps until it is kicked */
 	bool rests;
 	/** @waiting: callers that sleep until their posts have ended */
 	atomic_t waiting;
-	/** @starved: tells when @thread does not run although it should */
+	/** @starved: reports that @thread has not run for a second although it should */
 	struct hrtimer starved;
 };
 
-/* has anybody left posts for the next send? RT-safe */
+/* do posts wait to be sent, due or not? RT-safe */
 static inline bool ec_carry_has_left(const struct ec_carry *c)
 {
 	return READ_ONCE(c->n_ready);
 }
 
-/* posts that have not ended, in frames or not */
+/* have posts not ended, in frames or not? */
 static inline bool ec_carry_is_busy(const struct ec_carry *c)
 {
 	return READ_ONCE(c->n_ready) || READ_ONCE(c->n_flying);

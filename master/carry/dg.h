@@ -8,7 +8,7 @@
 #include "../base/limits.h"
 #include "../wire/frame.h"
 
-#define EC_DG_NO_COPY	0xffff	/* of @side_wkc: no copy came back on that link */
+#define EC_DG_NO_COPY	0xffff	/* of @side_wkc: no copy was received on that link */
 
 /**
  * struct ec_dg - one acyclic datagram
@@ -21,11 +21,11 @@
  * @data: sent for writing commands, filled for reading ones
  * @wkc: result: working counter, of all copies together
  * @side_wkc: result: working counter of each link's copy, or %EC_DG_NO_COPY
- * @back: result: @adp as it came back (position plus slaves passed)
+ * @back: result: @adp of the reply (position plus slaves passed)
  * @irq: result: OR of the enabled events of the slaves passed
- * @err: result: 0, or -ETIMEDOUT (frame not back), -ENETDOWN (link is down), -ENODEV,
+ * @err: result: 0, or -ETIMEDOUT (lost frame), -ENETDOWN (link is down), -ENODEV,
  *	-EINTR (caller killed), -EBUSY (the device sends nothing), -EAGAIN (it does not fit
- *	beside the cycle any more); -EINPROGRESS while there is none
+ *	beside the cycle any more); -EINPROGRESS while there is no result
  * @sent_ns: result: when its frame left, as far as the master knows (ktime)
  */
 struct ec_dg {
@@ -47,7 +47,7 @@ struct ec_dg {
 	((struct ec_dg){ .cmd = (c), .repeat = true, .adp = (a), .ado = (o), .len = (l), \
 			 .data = (d) })
 
-/* by station address; a write leaves its data as they are */
+/* by station address; a write does not change its data */
 #define EC_FPRD(a, o, l, d)	EC_DG(EC_CMD_FPRD, a, o, l, d)
 #define EC_FPWR(a, o, l, d)	EC_DG(EC_CMD_FPWR, a, o, l, (void *)(const void *)(d))
 
@@ -60,7 +60,7 @@ static inline void ec_dg_fill(const struct ec_dg *dg, u8 *p)
 		memset(p, 0, dg->len);
 }
 
-/* It is to be sent: no result yet. */
+/* Before it is sent: no result yet. */
 static inline void ec_dg_begin(struct ec_dg *dg)
 {
 	unsigned int i;
@@ -72,7 +72,7 @@ static inline void ec_dg_begin(struct ec_dg *dg)
 		dg->side_wkc[i] = EC_DG_NO_COPY;
 }
 
-/* A copy that has returned. The data are those of the first one in which a slave took part. */
+/* Take a received copy. The data are those of the first one that a slave has processed. */
 static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 side)
 {
 	u16 wkc = ec_dgram_wkc(d);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What is sent with direct access: by the sender of a post, or by the thread. */
+/* Sending with direct access: by the sender of a post, or by the thread of the posts. */
 #include <linux/ktime.h>
 #include "direct.h"
 #include "flight.h"
 #include "post_int.h"
 
-#define FLIGHT_NS	(300 * NSEC_PER_USEC)	/* on the wire: later ones leave together */
+#define FLIGHT_NS	(300 * NSEC_PER_USEC)	/* wire time in flight: more posts wait */
 
 static bool next_class(struct ec_carry *c, enum ec_post_class *class)
 {
@@ -34,8 +34,8 @@ static bool is_busy(const struct ec_carry *c, enum ec_post_class class, bool hol
 }
 
 /*
- * Send what is ready, several datagrams in a frame. With @hold no more than keeps the wire
- * busy, so that what becomes ready meanwhile shares frames. False: the device is full.
+ * Send posts that are READY, several in a frame. With @hold only as many as keep the wire busy:
+ * posts that become READY meanwhile share frames. False: the device is full.
  */
 static bool send_ready(struct ec_carry *c, bool hold)
 {
@@ -54,7 +54,7 @@ static bool send_ready(struct ec_carry *c, bool hold)
 
 		if (is_busy(c, class, hold)) {
 			WRITE_ONCE(c->held, true);
-			smp_mb();	/* before the places; pairs with ec_flight_landed() */
+			smp_mb();	/* @held before the places; see ec_flight_landed() */
 			if (is_busy(c, class, hold))
 				break;
 			WRITE_ONCE(c->held, false);
@@ -81,20 +81,20 @@ static bool push(struct ec_carry *c, bool hold)
 }
 
 /**
- * ec_direct_push() - send what is ready; with cyclic access the cycle owner gets to know of it
+ * ec_direct_push() - send posts that are READY; with cyclic access report that they wait
  * @c: posts of the master
  *
  * Context: Process. May sleep on the access lock, whose owner inherits the caller's priority.
  */
 void ec_direct_push(struct ec_carry *c)
 {
-	/* no driver reports room in its ring: the thread tries for all */
+	/* no driver reports a free transmit buffer: the thread tries for all callers */
 	if (!push(c, false))
 		ec_carry_kick(c);
 }
 
 /**
- * ec_direct_push_on() - the same for what no caller sends
+ * ec_direct_push_on() - the same for posts that no caller sends
  * @c: posts of the master
  *
  * Context: The thread of the posts.

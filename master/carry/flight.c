@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Posts of several callers leave as one frame where they fit: what a cyclic send may carry is
- * limited by frames, and most posts are a single short datagram. The frame has one slot; a post
- * knows where its datagrams are in it, so one that is cancelled leaves the others as they are.
+ * Posts of several callers share a frame where they fit: a cyclic send carries a limited number of
+ * frames, and most posts are a single short datagram. The frame has one slot. A post knows where
+ * its datagrams are in it, so a cancelled post does not affect the others.
  */
 #include <linux/bitops.h>
 #include <linux/ktime.h>
@@ -12,8 +12,8 @@
 #include "post_int.h"
 
 /*
- * May it share the frame? One that a slave never forwards must not take others with it twice,
- * so what is repeated leaves alone.
+ * May @post share the frame of @first? A repeated post is sent alone: if its frame is lost each
+ * time, it must not take other posts with it twice.
  */
 static bool shares(const struct ec_post *first, const struct ec_post *post, unsigned int n,
 		   unsigned int len, unsigned int dgrams, const struct ec_flight_room *room)
@@ -22,7 +22,7 @@ static bool shares(const struct ec_post *first, const struct ec_post *post, unsi
 	       dgrams + post->dgrams <= room->dgrams && len + post->len <= room->len;
 }
 
-/* Take posts that leave together to the frame of a slot; their order stays. */
+/* Move posts that are sent together to the frame of a slot, in their order. */
 static struct ec_post *gather(struct ec_carry *c, enum ec_post_class class, struct ec_slot *slot,
 			      const struct ec_flight_room *room)
 {
@@ -50,7 +50,7 @@ static struct ec_post *gather(struct ec_carry *c, enum ec_post_class class, stru
 	return first;
 }
 
-/* Write the frame. Its posts stay: they cannot be cancelled meanwhile. */
+/* Write the frame. Its posts cannot be cancelled meanwhile, see @built. */
 static void build(struct ec_flight *f, struct ec_slot *slot, u8 *frame)
 {
 	struct ec_frame_buf fb;
@@ -76,8 +76,8 @@ static void build(struct ec_flight *f, struct ec_slot *slot, u8 *frame)
 }
 
 /*
- * The time of the reference clock into a frame that sets clocks. If that clock does not reply, the
- * others take the time that was sent with a drift compensation datagram: one that has waited would
+ * Write the time of the reference clock into a frame that sets clocks. If that clock does not
+ * reply, the other clocks take the time in the drift compensation datagram, and an old one would
  * slow them down.
  */
 static void stamp(const struct ec_carry *c, u8 *frame, size_t len, u64 sent_ns)
@@ -94,7 +94,7 @@ static void stamp(const struct ec_carry *c, u8 *frame, size_t len, u64 sent_ns)
 			memcpy(d.data, time, d.len);
 }
 
-/* Before it leaves, see ecdev_awaits(). */
+/* Count a frame as in flight, before it is sent: see ecdev_awaits(). */
 static void take_off(struct ec_carry *c, struct ec_flight *f, struct ec_slot *slot, u8 sides)
 {
 	struct ec_links *l = c->links;
@@ -131,10 +131,10 @@ static void take_down(struct ec_carry *c, const struct ec_slot *slot)
 }
 
 /**
- * ec_flight_end() - a frame is in the air no more
+ * ec_flight_end() - a frame is not in flight any more
  * @c: posts of the master
  * @slot: its slot, not SENT any more
- * @posts: result: its posts that were not cancelled; their end is to be told
+ * @posts: result: its posts that were not cancelled; the caller reports their end
  *
  * Context: Any, with the lock of the posts held. RT-safe.
  */
@@ -152,7 +152,7 @@ void ec_flight_end(struct ec_carry *c, const struct ec_slot *slot, struct list_h
 	}
 }
 
-/* The device had no room: its posts are the first ones again. */
+/* The device was full: the posts are the first ones of their class again. */
 static void put_back(struct ec_carry *c, struct ec_slot *slot)
 {
 	struct ec_flight *f = &c->flight[slot->index];
@@ -172,7 +172,7 @@ static void put_back(struct ec_carry *c, struct ec_slot *slot)
 	ec_slot_put(slot);
 }
 
-/* The device does not send it at all. */
+/* The device refuses the frame: its posts end. */
 static void refused(struct ec_carry *c, struct ec_slot *slot, int err)
 {
 	unsigned long flags;
@@ -186,14 +186,14 @@ static void refused(struct ec_carry *c, struct ec_slot *slot, int err)
 }
 
 /**
- * ec_flight_send() - send the next post of a class, and with it what else fits
+ * ec_flight_send() - send the next post of a class, and others that fit into its frame
  * @c: posts of the master; ec_links_flush() must follow
  * @class: enum ec_post_class
- * @room: what the frame may hold beside its first post
+ * @room: limits of the frame for posts after the first one
  * @sent_ns: when it leaves (ktime)
  *
- * Context: The owner of the links, in an RCU read section. RT-safe.
- * Return: wire time of the frame, ns; 0: there is none; -EBUSY: no slot, or the device is full;
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
+ * Return: wire time of the frame, ns; 0: no post is READY; -EBUSY: no slot, or the device is full;
  * or as ec_links_send(): then its posts have ended.
  */
 int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
@@ -226,7 +226,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 	build(f, slot, frame);
 	if (class == EC_POST_CLOCK)
 		stamp(c, frame + EC_ETH_HDR, slot->eth_len - EC_ETH_HDR, sent_ns);
-	/* after it has left it may be back, and in use by another, at any time */
+	/* once it is sent, the reply may be received and the slot reused at any time */
 	wire_ns = f->wire_ns;
 	slot->done = ec_flight_landed;
 	slot->user = c;
@@ -243,7 +243,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 	return ret ?: wire_ns;
 }
 
-/* What a post has brought back, on each link. */
+/* Take the results of a post from the copy of each link. */
 static void take_results(const struct ec_slot *slot, struct ec_post *post)
 {
 	struct ec_frame_iter it[EC_MAX_LINKS];
@@ -263,7 +263,7 @@ static void take_results(const struct ec_slot *slot, struct ec_post *post)
 		if (post->dg[i].err != -EINPROGRESS)
 			continue;
 		for (left = slot->back; left; left &= left - 1)
-			/* checked against what was sent when it was matched */
+			/* compared with what was sent when the frame was matched */
 			if (ec_frame_iter_next(&it[__ffs(left)], &d) == 1)
 				ec_dg_take(&post->dg[i], &d, __ffs(left));
 		post->dg[i].sent_ns = slot->sent_ns;
@@ -273,7 +273,7 @@ static void take_results(const struct ec_slot *slot, struct ec_post *post)
 }
 
 /**
- * ec_flight_landed() - a frame is back: its posts get their results
+ * ec_flight_landed() - a reply is received: the posts of the frame get their results
  * @slot: in state DONE, free afterwards
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -292,7 +292,7 @@ void ec_flight_landed(struct ec_slot *slot)
 		take_results(slot, post);
 	ec_links_count(c->links, slot->sides & ~slot->back, lost);
 	ec_slot_put(slot);
-	/* the thread sends what found no place; the place before @held, pairs with send_ready() */
+	/* the thread sends held posts; the place before @held, pairs with send_ready() */
 	smp_mb();
 	if (READ_ONCE(c->held))
 		ec_carry_kick(c);

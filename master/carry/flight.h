@@ -1,21 +1,21 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Posts in one frame: what leaves together, what has come back, what is lost. */
+/* Posts in one frame: sent together, with a reply or lost together. */
 #ifndef EC_FLIGHT_H
 #define EC_FLIGHT_H
 
 #include "carry.h"
 
 /**
- * struct ec_flight_room - what a frame may hold beside its first post
+ * struct ec_flight_room - limits of a frame with several posts
  * @len: bytes behind the EtherType
- * @dgrams: datagrams, 0: the first post leaves alone
+ * @dgrams: datagrams; 0: the first post is sent alone
  */
 struct ec_flight_room {
 	unsigned int len;
 	unsigned int dgrams;
 };
 
-/* the post of a class that is to leave next, NULL: none; with the lock of the posts held */
+/* the next post of a class, NULL: none; with the lock of the posts held */
 static inline struct ec_post *ec_flight_first(struct ec_carry *c, enum ec_post_class class)
 {
 	lockdep_assert_held(&c->lock);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Loss has no event, so a thread looks for it: frames that are overdue, links that are down, posts
- * that cannot leave. It also sends with direct access what no caller sends. While nothing is on
- * its way it sleeps without a timer.
+ * No event reports a loss, so a thread checks for overdue frames, links that are down, and posts
+ * that wait for too long. With direct access it also sends posts that no caller sends. While there
+ * is no post, it sleeps without a timer.
  */
 #include <linux/bitmap.h>
 #include <linux/delay.h>
@@ -17,22 +17,22 @@
 #include "loss.h"
 #include "post_int.h"
 
-#define LOOK_NS		NSEC_PER_MSEC	/* between looks while a caller has waited for long */
-#define REST_NS		(20 * NSEC_PER_MSEC)	/* and otherwise, at most */
-#define RETRY_NS	(100 * NSEC_PER_USEC)	/* until there may be room in the transmit ring */
+#define LOOK_NS		NSEC_PER_MSEC	/* between two checks, at least */
+#define REST_NS		(20 * NSEC_PER_MSEC)	/* between two checks of posts, at most */
+#define RETRY_NS	(100 * NSEC_PER_USEC)	/* until a transmit buffer may be free */
 #define SLEEP_MIN_NS	(10 * NSEC_PER_USEC)
 #define SLOWEST		4	/* a device that sends at 25 Mbit/s instead of 100 */
-#define STUCK_CYCLES	100	/* a frame that has not left by then is too long for the cycle */
-#define STUCK_NS	(50 * NSEC_PER_MSEC)	/* or by then */
-#define FULL_NS		NSEC_PER_SEC	/* a device that sends nothing for so long hangs */
-#define WAIT_NS		(30 * (u64)NSEC_PER_SEC)	/* many hundred callers may be at work */
+#define STUCK_CYCLES	100	/* a frame not sent after so many is too long for the cycle */
+#define STUCK_NS	(50 * NSEC_PER_MSEC)	/* if this time is over as well */
+#define FULL_NS		NSEC_PER_SEC	/* a device that sends nothing for so long has failed */
+#define WAIT_NS		(30 * (u64)NSEC_PER_SEC)	/* hundreds of callers may wait */
 
 static bool fifo = true;
 module_param_named(fifo_posts, fifo, bool, 0444);
 MODULE_PARM_DESC(fifo_posts, "The thread that looks for lost acyclic frames has SCHED_FIFO 1 (Y)");
 
 /**
- * ec_loss_watch() - a caller has waited for a millisecond: the thread looks each millisecond
+ * ec_loss_watch() - let the thread check each millisecond: a caller has waited that long
  * @c: posts of the master
  *
  * Context: Process.
@@ -45,9 +45,9 @@ void ec_loss_watch(struct ec_carry *c)
 	ec_carry_kick(c);
 }
 
-/* frames on their way -------------------------------------------------------*/
+/* frames in flight ----------------------------------------------------------*/
 
-/* What the links are at this look. */
+/* State of the links at a check. */
 struct look {
 	u64 now;
 	u8 up;		/* mask */
@@ -80,13 +80,13 @@ static u64 limit_ns(const struct ec_links *l)
 
 	if (ec_access_is_cyclic(&l->access))
 		return ns;
-	/* half of it is for the frame, the rest for what is on its way before it */
+	/* half of it is for the frame, the rest for frames in flight before it */
 	return max(ns, ns / 2 + SLOWEST * (u64)ec_links_acyclic_ns(l));
 }
 
 /*
- * Why a frame will not come back; 0: it may. It has been overdue at two looks then, with a poll
- * between them: the machine may have stood still.
+ * Why a frame is lost; 0: it may still be received. A timeout takes two checks with a poll of the
+ * device between them: the whole machine may have stood still.
  */
 static int outcome(struct ec_carry *c, unsigned int i, const struct look *k)
 {
@@ -120,7 +120,7 @@ static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look 
 	if (test_bit(i, c->flying) && atomic_read(&slot->state) == EC_SLOT_SENT)
 		err = outcome(c, i, k);
 	if (err) {
-		/* the copy of one link is a reply */
+		/* a frame with the copy of one link is not lost */
 		settled = ec_slot_settle(slot);
 		lost = !settled && ec_slot_cancel(slot, k->now);
 	}
@@ -138,7 +138,7 @@ static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look 
 
 /* posts that have not left --------------------------------------------------*/
 
-/* Does the first post still fit beside the cycle? Not if it has waited for that so long. */
+/* Has the first post waited so long for free wire time that it is too long for the cycle? */
 static bool is_stuck(const struct ec_carry *c, const struct look *k)
 {
 	u64 limit = ec_access_interval_us(&c->links->access) * (u64)NSEC_PER_USEC * STUCK_CYCLES;
@@ -154,7 +154,7 @@ static bool is_stuck(const struct ec_carry *c, const struct look *k)
 	return (s64)(k->now - since) > (s64)limit;
 }
 
-/* Why a post will not leave; 0: it may. */
+/* Why a post will not be sent; 0: it may still be. */
 static int refusal(struct ec_carry *c, const struct ec_post *post, const struct look *k)
 {
 	u64 since = max(post->since_ns, post->due_ns), full = ec_read64(&c->full_ns);
@@ -183,7 +183,7 @@ static void look_at_list(struct ec_carry *c, struct list_head *list, const struc
 
 		if (!err && stuck)
 			err = -EAGAIN;
-		/* the first one alone */
+		/* only the first post is stuck */
 		stuck = false;
 		if (err)
 			ec_post_refuse(c, post, err, ended);
@@ -219,13 +219,13 @@ static void look_at_all(struct ec_carry *c)
 	unsigned int i;
 	struct look k;
 
-	/* have they arrived unnoticed? Some devices know only by a look that their link is down */
+	/* replies may wait in a device; some devices read their link state only by a look */
 	if (c->overdue) {
 		for (i = 0; i < EC_MAX_LINKS; i++)
 			ec_link_look(&l->link[i]);
 		ec_access_poll(l);
 	}
-	/* the monitor may be one of those who wait */
+	/* the monitor checks this as well, but may be a caller that waits here */
 	if (ec_access_is_cyclic(&l->access) && ec_access_timed_out(l))
 		ec_access_timeout(l);
 	look_at_links(l, &k);
@@ -240,7 +240,7 @@ static void look_at_all(struct ec_carry *c)
 		WRITE_ONCE(c->watched, false);
 }
 
-/* Until when a post that is ready need not be sent by the thread. */
+/* Time (ktime) at which the thread has to send a post. */
 static u64 until_due(struct ec_carry *c, u64 now)
 {
 	unsigned int class;
@@ -254,7 +254,7 @@ static u64 until_due(struct ec_carry *c, u64 now)
 	return c->due_ns;
 }
 
-/* Until when nothing has to be done: ktime; U64_MAX: until it is kicked. */
+/* Time (ktime) until which the thread may sleep; U64_MAX: until it is kicked. */
 static u64 idle_until(struct ec_carry *c, u64 looked)
 {
 	struct ec_links *l = c->links;
@@ -270,24 +270,24 @@ static u64 idle_until(struct ec_carry *c, u64 looked)
 	if (READ_ONCE(c->watched))
 		until = now;
 	until = max(until, looked + LOOK_NS);
-	/* what has no place is sent when a frame has landed */
+	/* held posts are sent when a reply is received */
 	if (!READ_ONCE(c->held))
 		until = min(until, until_due(c, now));
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	return until;
 }
 
-/* Runs where the thread does not: with a loop of a higher priority on its CPU, say. */
+/* The thread has not run, for example because of a loop of higher priority on its CPU. */
 static enum hrtimer_restart starved(struct hrtimer *t)
 {
 	struct ec_base *b = container_of(t, struct ec_carry, starved)->links->base;
 
-	/* the whole machine stood still, as a guest does that is paused: once more */
+	/* the whole machine stood still, like a paused guest: one more second */
 	if (ktime_get_ns() - ktime_to_ns(hrtimer_get_expires(t)) > NSEC_PER_SEC / 10) {
 		hrtimer_forward_now(t, ns_to_ktime(NSEC_PER_SEC));
 		return HRTIMER_RESTART;
 	}
-	/* it was started on the CPU of the thread, or of the one that kicked it */
+	/* the timer was started on the CPU of the thread, or where it was kicked */
 	ec_log_event(b, EC_LOG_ANY, 0, KERN_WARNING,
 		     "thread EtherCAT%u-post has not run for a second: a thread of higher priority keeps its CPU, perhaps %u; lost frames are not found meanwhile\n",
 		     b->index, raw_smp_processor_id());
@@ -312,11 +312,11 @@ static void sleep_until(struct ec_carry *c, u64 until)
 	__set_current_state(TASK_RUNNING);
 }
 
-/* Nothing to do for as long as it rests between looks: until it is kicked. */
+/* Sleep until a time (ktime), or a kick. With U64_MAX not if there are posts by now. */
 static void rest(struct ec_carry *c, u64 until)
 {
 	WRITE_ONCE(c->rests, until == U64_MAX);
-	smp_mb();	/* before the posts; pairs with ec_post_send() */
+	smp_mb();	/* @rests before the posts; pairs with ec_post_send() */
 	if (until != U64_MAX || !ec_carry_is_busy(c))
 		sleep_until(c, until);
 	WRITE_ONCE(c->rests, false);
@@ -331,7 +331,7 @@ static int run(void *data)
 		sched_set_fifo_low(current);
 	while (!kthread_should_stop()) {
 		WRITE_ONCE(c->kicked, false);
-		smp_mb();	/* before what it stands for is read */
+		smp_mb();	/* cleared before the posts are read */
 		if (ec_carry_has_left(c) && !ec_direct_push_on(c))
 			usleep_range(RETRY_NS / 1000, RETRY_NS / 500);
 		if (ktime_get_ns() - looked >= LOOK_NS) {

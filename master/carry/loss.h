@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* The thread that finds frames which will not come back. */
+/* The thread that finds lost frames. */
 #ifndef EC_LOSS_H
 #define EC_LOSS_H
 

@@ -42,7 +42,7 @@ static void fail(struct ec_post *post, int err)
 			post->dg[i].err = err;
 }
 
-/* The last access to a post of a caller that sleeps: it may be gone then. */
+/* Wake a caller that sleeps. It may free its posts from then on, so this is the last access. */
 static void wake_caller(struct ec_post *post)
 {
 	struct ec_post_wait *wait = post->wait;
@@ -70,7 +70,7 @@ static void make_ready(struct ec_carry *c, struct ec_post *post)
 }
 
 /**
- * ec_post_due() - posts whose time has come may be sent
+ * ec_post_due() - move posts that are due to the lists of posts to be sent
  * @c: posts of the master
  * @now_ns: time (ktime)
  *
@@ -94,7 +94,7 @@ void ec_post_due(struct ec_carry *c, u64 now_ns)
 
 /**
  * ec_post_send() - send a post
- * @post: IDLE; its datagrams fit into one frame, and stay as they are until it has ended
+ * @post: IDLE; its datagrams fit into one frame, and do not change until it has ended
  * @due_ns: not before that time (ktime); 0: as soon as possible
  *
  * With direct access the thread of the posts sends it, unless the caller uses ec_direct_push().
@@ -117,7 +117,7 @@ void ec_post_send(struct ec_post *post, u64 due_ns)
 	if (!c->closed) {
 		make_ready(c, post);
 	} else {
-		/* a caller that sleeps must not do so for ever */
+		/* else a caller that waits would sleep forever */
 		fail(post, -ENODEV);
 		wake_caller(post);
 	}
@@ -130,7 +130,7 @@ void ec_post_send(struct ec_post *post, u64 due_ns)
 		ec_carry_kick(c);
 }
 
-/* READY no more. */
+/* Take a READY post from its list. */
 static void take_ready(struct ec_carry *c, struct ec_post *post)
 {
 	lockdep_assert_held(&c->lock);
@@ -140,7 +140,7 @@ static void take_ready(struct ec_carry *c, struct ec_post *post)
 }
 
 /**
- * ec_post_recall() - take a post back that was not sent so far
+ * ec_post_recall() - withdraw a post that was not sent so far
  * @post: post in any state
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -160,7 +160,7 @@ bool ec_post_recall(struct ec_post *post)
 	return ready;
 }
 
-/* Leave its frame, if that has been built; the frame goes on. */
+/* Take a post out of its frame, if that has been built; the frame stays in flight. */
 static void leave(struct ec_carry *c, struct ec_post *post)
 {
 	lockdep_assert_held(&c->lock);
@@ -171,8 +171,8 @@ static void leave(struct ec_carry *c, struct ec_post *post)
 }
 
 /**
- * ec_post_cancel() - wait until a post is IDLE and its end is not being told
- * @post: post whose user sends it no more; not from its own @done
+ * ec_post_cancel() - end a post: afterwards it is IDLE, and its @done does not run
+ * @post: post that its user sends no more; not from its own @done
  *
  * Context: Process. May sleep, as long as @done takes.
  */
@@ -197,12 +197,12 @@ void ec_post_cancel(struct ec_post *post)
 }
 
 /**
- * ec_post_give_up() - a caller that sleeps wants to wait no longer
+ * ec_post_give_up() - end the posts of a caller that sleeps, except for those in flight
  * @post: its posts, with the same @wait
  * @n: how many
- * @err: result of the datagrams of those that were not sent
+ * @err: result of the datagrams of these posts
  *
- * What is on its way is awaited, but not repeated.
+ * Posts in flight are still awaited, but not sent again.
  *
  * Context: Process.
  * Return: whether all have ended.
@@ -247,7 +247,7 @@ void ec_post_refuse(struct ec_carry *c, struct ec_post *post, int err, struct li
 }
 
 /**
- * ec_post_finish() - tell the end of posts
+ * ec_post_finish() - report the end of posts
  * @c: posts of the master
  * @posts: IDLE and @running, with all results; an empty list afterwards
  *
@@ -288,7 +288,7 @@ static bool may_repeat(struct ec_post *post, int err)
 }
 
 /**
- * ec_post_lost() - the frame of posts will not come back: they go again, or get an error
+ * ec_post_lost() - the frame of posts is lost: they are sent again, or end with an error
  * @c: posts of the master
  * @posts: IDLE and @running; an empty list afterwards
  * @err: -ETIMEDOUT: datagrams that may be repeated are, see struct ec_dg; or another -errno

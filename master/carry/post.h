@@ -1,22 +1,22 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Posts: acyclic datagrams, some that fit into one frame. Whatever is not cyclic goes as posts:
- * a step of a mailbox is one, ec_xfer() is a window of them and a completion.
+ * Posts: a post is a few acyclic datagrams that fit into one frame. All acyclic frames consist of
+ * posts: a step of a mailbox is one, ec_xfer() is a window of them and a completion.
  *
  *   IDLE -> READY -> FLYING -> IDLE
  *             ^---------/  its frame was lost, and it may be sent again
  *
- * Its end is one of reply, loss and cancel. Reply and loss are told by @done, once:
+ * A post ends by a reply, a loss or a cancel. @done reports a reply or a loss, once:
  *
- * - in the context that has received the frame, possibly a hard interrupt on PREEMPT_RT, or by
- *   the thread of the posts: so it takes no sleeping lock, and what it does is bounded;
- * - also when the device of the link has gone away;
+ * - it runs in the context that has received or sent the frame, possibly a hard interrupt on
+ *   PREEMPT_RT, or in the thread of the posts: so it is bounded and takes no sleeping lock;
+ * - it runs as well when the device of the link was withdrawn;
  * - it may send its post again;
- * - never after ec_post_cancel() has returned: then the memory may be freed, and a reply that
- *   comes later finds nothing.
+ * - it never runs after ec_post_cancel() has returned: the memory may be freed then, and a late
+ *   reply does not access it.
  *
- * A post belongs to its user, who provides its memory and that of its datagrams. While it is
- * READY or FLYING no other thread changes them. Nothing is allocated for a frame.
+ * A post belongs to its user, which provides its memory and that of its datagrams. While it is
+ * READY or FLYING the user does not change them. Nothing is allocated for a frame.
  */
 #ifndef EC_POST_H
 #define EC_POST_H
@@ -28,11 +28,11 @@
 
 struct ec_links;
 
-/* In this order a list of them is looked through. */
+/* which of the posts that wait are sent first */
 enum ec_post_class {
 	EC_POST_NORMAL,
-	EC_POST_URGENT,		/* of the monitor: before what others have left */
-	EC_POST_CLOCK,		/* sets clocks: many, which others do not wait behind */
+	EC_POST_URGENT,		/* of the monitor: before posts of other callers */
+	EC_POST_CLOCK,		/* sets clocks: they are many, others do not wait behind them */
 	EC_POST_CLASSES
 };
 
@@ -58,7 +58,7 @@ struct ec_post {
 	struct ec_links *links;
 	/** @done: all datagrams have their results; see above; immutable */
 	void (*done)(struct ec_post *post);
-	/** @wait: who sleeps instead, with @done NULL */
+	/** @wait: the caller that sleeps instead, with @done NULL */
 	struct ec_post_wait *wait;
 	/** @dg: the datagrams, which the user sets */
 	struct ec_dg *dg;
@@ -87,7 +87,7 @@ struct ec_post {
 	u8 state;
 	/** @tries: frames with it that were lost in a row */
 	u8 tries;
-	/** @running: its end is being told */
+	/** @running: its end is being reported */
 	bool running;
 };
 

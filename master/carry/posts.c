@@ -6,8 +6,8 @@
 /**
  * ec_carry_init() - prepare the posts of a master
  * @c: zeroed structure
- * @l: links, which get to know of it
- * @ops: what higher layers want to know, NULL: nothing; stays
+ * @l: links; their @carry is set
+ * @ops: callbacks of higher layers, NULL: none; they stay valid
  *
  * Context: Process. May sleep.
  * Return: 0 or -errno.
@@ -31,7 +31,7 @@ int ec_carry_init(struct ec_carry *c, struct ec_links *l, const struct ec_carry_
 
 /**
  * ec_carry_exit() - end all posts
- * @c: posts of links without device; later posts are not sent and never done
+ * @c: posts of links without device; later posts are not sent, and their @done is not called
  *
  * Context: Process. May sleep.
  */

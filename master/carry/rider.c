@@ -7,8 +7,8 @@
 #include "../link/links.h"
 #include "rider.h"
 
-#define SENDS	3	/* of the cycle; the first one without rider is no reason to give up */
-#define SLACK_US	5000	/* the owner of a fast cycle may pause */
+#define SENDS	3	/* cycles in which a rider may wait for its frame */
+#define SLACK_US	5000	/* more time for it: the owner of a fast cycle may pause */
 #define STEP_US		2000	/* between two checks of the cycle and the link */
 
 /**
@@ -42,12 +42,12 @@ static bool move(struct ec_rider *r, enum ec_rider_state from, enum ec_rider_sta
 static void queue(struct ec_riders *rs, struct ec_rider *r)
 {
 	atomic_set_release(&r->state, EC_RIDER_QUEUED);
-	/* the state before the bit: the cycle looks at the bit, then at the state */
+	/* the state before the bit: the cycle reads the bit, then the state */
 	smp_mb__before_atomic();
 	atomic_or(BIT(r->number), &rs->queued);
 }
 
-/* Has the time for a cycle passed, or can none come any more? */
+/* Has the time for a cycle passed, or does none send any more? */
 static bool is_over(struct ec_riders *rs, u64 until_ns)
 {
 	struct ec_links *l = rs->links;
@@ -72,7 +72,7 @@ void ec_rider_begin(struct ec_riders *rs, struct ec_rider *r)
 }
 
 /**
- * ec_rider_is_back() - has the rider come back?
+ * ec_rider_is_back() - is the reply with the rider received?
  * @r: rider after ec_rider_begin()
  *
  * Context: Any; the owner of @r. RT-safe.
@@ -86,7 +86,7 @@ bool ec_rider_is_back(const struct ec_rider *r)
 /**
  * ec_rider_again() - let the next frame of the cycle carry it again
  * @rs: riders of the master
- * @r: rider that is back; its data are 0 again
+ * @r: rider in state BACK; its data become 0
  *
  * Context: Any; the owner of @r. RT-safe.
  */
@@ -97,12 +97,12 @@ void ec_rider_again(struct ec_riders *rs, struct ec_rider *r)
 }
 
 /**
- * ec_rider_end() - take a rider back, whatever has become of it
+ * ec_rider_end() - end the use of a rider, with or without a result
  * @r: rider after ec_rider_begin()
  *
  * Context: Process; the owner of @r. Does not wait for a frame.
  * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
- * -ETIMEDOUT: its frame has not come back so far.
+ * -ETIMEDOUT: no reply to its frame so far.
  */
 int ec_rider_end(struct ec_rider *r)
 {
@@ -120,7 +120,7 @@ int ec_rider_end(struct ec_rider *r)
 				return -ETIMEDOUT;
 			break;
 		default:
-			/* the cycle has it for a moment */
+			/* HELD: the cycle owner uses it for a moment */
 			usleep_range(20, 50);
 		}
 	}
@@ -133,7 +133,7 @@ int ec_rider_end(struct ec_rider *r)
  *
  * Context: Process; the owner of @r. May sleep.
  * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
- * -ETIMEDOUT: its frame has not come back.
+ * -ETIMEDOUT: its frame is lost.
  */
 int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r)
 {
@@ -144,7 +144,7 @@ int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r)
 	if (!ec_access_is_cyclic(&l->access))
 		return -EAGAIN;
 	ec_rider_begin(rs, r);
-	/* the completion may be that of an earlier round */
+	/* the completion may be that of an earlier frame: the state decides */
 	for (;;) {
 		wait_for_completion_timeout(&r->done, usecs_to_jiffies(STEP_US));
 		if (atomic_read_acquire(&r->state) == EC_RIDER_BACK)
@@ -173,11 +173,11 @@ static u32 more_ns(const struct ec_frame_buf *fb, size_t bytes)
  * @rs: riders of the master
  * @fb: frame with the process data
  * @index: datagram index of the frame
- * @riding: result: which riders, and their round
+ * @riding: result: the riders, and the number of the frame
  *
  * The wire time of a cycle with them stays within the limit for acyclic frames.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_riders_add(struct ec_riders *rs, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding)
@@ -198,7 +198,7 @@ void ec_riders_add(struct ec_riders *rs, struct ec_frame_buf *fb, u8 index,
 		/* see queue(): the bit before the state */
 		smp_mb__after_atomic();
 		if (!move(r, EC_RIDER_QUEUED, EC_RIDER_HELD))
-			continue;	/* given up */
+			continue;	/* its owner has ended it */
 		ns = more_ns(fb, EC_DGRAM_OVERHEAD + r->len);
 		p = ns <= slack ? ec_frame_add(fb, r->cmd, index, r->adp, r->ado, r->len) : NULL;
 		if (!p) {
@@ -214,7 +214,7 @@ void ec_riders_add(struct ec_riders *rs, struct ec_frame_buf *fb, u8 index,
 	}
 }
 
-/* The one that this frame carries, not one of a later round. */
+/* Take the rider that this frame carries; false: it has ended, or is in a later frame. */
 static bool hold(struct ec_rider *r, u32 seq)
 {
 	if (!move(r, EC_RIDER_SENT, EC_RIDER_HELD))
@@ -230,7 +230,7 @@ static bool hold(struct ec_rider *r, u32 seq)
  * @rs: riders of the master
  * @riding: riders of the frame
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_riders_return(struct ec_riders *rs, const struct ec_riding *riding)
 {
@@ -245,13 +245,13 @@ void ec_riders_return(struct ec_riders *rs, const struct ec_riding *riding)
 }
 
 /**
- * ec_riders_take() - take what the riders of a frame have brought back
+ * ec_riders_take() - take the results of the riders of a frame
  * @rs: riders of the master
  * @riding: riders of the frame
  * @at: datagram behind the process data
  * @end: end of the frame
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_riders_take(struct ec_riders *rs, const struct ec_riding *riding, const u8 *at,
 		    const u8 *end)
@@ -268,7 +268,7 @@ void ec_riders_take(struct ec_riders *rs, const struct ec_riding *riding, const 
 		if (d.len != r->len)
 			break;
 		if (!hold(r, riding->seq))
-			continue;	/* given up */
+			continue;	/* its owner has ended it */
 		memcpy(r->data, d.data, r->len);
 		r->wkc = ec_dgram_wkc(&d);
 		r->back = d.adp;

@@ -4,7 +4,7 @@
  * frame of their own, and no domain counts them.
  *
  *   IDLE -> QUEUED -> HELD -> SENT -> HELD -> BACK -> IDLE
- *              \----------------\-> IDLE  (the owner gives up)
+ *              \----------------\-> IDLE  (its owner ends it)
  */
 #ifndef EC_RIDER_H
 #define EC_RIDER_H
@@ -36,11 +36,11 @@ enum ec_rider_state {
  * @adp: low half of the address
  * @ado: high half of the address
  * @len: data bytes
- * @data: sent; then as it came back
+ * @data: sent; then that of the reply
  * @wkc: result: working counter
- * @back: result: @adp as it came back
+ * @back: result: @adp of the reply
  * @irq: result: OR of the enabled events of the slaves passed
- * @done: completed when it is back
+ * @done: completed when the reply is received
  */
 struct ec_rider {
 	atomic_t state;
@@ -61,8 +61,8 @@ struct ec_rider {
  * struct ec_riders - riders of a master
  * @links: way to the slaves, immutable
  * @rider: all of them, NULL: none with this number
- * @queued: mask of those that may wait for a frame
- * @seq: frames that have carried riders; the cycle owner's
+ * @queued: mask of riders that may wait for a frame
+ * @seq: number of the last frame that carried riders; written by the cycle owner
  */
 struct ec_riders {
 	struct ec_links *links;

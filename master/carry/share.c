@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * What one cyclic send carries of the acyclic frames is limited, so that its execution time
- * is: frames per millisecond of cycle, clock frames among them, frames in all, and half of the
- * free wire time. Short posts leave as one frame.
+ * The acyclic frames of one cyclic send are limited, so that its execution time is: frames per
+ * millisecond of cycle, clock frames among them, frames in total, and half of the free wire time.
+ * Short posts share a frame.
  */
 #include <linux/ktime.h>
 #include <linux/minmax.h>
@@ -27,7 +27,7 @@ module_param_cb(max_acyclic, &max_ops, &ec_share_max, 0644);
 MODULE_PARM_DESC(max_acyclic, "Most acyclic frames that one cyclic send carries, 1 to 192 (64)");
 
 /**
- * ec_share_clock_bytes() - how long clock frames may be to leave as often as they may
+ * ec_share_clock_bytes() - length of clock frames of which the permitted number fits
  * @l: links
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -44,9 +44,9 @@ u16 ec_share_clock_bytes(const struct ec_links *l)
 }
 
 /*
- * The class of the post to send next, and bytes of its frame; false: none may be sent. Clocks and
- * others take turns, as long as there is credit for clocks. Between two urgent ones one of the
- * others goes: where hardly any frame fits the urgent ones would be the only ones.
+ * The class of the post to send next, and bytes of its frame; false: none may be sent. Clock posts
+ * and others take turns, as long as there is credit for clocks. Between two urgent posts a normal
+ * one is sent: where hardly any frame fits, urgent posts would be the only ones otherwise.
  */
 static bool next_post(struct ec_carry *c, enum ec_post_class *class, unsigned int *len)
 {
@@ -74,8 +74,8 @@ static bool next_post(struct ec_carry *c, enum ec_post_class *class, unsigned in
 }
 
 /*
- * A single frame may take all wire time before the next cycle; more of them share half of
- * what the cycle leaves.
+ * A single frame may take all wire time before the next cycle; more frames share half of the free
+ * wire time.
  */
 static bool fits(const struct ec_carry *c, u32 used_ns, u32 frame_ns)
 {
@@ -87,7 +87,7 @@ static bool fits(const struct ec_carry *c, u32 used_ns, u32 frame_ns)
 	       2ull * (c->share.wire_ns + frame_ns) <= ec_access_slack_ns(c->links);
 }
 
-/* What a frame may hold that callers share; those of clocks leave alone. */
+/* Limits of a frame that posts share; a clock post is sent alone. */
 static struct ec_flight_room find_room(const struct ec_carry *c, enum ec_post_class class,
 				       u32 used_ns)
 {
@@ -116,8 +116,8 @@ static void share_count(struct ec_carry *c, enum ec_post_class class, u32 frame_
 }
 
 /*
- * May a frame that does not fit go nevertheless, and make the next cycle late?
- * So many times a second, evenly: then also a full wire carries acyclic frames.
+ * May a frame that does not fit be sent, and delay the next cycle? A limited number of times a
+ * second, evenly spaced, so that a full wire carries acyclic frames as well.
  */
 static bool may_be_late(struct ec_share *share)
 {
@@ -145,12 +145,12 @@ static void note_stuck(struct ec_carry *c, enum ec_post_class class)
 }
 
 /**
- * ec_share_send_left() - send what others have left, as far as it fits before
- *	the next cycle; see ecrt_master_set_late_cycles() for what does not
+ * ec_share_send_left() - send posts that wait and fit before the next cycle; see
+ *	ecrt_master_set_late_cycles() for posts that do not fit
  * @c: posts of the master; ec_links_flush() must follow
  * @wire_ns: wire time this cycle has used
  *
- * Context: The master's single cyclic caller, in an RCU read section. RT-safe.
+ * Context: The cycle owner, in an RCU read section. RT-safe.
  */
 void ec_share_send_left(struct ec_carry *c, u32 wire_ns)
 {
@@ -158,7 +158,7 @@ void ec_share_send_left(struct ec_carry *c, u32 wire_ns)
 	unsigned int n, len, burst = ec_links_burst(l);
 	enum ec_post_class class;
 
-	/* the next cycle needs transmit buffers, too */
+	/* the next cycle needs transmit buffers as well */
 	for (n = 0; n < burst && ec_carry_has_left(c) && next_post(c, &class, &len); n++) {
 		struct ec_flight_room room;
 		int ret;
@@ -172,7 +172,7 @@ void ec_share_send_left(struct ec_carry *c, u32 wire_ns)
 			break;
 		}
 		room = find_room(c, class, wire_ns);
-		/* behind what this cycle has sent before */
+		/* behind the frames that this cycle has sent before */
 		ret = ec_flight_send(c, class, &room, ec_read64(&l->access.last_send_ns) + wire_ns);
 		if (ret <= 0)
 			break;
@@ -182,13 +182,13 @@ void ec_share_send_left(struct ec_carry *c, u32 wire_ns)
 }
 
 /**
- * ec_share_send_between() - send what others have left, between two cycles
+ * ec_share_send_between() - send posts that wait, between two cycles
  * @c: posts of the master, whose links are entered
  *
- * Nothing is sent when the next cycle is so near that even one frame might be in
- * its way; what is left goes with it.
+ * Nothing is sent when the next cycle is so near that one frame might delay it; its own send
+ * carries the posts then.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_share_send_between(struct ec_carry *c)
 {

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What one cyclic send carries of the acyclic frames that wait. */
+/* How many of the acyclic frames that wait one cyclic send carries. */
 #ifndef EC_SHARE_H
 #define EC_SHARE_H
 
@@ -23,9 +23,9 @@ struct ec_share {
 	bool clock_last;
 	/** @late_per_s: cycles a second that acyclic frames may delay */
 	u32 late_per_s;
-	/** @late_next_ns: no more before that time (ktime) */
+	/** @late_next_ns: from this time on the next cycle may be delayed (ktime) */
 	u64 late_next_ns;
-	/** @late_cycles: cycles they have delayed since activation */
+	/** @late_cycles: cycles that acyclic frames have delayed since activation */
 	u32 late_cycles;
 };
 
@@ -41,7 +41,7 @@ extern unsigned int ec_share_max;	/* acyclic frames of one send: max_acyclic of 
  *
  * Short cycles carry a clock frame only now and then.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 static inline void ec_share_begin(struct ec_share *share, u32 interval_us)
 {

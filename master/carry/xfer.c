@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Callers that sleep until their datagrams are back: a window of posts, and a completion. */
+/* Callers that sleep until their datagrams have results: a window of posts, and a completion. */
 #include <linux/hrtimer.h>
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
@@ -11,12 +11,12 @@
 #include "xfer.h"
 
 #define TRIES		4	/* of a post that was too long for its cycle, shorter each time */
-#define WATCH_US	1000	/* a wait that lasts longer is watched */
-#define FEW		4	/* posts without memory of their own */
+#define WATCH_US	1000	/* a wait that lasts longer is watched, see ec_loss_watch() */
+#define FEW		4	/* posts on the stack of the caller */
 
 /*
- * Half of the posts a batch has on their way. While one half is waited for, the other one keeps
- * the wire busy.
+ * Half of the posts that a batch has in flight. While the caller waits for one half, the other one
+ * keeps the wire busy.
  */
 struct half {
 	struct ec_post_wait wait;
@@ -31,17 +31,17 @@ struct batch {
 	enum ec_post_class class;
 	unsigned int most;	/* posts of a half */
 	struct half half[2];
-	int err;	/* there is no sense in sending the others */
+	int err;	/* why the other datagrams are not sent */
 };
 
-/* The datagrams of a post from @first on: a frame that fits before the next cycle, at least one. */
+/* How many datagrams from @first on fit into a frame before the next cycle; at least one. */
 static unsigned int xfer_count(const struct batch *b, unsigned int first)
 {
 	const struct ec_links *l = b->c->links;
 	unsigned int most = l->max_datagrams, len = 0, i;
 	u16 room = EC_DGRAM_OVERHEAD + max(ec_access_room(l), b->dg[first].len);
 
-	/* clock frames are as long as their share, so that as many may leave as shall */
+	/* clock frames are shorter, so that the permitted number of them fits into a cycle */
 	if (b->class == EC_POST_CLOCK) {
 		most = EC_CLOCK_DATAGRAMS;
 		room = clamp_t(u16, ec_share_clock_bytes(l), EC_DGRAM_OVERHEAD + b->dg[first].len,
@@ -56,7 +56,7 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 	return i - first;
 }
 
-/* Send half a window of posts from datagram @first on; returns the first one that is left. */
+/* Send half a window of posts from datagram @first on; returns the first datagram not sent. */
 static unsigned int send_half(struct batch *b, struct half *h, unsigned int first)
 {
 	unsigned int i;
@@ -86,7 +86,7 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 	return first;
 }
 
-/* Most are back before a timer is worth more than this one. */
+/* Wait without the thread of the posts: most replies are received within this time. */
 static bool wait_unwatched(struct completion *done)
 {
 	ktime_t limit = ns_to_ktime(WATCH_US * NSEC_PER_USEC);
@@ -126,7 +126,7 @@ static void finish_half(struct batch *b, struct half *h)
 	h->n = 0;
 }
 
-/* All datagrams that are to be sent, once. */
+/* Send all datagrams without a result, once. */
 static void exchange(struct batch *b)
 {
 	unsigned int i, first = 0, cur = 0;
@@ -148,7 +148,7 @@ static void exchange(struct batch *b)
 			b->dg[i].err = b->err;
 }
 
-/* What did not fit beside the cycle any more goes again, in shorter frames. */
+/* Datagrams that did not fit beside the cycle any more are sent again, in shorter frames. */
 static bool has_to_go_again(const struct batch *b)
 {
 	unsigned int i;
@@ -172,7 +172,7 @@ static int result(struct batch *b)
 	return ret;
 }
 
-/* No wait for the turn of a frame that cannot leave. */
+/* Why a frame cannot be sent at all: the caller does not wait for it. */
 static int xfer_link_error(const struct ec_links *l)
 {
 	if (!ec_links_attached(l))
@@ -188,7 +188,7 @@ static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum e
 	unsigned int i, try, window = class == EC_POST_CLOCK ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
 	struct ec_post few[FEW], *more = NULL;
 
-	/* tools must not hold up the monitor, which looks after the application and the link */
+	/* tools must not delay the monitor, which watches the application and the link */
 	if (class == EC_POST_NORMAL && current == READ_ONCE(b.c->monitor))
 		b.class = EC_POST_URGENT;
 	for (i = 0; i < n; i++) {
@@ -221,9 +221,9 @@ static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum e
  * Repeatable datagrams are sent again when their frame is lost, others never.
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0 when every datagram came back (whatever its working counter), or
- * the error of the first that did not; -EMSGSIZE when one fits no frame, then
- * nothing was sent.
+ * Return: 0 when every datagram was received, with any working counter; else the error of the
+ * first one that was not; -EMSGSIZE when one fits into no frame, or -ENOMEM: then nothing was
+ * sent.
  */
 int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 {
@@ -231,7 +231,7 @@ int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 }
 
 /**
- * ec_xfer_all() - exchange datagrams in each of which one slave must take part
+ * ec_xfer_all() - exchange datagrams, each of which one slave has to process
  * @l: links
  * @dg: datagrams; results are in them
  * @n: how many
@@ -256,7 +256,7 @@ int ec_xfer_all(struct ec_links *l, struct ec_dg *dg, unsigned int n)
  * @dg: datagrams; results are in them
  * @n: how many
  *
- * For the monitor: it must see the bus while many others are at work.
+ * For the monitor, which has to reach the bus while many other callers send.
  *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_xfer().
@@ -312,7 +312,7 @@ int ec_xfer_one(struct ec_links *l, u8 cmd, u16 adp, u16 ado, void *data, u16 le
  * @len: bytes
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0, -EIO when the slave did not take part, or as ec_xfer().
+ * Return: 0, -EIO when the slave did not process it, or as ec_xfer().
  */
 int ec_xfer_fprd(struct ec_links *l, u16 station, u16 ado, void *data, u16 len)
 {
@@ -330,7 +330,7 @@ int ec_xfer_fprd(struct ec_links *l, u16 station, u16 ado, void *data, u16 len)
  * @len: bytes
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0, -EIO when the slave did not take part, or as ec_xfer().
+ * Return: 0, -EIO when the slave did not process it, or as ec_xfer().
  */
 int ec_xfer_fpwr(struct ec_links *l, u16 station, u16 ado, const void *data, u16 len)
 {

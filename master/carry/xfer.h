@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Acyclic datagrams: a batch goes out, the caller sleeps until it is back. */
+/* Acyclic datagrams: a batch is sent, the caller sleeps until all have results. */
 #ifndef EC_XFER_H
 #define EC_XFER_H
 

@@ -89,7 +89,7 @@ COMMENTS = {
     "lib/ecrt": 5,
     "lib/tools": 20,
     "master/boundary": 25,
-    "master/carry": 69,
+    "master/carry": 0,
     "master/cycle": 98,
     "master/link": 0,
     "master/mailbox": 67,
