@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The two mailboxes of a slave: a machine that gives messages to the slave and reads those of
- * the slave. It advances when its datagram is back, in the context that receives, so with a
- * cycle its next datagram leaves with the send of the same cycle. It has one datagram on its way
- * at most, and none while there is nothing to do.
+ * The mailbox transport of a slave: it writes messages to the slave and reads those of the slave.
+ * It advances when its datagram is received, in the context that receives, so with a cycle its
+ * next datagram leaves with the send of the same cycle. It has at most one datagram in flight, and
+ * none while there is nothing to do.
  *
  * A slave with the repeat mechanism (EEPROM, general category) drops a message whose counter is
- * that of the one before, and puts its own last message into SM1 again when it is asked to. So
- * with it no lost frame loses a message or doubles it.
+ * that of the one before, and puts its own last message into SM1 again on request. So with it no
+ * lost frame loses a message or doubles it.
  */
 #include <linux/ktime.h>
 #include "../wire/fmmu.h"
@@ -25,7 +25,7 @@
 
 static void box_set_job(struct ec_box *box, enum ec_box_job job)
 {
-	/* the jobs before */
+	/* jobs that may precede */
 	static const u8 from[] = {
 		[EC_BOX_NO_JOB] = U8_MAX,
 		[EC_BOX_EMPTYING] = BIT(EC_BOX_NO_JOB),
@@ -41,7 +41,7 @@ static void box_set_job(struct ec_box *box, enum ec_box_job job)
 
 static void box_set_gap(struct ec_box *box, enum ec_box_gap gap)
 {
-	/* the states before */
+	/* states that may precede */
 	static const u8 from[] = {
 		[EC_BOX_WHOLE] = U8_MAX,
 		[EC_BOX_UNREAD] = BIT(EC_BOX_WHOLE) | BIT(EC_BOX_UNREAD),
@@ -67,14 +67,14 @@ static void box_fail(struct ec_box *box, int err)
 	box->ops->event(box, EC_BOX_ON_FAILED, err);
 }
 
-/* One look has been made without a repetition. */
+/* SM1 was accessed once without a repetition. */
 static void looked(struct ec_box *box)
 {
 	if (box->gap == EC_BOX_GAP_LOOK)
 		box_set_gap(box, EC_BOX_GAP);
 }
 
-/* Reading has made room in SM0, or nothing is in SM1 that blocks it. */
+/* SM1 was read or is empty, so it does not keep the slave from emptying SM0. */
 static void unblock(struct ec_box *box)
 {
 	if (box->job == EC_BOX_BLOCKED)
@@ -94,7 +94,7 @@ static void end_emptying(struct ec_box *box, int err)
 		box_set_job(box, EC_BOX_WRITING);
 }
 
-/* The first piece of SM1, or REST: the mailbox changes with the state. */
+/* Begin to read SM1, or REST if it does not fit: its size changes with the state of the slave. */
 static enum ec_box_step begin_read(struct ec_box *box)
 {
 	u16 size = ec_box_area(box)->tx_size;
@@ -108,7 +108,7 @@ static enum ec_box_step begin_read(struct ec_box *box)
 	return EC_BOX_READ;
 }
 
-/* The message in @tx, as it is in SM0; false: that is too small for it. */
+/* Fill @tx up to the size of SM0; false: SM0 is too small for the message. */
 static bool begin_write(struct ec_box *box)
 {
 	u16 size = ec_box_area(box)->rx_size;
@@ -146,7 +146,7 @@ static void begin_job(struct ec_box *box, enum ec_box_job job)
 }
 
 /**
- * ec_box_give() - a message for the slave
+ * ec_box_give() - begin a job with a message for the slave
  * @box: mailbox of a slave without a job, its lock held
  * @type: enum ec_mbox_type
  * @data: message behind the mailbox header
@@ -170,7 +170,7 @@ void ec_box_give(struct ec_box *box, u8 type, const u8 *data, u16 len, bool empt
 }
 
 /**
- * ec_box_discard() - discard what the slave has sent so far
+ * ec_box_discard() - begin a job that discards what the slave has sent so far
  * @box: mailbox of a slave without a job, its lock held
  *
  * Context: Only struct ec_box_ops.next. RT-safe: bounded, no sleep, no allocation.
@@ -185,7 +185,7 @@ void ec_box_discard(struct ec_box *box)
  * ec_box_take_back() - the job is not wanted any more
  * @box: mailbox of a slave, its lock held
  *
- * What is on its way goes on.
+ * A datagram in flight is still awaited.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: true: a frame with its message was lost, so the slave may have it.
@@ -206,7 +206,7 @@ bool ec_box_take_back(struct ec_box *box)
  * ec_box_arrived() - the answer to the message of the job has come
  * @box: mailbox of a slave, its lock held
  *
- * Whatever became of the frame, the slave has the message.
+ * So the slave has the message, even if its frame was lost.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
@@ -249,7 +249,7 @@ static enum ec_box_step box_choose(struct ec_box *box)
  * ec_box_go() - send the next datagram, if there is anything to do
  * @box: mailbox of a slave, its lock held
  *
- * Context: Any, but no call of the machine. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, but no call of struct ec_box_ops. RT-safe: bounded, no sleep, no allocation.
  */
 void ec_box_go(struct ec_box *box)
 {
@@ -259,10 +259,10 @@ void ec_box_go(struct ec_box *box)
 }
 
 /**
- * ec_box_hurry() - there is more to do: the next poll that waits for its time must not delay it
+ * ec_box_hurry() - withdraw a poll that is not due, so that it does not delay other steps
  * @box: mailbox of a slave, its lock held; ec_box_go() follows
  *
- * Context: Any, but no call of the machine. RT-safe: bounded, no sleep, no allocation.
+ * Context: Any, but no call of struct ec_box_ops. RT-safe: bounded, no sleep, no allocation.
  */
 void ec_box_hurry(struct ec_box *box)
 {
@@ -293,8 +293,8 @@ int ec_box_message(const struct ec_box *box, struct ec_mbox_hdr *h)
  * ec_box_drop() - the message of the slave in @rx is not needed any more
  * @box: mailbox of a slave, its lock held
  *
- * Context: Any; ec_box_go() follows, but in a call of the machine. RT-safe: bounded, no sleep,
- * no allocation.
+ * Context: Any; ec_box_go() follows, but not in a call of struct ec_box_ops. RT-safe: bounded, no
+ * sleep, no allocation.
  */
 void ec_box_drop(struct ec_box *box)
 {
@@ -302,7 +302,7 @@ void ec_box_drop(struct ec_box *box)
 	box->held = false;
 }
 
-/* Is the message in @rx the last one, from a slave that has counted well so far? */
+/* Is the message in @rx the last one again, from a slave with correct counters so far? */
 static bool is_twice(struct ec_box *box, u8 counter)
 {
 	bool same = !memcmp(box->begin, box->rx, sizeof(box->begin));
@@ -311,7 +311,7 @@ static bool is_twice(struct ec_box *box, u8 counter)
 	memcpy(box->begin, box->rx, sizeof(box->begin));
 	if (counter == box->seen) {
 		same &= box->in_order >= ORDERED;
-		/* of a slave that stops counting one message is discarded, no more */
+		/* of a slave that stops counting one message is discarded, not more */
 		box->in_order -= same;
 		return same;
 	}
@@ -321,8 +321,8 @@ static bool is_twice(struct ec_box *box, u8 counter)
 }
 
 /*
- * When a slave has repeated its last message although nothing was lost, the counter shows
- * that the message is not a new one; also when a slave sends a message twice.
+ * Has this message been received before? The counter shows it when the slave has repeated its last
+ * message although nothing was lost, or has sent a message twice.
  */
 static bool is_known(struct ec_box *box, u8 counter)
 {
@@ -364,7 +364,7 @@ static void found_empty(struct ec_box *box)
 {
 	unblock(box);
 	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
-	/* what a lost frame had is asked for again */
+	/* the slave has to repeat what a lost frame has carried */
 	if (box->gap == EC_BOX_GAP)
 		return;
 	box->ops->event(box, EC_BOX_ON_EMPTY, 0);
@@ -400,8 +400,8 @@ static enum ec_box_step on_status(struct ec_box *box, int ret)
 }
 
 /*
- * The frame that read a mailbox is lost. Was it read? It is full if not, or if the slave has
- * put in the next one by now: then only a repetition shows which.
+ * The frame that read SM1 is lost. A full SM1 was not read, or has the next message by now: only
+ * a repetition shows which.
  */
 static void read_lost(struct ec_box *box)
 {
@@ -435,7 +435,7 @@ static enum ec_box_step on_read(struct ec_box *box, int ret)
 	return EC_BOX_REST;
 }
 
-/* It is in SM0, or may be and must not be sent again. */
+/* The message is in SM0, or may be and must not be sent again. */
 static void box_written(struct ec_box *box)
 {
 	ec_box_progress(box);
@@ -444,7 +444,7 @@ static void box_written(struct ec_box *box)
 
 static enum ec_box_step on_written(struct ec_box *box, int ret)
 {
-	/* its answer has come before */
+	/* its answer was received before */
 	if (box->job == EC_BOX_NO_JOB)
 		return EC_BOX_REST;
 	if (!ret) {
@@ -454,12 +454,12 @@ static enum ec_box_step on_written(struct ec_box *box, int ret)
 		box->doubtful = false;
 		box_written(box);
 	} else if (ret == -ETIMEDOUT) {
-		/* it may have it: with repetition it gets it again, until it has it */
+		/* the slave may have it; if it can repeat, it drops a second one: send it again */
 		box->doubtful = true;
 		if (!box->can_repeat || box->orphan)
 			box_written(box);
 	} else if (ret == -EIO) {
-		/* full, until its own message is read */
+		/* SM0 is full, until the message of the slave is read */
 		box_set_job(box, box->orphan ? EC_BOX_NO_JOB : EC_BOX_BLOCKED);
 		ec_box_pause(box);
 	} else {
@@ -470,7 +470,8 @@ static enum ec_box_step on_written(struct ec_box *box, int ret)
 
 /*
  * Let the slave put its last message into SM1 again (ETG.1000.4 clause 6.7.3, registers
- * 0x080E, 0x080F). A request that is written once more after a lost frame is no second one.
+ * 0x080E, 0x080F). A request that is written again after a lost frame has the same value, so the
+ * slave does not repeat twice.
  */
 static enum ec_box_step on_repeat_get(struct ec_box *box)
 {
@@ -479,7 +480,7 @@ static enum ec_box_step on_repeat_get(struct ec_box *box)
 	if (!box->asked) {
 		box->asked = true;
 		box->asked_bit = !(b[0] & EC_SM_ACT_REPEAT);
-		/* left from before INIT: the slave cannot show that it has done it */
+		/* left from before INIT: the slave cannot show that it has repeated */
 		box->unseen = !!(b[1] & EC_SM_PDI_REPEAT_ACK) == box->asked_bit;
 	}
 	b[0] &= ~EC_SM_ACT_REPEAT;
@@ -532,7 +533,7 @@ static enum ec_box_step on_repeat(struct ec_box *box, int ret)
 	return EC_BOX_REPEAT_ACK;
 }
 
-/* It has not left: the same again, which may be shorter now. */
+/* The datagram was not sent: the same step again, perhaps with a shorter piece. */
 static enum ec_box_step again(const struct ec_box *box)
 {
 	bool over = box->step == EC_BOX_STATUS ||
@@ -561,7 +562,7 @@ static enum ec_box_step on_step(struct ec_box *box, int ret)
 	}
 }
 
-/* The datagram is back, or lost. */
+/* The datagram is received, or lost. */
 static void box_done(struct ec_post *post)
 {
 	struct ec_box *box = container_of(post, struct ec_box, post);
@@ -574,7 +575,7 @@ static void box_done(struct ec_post *post)
 }
 
 /**
- * ec_box_init() - prepare the machine of a mailbox
+ * ec_box_init() - prepare the mailbox transport
  * @box: zeroed structure whose immutable members are set
  * @ops: calls
  *

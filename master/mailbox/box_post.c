@@ -7,14 +7,14 @@
 #include "../wire/regs.h"
 #include "box_post.h"
 
-#define POLL_SLACK_NS	(20 * NSEC_PER_USEC)	/* free in a cycle that carries polls at will */
+#define POLL_SLACK_NS	(20 * NSEC_PER_USEC)	/* free wire time of a cycle, enough for polls */
 #define SHORT_NS	(200 * NSEC_PER_USEC)	/* most slaves reply within that time */
 #define PAUSE_MIN_NS	(10 * NSEC_PER_USEC)
 #define PAUSE_MAX_NS	(5 * NSEC_PER_MSEC)
 
 static void box_set_step(struct ec_box *box, enum ec_box_step step)
 {
-	/* the steps before */
+	/* steps that may precede */
 	static const u8 from[] = {
 		[EC_BOX_REST] = U8_MAX,
 		[EC_BOX_STATUS] = BIT(EC_BOX_REST),
@@ -39,9 +39,9 @@ static void post(struct ec_box *box, u8 cmd, u16 ado, void *data, u16 len, bool 
 }
 
 /*
- * A piece of a mailbox. What does not fit beside the process data of a short cycle goes in
- * pieces: the first byte opens the mailbox, the last byte hands it over (ETG.1000.4 clause
- * 6.7.2). That one must not happen twice.
+ * A piece of a mailbox. A mailbox that does not fit beside the process data of a short cycle is
+ * accessed in pieces: access to the first byte opens it, access to the last byte closes it
+ * (ETG.1000.4 clause 6.7.2). The last piece must not be sent twice.
  */
 static void post_piece(struct ec_box *box, u8 cmd, u16 offset, u8 *data)
 {
@@ -102,12 +102,12 @@ void ec_box_progress(struct ec_box *box)
 }
 
 /**
- * ec_box_pause() - the next access has time
+ * ec_box_pause() - pause before the next access
  * @box: mailbox of a slave, its lock held
  *
- * A slow slave is polled ever less often: at most an eighth of the time it has taken so far
- * passes until the master sees its reply, or a millisecond. The polls of a cycle are rare enough,
- * where there is wire time for them.
+ * The longer a slave takes, the longer the pause: an eighth of the time it has taken so far, at
+ * most 5 ms. Without a cycle, or with little free wire time, the pause is longer, up to 1 ms. A
+ * cycle with enough free wire time makes polls rare enough.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
@@ -126,7 +126,7 @@ void ec_box_pause(struct ec_box *box)
  * ec_box_expect_reply() - the message that was written has a reply
  * @box: mailbox of a slave, its lock held
  *
- * Most slaves take as long as last time: the first poll is not long before that.
+ * Most slaves take as long as for their last message: the first poll is shortly before that.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
@@ -138,7 +138,7 @@ void ec_box_expect_reply(struct ec_box *box)
 }
 
 /**
- * ec_box_expect_more() - the message that was received was not the one
+ * ec_box_expect_more() - the received message was not the one that its user waits for
  * @box: mailbox of a slave, its lock held
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -150,11 +150,11 @@ void ec_box_expect_more(struct ec_box *box)
 }
 
 /**
- * ec_box_reads_at_once() - is SM1 read without a look whether it is full?
+ * ec_box_reads_at_once() - is SM1 read without a poll of its status?
  * @box: mailbox of a slave
  *
- * Beside a cycle each look takes a period. Where the mailbox has room on the wire it is
- * read at once: an empty one gives nothing.
+ * Beside a cycle each poll takes a period. With enough free wire time SM1 is read at once: an
+ * empty one is not read, and its working counter is 0.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: whether it is.
@@ -170,10 +170,10 @@ bool ec_box_reads_at_once(const struct ec_box *box)
 }
 
 /**
- * ec_box_get_memory() - memory of the mailboxes, when they are used first
+ * ec_box_get_memory() - allocate the memory of the mailboxes, at their first use
  * @box: mailbox of a slave
  *
- * The sizes in the EEPROM may be anything.
+ * The EEPROM may contain any sizes, so they are limited here.
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM.
@@ -207,7 +207,7 @@ int ec_box_get_memory(struct ec_box *box)
  * ec_box_stop() - send nothing any more
  * @box: mailbox of a slave
  *
- * Context: Process. Waits for the datagram that may be on its way.
+ * Context: Process. Waits for the datagram that may be in flight.
  */
 void ec_box_stop(struct ec_box *box)
 {
@@ -221,7 +221,7 @@ void ec_box_stop(struct ec_box *box)
 
 /**
  * ec_box_free() - free the memory of a mailbox
- * @box: mailbox after ec_box_stop(), whose message nobody looks at
+ * @box: mailbox after ec_box_stop(), whose message is not used any more
  *
  * Context: Process.
  */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * The two mailboxes of a slave: the structure of the machine that writes, polls, reads and
+ * The two mailboxes of a slave: the structure of the transport that writes, polls, reads and
  * repeats (box.h), its memory, and the datagrams of its steps.
  */
 #ifndef EC_BOX_POST_H
@@ -21,12 +21,12 @@ struct ec_links;
 #define EC_BOX_DRAIN	16	/* messages at most that are read in a row to empty SM1 */
 
 /**
- * enum ec_box_step - datagram of a mailbox that is on its way; box_set_step() alone changes it
+ * enum ec_box_step - datagram of a mailbox that is in flight; box_set_step() alone changes it
  * @EC_BOX_REST: none
  * @EC_BOX_STATUS: is SM1 full?
  * @EC_BOX_READ: a piece of SM1
  * @EC_BOX_WRITE: a piece of SM0
- * @EC_BOX_REPEAT_GET: repeat request and acknowledgement, as they are
+ * @EC_BOX_REPEAT_GET: repeat request and acknowledgement, before they change
  * @EC_BOX_REPEAT_SET: the repeat request is toggled
  * @EC_BOX_REPEAT_ACK: has the slave acknowledged it?
  *
@@ -41,8 +41,8 @@ struct ec_links;
  * REPEAT_ACK  next        REPEAT_ACK: not so far         next             REPEAT_ACK
  * ==========  ==========  =============================  ===============  ==========
  *
- * Next is what there is to do: STATUS, READ, WRITE, REPEAT_GET, or REST. ec_box_hurry() takes a
- * poll (STATUS, or the first piece of READ) back that waits for its time: REST.
+ * Next is what there is to do: STATUS, READ, WRITE, REPEAT_GET, or REST. ec_box_hurry() withdraws a
+ * poll (STATUS, or the first piece of READ) that is not due: REST.
  */
 enum ec_box_step {
 	EC_BOX_REST,
@@ -64,7 +64,7 @@ enum ec_box_step {
  *
  * ==========  =============  ===============  =======  ======  ==============  ===========
  * job         given          SM1 empty,       message  SM0     in SM0, or      error, or
- *                            or without end   read     full    left to chance  taken back
+ *                            or without end   read     full    perhaps in SM0  taken back
  * ==========  =============  ===============  =======  ======  ==============  ===========
  * NO_JOB      EMPTYING,
  *             DISCARDING,
@@ -89,7 +89,7 @@ enum ec_box_job {
  * @EC_BOX_UNREAD: the frame that read SM1 was lost, and the slave cannot repeat: if SM1 is full,
  *	it was not read
  * @EC_BOX_GAP: one may have been lost: the slave is made to repeat it before SM1 is read
- * @EC_BOX_GAP_LOOK: the last try to get a repetition has failed: first one look without it
+ * @EC_BOX_GAP_LOOK: the last try to get a repetition has failed: first one access without it
  *
  * ========  ===========  ===================  ==========  ==========  ================
  * state     frame of     result of            repetition  try failed  the slave
@@ -112,15 +112,15 @@ enum ec_box_gap {
 
 /** enum ec_box_want - what is wanted of SM1 */
 enum ec_box_want {
-	/** @EC_BOX_NOTHING: no message of the slave is waited for */
+	/** @EC_BOX_NOTHING: no user waits for a message of the slave */
 	EC_BOX_NOTHING,
 	/** @EC_BOX_MESSAGE: the next message */
 	EC_BOX_MESSAGE,
-	/** @EC_BOX_BLIND: one access without a look whether it is full */
+	/** @EC_BOX_BLIND: one access without a poll of its status */
 	EC_BOX_BLIND,
 };
 
-/** enum ec_box_event - what the machine reports */
+/** enum ec_box_event - what the transport reports */
 enum ec_box_event {
 	/** @EC_BOX_ON_RECEIVED: a message is in @rx; it stays there until ec_box_drop() */
 	EC_BOX_ON_RECEIVED,
@@ -128,13 +128,13 @@ enum ec_box_event {
 	EC_BOX_ON_REPEATED,
 	/** @EC_BOX_ON_MALFORMED: a message whose header is wrong, dropped */
 	EC_BOX_ON_MALFORMED,
-	/** @EC_BOX_ON_NOTHING: an access to SM1 has brought nothing */
+	/** @EC_BOX_ON_NOTHING: an access to SM1 has ended, no other message follows from it */
 	EC_BOX_ON_NOTHING,
-	/** @EC_BOX_ON_EMPTY: SM1 is empty, and nothing is asked for again */
+	/** @EC_BOX_ON_EMPTY: SM1 is empty, and no repetition is necessary */
 	EC_BOX_ON_EMPTY,
 	/** @EC_BOX_ON_GAP: a frame was lost that may have had a message of the slave */
 	EC_BOX_ON_GAP,
-	/** @EC_BOX_ON_EMPTIED: nothing can come that the slave had before */
+	/** @EC_BOX_ON_EMPTIED: all messages are read that the slave had before the job */
 	EC_BOX_ON_EMPTIED,
 	/**
 	 * @EC_BOX_ON_JOB: the job has ended: 0: the message is in SM0, or all is discarded;
@@ -151,13 +151,13 @@ enum ec_box_event {
 };
 
 /**
- * struct ec_box_ops - calls of the machine, with its lock held
+ * struct ec_box_ops - calls of the transport, with its lock held
  *
  * RT-safe: bounded, no sleep, no allocation. A call may use the functions of box.h that are
  * marked so.
  */
 struct ec_box_ops {
-	/** @next: there is no job: ec_box_give() or ec_box_discard(), if there is another one */
+	/** @next: there is no job: it may begin one by ec_box_give() or ec_box_discard() */
 	void (*next)(struct ec_box *box);
 	/** @want: what is wanted of SM1 */
 	enum ec_box_want (*want)(struct ec_box *box);
@@ -166,9 +166,9 @@ struct ec_box_ops {
 };
 
 /**
- * struct ec_box - machine of the two mailboxes of a slave
+ * struct ec_box - mailbox transport of a slave
  *
- * All that is not described otherwise is under @lock, and box.c alone changes it.
+ * Members that are not described otherwise are under @lock, and box.c alone changes them.
  */
 struct ec_box {
 	/** @ops: calls, immutable */
@@ -190,29 +190,29 @@ struct ec_box {
 	u8 gap;
 	/** @dead: nothing is sent any more */
 	bool dead;
-	/** @closed: nothing new is sent: another layer has the slave for itself; of claim.c */
+	/** @closed: no new step begins, since all protocols are claimed; of claim.c */
 	bool closed;
 	/** @renew: the slave has been in INIT; any thread sets it */
 	bool renew;
-	/** @lock: protects the machine, and what is above it: see struct ec_desk */
+	/** @lock: protects the transport, and the mailbox queue: see struct ec_desk */
 	raw_spinlock_t lock;
 	/** @post: carries @dg */
 	struct ec_post post;
 	/** @dg: its datagram */
 	struct ec_dg dg;
-	/** @tx: message to the slave, as it is in SM0 */
+	/** @tx: message to the slave, with the bytes behind it up to the size of SM0 */
 	u8 *tx;
-	/** @rx: message of the slave, as it is in SM1 */
+	/** @rx: message of the slave, with the bytes behind it up to the size of SM1 */
 	u8 *rx;
 	/** @tx_room: bytes of @tx */
 	u16 tx_room;
 	/** @rx_room: bytes of @rx that a mailbox may have */
 	u16 rx_room;
-	/** @size: of SM0 or SM1, as the present access began */
+	/** @size: of SM0 or SM1, when the present access began */
 	u16 size;
 	/** @at: bytes of them before @post */
 	u16 at;
-	/** @rx_size: of SM1, as @rx was read */
+	/** @rx_size: of SM1, when @rx was read */
 	u16 rx_size;
 	/** @tx_len: bytes of the message in @tx, with header */
 	u16 tx_len;
@@ -226,7 +226,7 @@ struct ec_box {
 	u8 seen;
 	/** @in_order: messages of the slave in a row with the next counter, up to some */
 	u8 in_order;
-	/** @acks: looks for the acknowledgement of a repeat request so far */
+	/** @acks: polls for the acknowledgement of a repeat request so far */
 	u8 acks;
 	/** @ack_fails: repeat requests without acknowledgement in a row */
 	u8 ack_fails;
@@ -236,7 +236,7 @@ struct ec_box {
 	bool held;
 	/** @doubtful: a frame with the message of the job was lost, so it may be in SM0 */
 	bool doubtful;
-	/** @orphan: the job was taken back while its message was on its way */
+	/** @orphan: the job was taken back while its message was in flight */
 	bool orphan;
 	/** @counts: the slave counts its messages */
 	bool counts;
@@ -249,11 +249,11 @@ struct ec_box {
 
 	/** @can_repeat: the slave repeats, both ways; set by the scan, cleared if it does not */
 	bool can_repeat;
-	/** @asked: it was asked to repeat, and has not acknowledged that so far */
+	/** @asked: it has got a repeat request, and has not acknowledged that so far */
 	bool asked;
 	/** @asked_bit: value of that repeat request */
 	bool asked_bit;
-	/** @unseen: the acknowledgement had that value before */
+	/** @unseen: the acknowledgement had that value before the request */
 	bool unseen;
 	/** @repeats: the slave was made to repeat, so its next message may be the last one */
 	bool repeats;

@@ -5,15 +5,15 @@
 #include "caller.h"
 #include "desk.h"
 
-#define SLICE_MS	20	/* between looks whether a waiting caller has to leave */
+#define SLICE_MS	20	/* between two checks whether a wait has to end */
 
 /**
  * ec_mbox_over() - why a wait has to end now
  * @mb: mailbox of the slave
- * @u: when it has to, anyway
+ * @u: its limit
  *
  * Context: Process.
- * Return: 0: go on; -ECANCELED, -EINTR, -ETIMEDOUT.
+ * Return: 0: it continues; -ECANCELED, -EINTR, -ETIMEDOUT.
  */
 int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u)
 {
@@ -30,9 +30,9 @@ int ec_mbox_over(const struct ec_mbox *mb, const struct ec_mbox_until *u)
  * @mb: mailbox of the slave
  * @state: has the value @end when the wait is over; wake_up_process() follows
  * @end: value
- * @u: when the wait has to end, anyway
+ * @u: limit of the wait
  *
- * What ends the waits of callers wakes as well; a flag that another thread sets is seen after
+ * struct ec_stop.wake wakes the caller as well. A flag that another thread sets is seen after
  * 20 ms at most.
  *
  * Context: Process. May sleep.
@@ -41,13 +41,13 @@ void ec_mbox_sleep(const struct ec_mbox *mb, const u8 *state, u8 end,
 		   const struct ec_mbox_until *u)
 {
 	u64 slice = ktime_get_ns() + SLICE_MS * NSEC_PER_MSEC;
-	/* one more nanosecond: the time is over then */
+	/* one more nanosecond, since ec_mbox_over() compares by > */
 	ktime_t at = ns_to_ktime(min(slice, u->ns + 1));
 	wait_queue_head_t *wq = &mb->stop->wake;
 	DEFINE_WAIT(wait);
 
 	prepare_to_wait(wq, &wait, TASK_INTERRUPTIBLE);
-	/* pairs with the release of what it stands for */
+	/* pairs with the release of the result */
 	if (smp_load_acquire(state) != end && !ec_mbox_over(mb, u))
 		schedule_hrtimeout(&at, HRTIMER_MODE_ABS);
 	finish_wait(wq, &wait);
@@ -77,7 +77,7 @@ void ec_caller_enter(struct ec_mbox *mb, struct ec_caller *c)
  * @mb: mailbox of the slave
  * @c: caller that has entered
  * @limit: begins when its message has its turn
- * @until: result: when that is over
+ * @until: result: when @limit is over
  *
  * Context: Process. May sleep.
  * Return: 0, or why it is not: as ec_mbox_over().
@@ -92,7 +92,7 @@ int ec_caller_wait(struct ec_mbox *mb, struct ec_caller *c, const struct ec_mbox
 		if (READ_ONCE(*phase) == EC_MBOX_USER_QUEUED)
 			*until = ec_mbox_until(limit);
 		ret = ec_mbox_over(mb, until);
-		/* the result is there: see desk_finish() */
+		/* pairs with desk_finish(): the result is complete */
 		if (smp_load_acquire(phase) == EC_MBOX_USER_DONE)
 			return ret == -ETIMEDOUT ? 0 : ret;
 		if (ret)

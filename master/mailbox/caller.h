@@ -9,7 +9,7 @@
 struct task_struct;
 
 /**
- * struct ec_mbox_until - when a caller that sleeps has to give up
+ * struct ec_mbox_until - when the wait of a caller has to end
  * @ns: time (ktime)
  * @cancel: NULL, or becomes true when another thread cancels the transfer
  */
@@ -27,7 +27,7 @@ static inline struct ec_mbox_until ec_mbox_until(const struct ec_mbox_limit *l)
 
 /**
  * struct ec_caller - user of a mailbox that sleeps
- * @user: what it wants
+ * @user: its message, and what it waits for
  * @task: woken when @user is DONE, immutable from ec_caller_enter() on
  */
 struct ec_caller {

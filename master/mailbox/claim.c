@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Who may use a protocol of a slave's mailbox: one transfer of each at a time, several protocols
- * side by side. The way through INIT claims all, so that it aborts no transfer.
+ * Claims: the right to use protocols of a slave's mailbox. One transfer of each protocol at a time,
+ * several protocols side by side. The way through INIT claims all, so that it aborts no transfer.
  */
 #include <linux/ktime.h>
 #include <linux/sched.h>
 #include "caller.h"
 #include "claim.h"
 
-#define EVER_NS	(U64_MAX - 1)	/* one more is a time as well */
+#define EVER_NS	(U64_MAX - 1)	/* ec_mbox_sleep() adds 1 */
 
-/* With all protocols claimed the machine is left alone as well. */
+/* With all protocols claimed the transport begins no step. */
 static void claim_set(struct ec_mbox *mb, u16 claimed)
 {
 	lockdep_assert_held(&mb->box.lock);
@@ -18,7 +18,7 @@ static void claim_set(struct ec_mbox *mb, u16 claimed)
 	mb->box.closed = claimed == EC_MBOX_ALL;
 }
 
-/* Give free protocols to those who wait, in their order. */
+/* Give free protocols to the claims that wait, in their order. */
 static void claim_admit(struct ec_mbox *mb)
 {
 	u16 taken = mb->desk.claimed;
@@ -26,7 +26,7 @@ static void claim_admit(struct ec_mbox *mb)
 
 	lockdep_assert_held(&mb->box.lock);
 	list_for_each_entry_safe(c, next, &mb->desk.claims, list) {
-		/* later ones do not overtake */
+		/* later claims do not overtake */
 		if (taken & c->types) {
 			taken |= c->types;
 			continue;
@@ -39,7 +39,7 @@ static void claim_admit(struct ec_mbox *mb)
 	}
 }
 
-/* Its protocols are not claimed any more, nor waited for; others are admitted after that. */
+/* End a claim; claim_admit() must follow. */
 static void claim_end(struct ec_mbox *mb, struct ec_claim *c)
 {
 	lockdep_assert_held(&mb->box.lock);
@@ -52,7 +52,7 @@ static void claim_end(struct ec_mbox *mb, struct ec_claim *c)
 }
 
 /**
- * ec_claim_begin() - want protocols of a mailbox
+ * ec_claim_begin() - claim protocols of a mailbox, now or when they are free
  * @mb: mailbox of the slave
  * @c: IDLE, its @done and @owner set
  * @types: BIT(enum ec_mbox_type), or EC_MBOX_ALL
@@ -82,7 +82,7 @@ static void claim_wake(struct ec_mbox *mb, struct ec_claim *c)
 	wake_up_process(c->task);
 }
 
-/* A turn that has come at the last moment counts, another one is not waited for any more. */
+/* The wait has ended: a claim that is HELD by now is valid, another one ends. */
 static int claim_result(struct ec_mbox *mb, struct ec_claim *c, int ret)
 {
 	unsigned long flags;
@@ -107,7 +107,7 @@ static int claim(struct ec_mbox *mb, struct ec_claim *c, u16 types,
 	c->task = current;
 	c->done = claim_wake;
 	ec_claim_begin(mb, c, types, READ_ONCE(mb->stop->worker) == current);
-	/* the lock below orders all else */
+	/* claim_result() orders all else by the lock */
 	while (!ret && READ_ONCE(c->state) == EC_CLAIM_WAITING) {
 		ret = ec_mbox_over(mb, until);
 		if (!ret)
@@ -117,7 +117,7 @@ static int claim(struct ec_mbox *mb, struct ec_claim *c, u16 types,
 }
 
 /**
- * ec_mbox_claim() - wait for one's turn
+ * ec_mbox_claim() - claim protocols, and sleep until the claim is HELD
  * @mb: mailbox of the slave
  * @c: IDLE, its @owner set
  * @types: BIT(enum ec_mbox_type), or EC_MBOX_ALL
@@ -139,7 +139,7 @@ int ec_mbox_claim(struct ec_mbox *mb, struct ec_claim *c, u16 types, u32 ms)
 }
 
 /**
- * ec_mbox_claim_for() - wait for the turn of a transfer
+ * ec_mbox_claim_for() - claim the protocol of a transfer, and sleep until the claim is HELD
  * @mb: mailbox of the slave
  * @c: IDLE, its @owner set
  * @type: enum ec_mbox_type
@@ -161,7 +161,7 @@ int ec_mbox_claim_for(struct ec_mbox *mb, struct ec_claim *c, u8 type,
 }
 
 /**
- * ec_mbox_unclaim() - let others use protocols
+ * ec_mbox_unclaim() - end a claim
  * @mb: mailbox of the slave
  * @c: in any state; IDLE afterwards
  *
@@ -178,7 +178,7 @@ void ec_mbox_unclaim(struct ec_mbox *mb, struct ec_claim *c)
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 }
 
-/* Those of a list that belong to an owner; @done of those that wait. */
+/* End the claims of an owner in a list; @done is called for claims that wait. */
 static void end_claims_of(struct ec_mbox *mb, struct list_head *claims, const void *owner)
 {
 	struct ec_claim *c, *next;
@@ -196,7 +196,7 @@ static void end_claims_of(struct ec_mbox *mb, struct list_head *claims, const vo
 }
 
 /**
- * ec_mbox_release_owner() - an owner of claims goes away, an open file for example
+ * ec_mbox_release_owner() - end all claims of an owner, for example of an open file
  * @mb: mailbox of the slave
  * @owner: not NULL; its claims are IDLE afterwards, those that are HELD and those that wait
  *

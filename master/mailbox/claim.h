@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Who may use a protocol of a slave's mailbox. */
+/* Claims: the right to use protocols of a slave's mailbox. */
 #ifndef EC_CLAIM_H
 #define EC_CLAIM_H
 
@@ -7,26 +7,26 @@
 
 struct task_struct;
 
-/** enum ec_claim_state - of a claim; claim.c alone changes it, under the lock of the machine */
+/** enum ec_claim_state - of a claim; claim.c alone changes it, under the lock of the transport */
 enum ec_claim_state {
 	/** @EC_CLAIM_IDLE: out of all lists */
 	EC_CLAIM_IDLE,
 	/** @EC_CLAIM_WAITING: for its turn */
 	EC_CLAIM_WAITING,
-	/** @EC_CLAIM_HELD: nobody else uses its protocols */
+	/** @EC_CLAIM_HELD: no other user may use its protocols */
 	EC_CLAIM_HELD,
 };
 
 /**
  * struct ec_claim - protocols of a mailbox for one user
  *
- * It belongs to its user: to a call, to the slave's worker, or to an open file. While it is not
- * IDLE nobody frees it. Nothing is allocated for it.
+ * It belongs to its user: to a call, to the slave's worker, or to an open file. It must be IDLE
+ * before it is freed. Nothing is allocated for it.
  */
 struct ec_claim {
 	/**
 	 * @done: it is HELD, or IDLE again as its owner was released. Once for each
-	 * ec_claim_begin(), with the lock of the machine held, possibly in a hard interrupt: it
+	 * ec_claim_begin(), with the lock of the transport held, possibly in a hard interrupt: it
 	 * takes no sleeping lock, is bounded, and calls nothing of the mailbox. Never after
 	 * ec_mbox_unclaim() has returned. Set by the user, or by ec_mbox_claim()
 	 */

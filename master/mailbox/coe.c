@@ -65,7 +65,7 @@ static int coe_run(struct ec_mbox *mb, struct ec_sdo *s, const struct ec_mbox_li
 			ret = ec_mbox_request(mb, &req, b, ret);
 		req.first = false;
 	} while (ret == EC_MORE);
-	/* an abort of the master is none of the slave */
+	/* the code of an abort by the master is not reported as one of the slave */
 	abort = s->abort;
 	if (ret)
 		ec_sdo_cancel(s);
@@ -87,10 +87,10 @@ out:
  * @sub: subindex
  * @complete: complete access
  * @data: result
- * @cap: room at @data
+ * @cap: size of @data
  * @size: bytes read
  * @abort: abort code of the slave, or 0
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * Repeated when a lost frame leaves it without an answer.
  *
@@ -132,7 +132,7 @@ int ec_coe_upload(struct ec_mbox *mb, u16 index, u8 sub, bool complete, u8 *data
  * @data: value
  * @size: bytes
  * @abort: abort code of the slave, or 0
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * Never repeated: the slave may have written the value.
  *
@@ -176,7 +176,7 @@ static int info_rx(void *ctx, const u8 *buf, size_t len)
  * ec_coe_ask() - one request for SDO information
  * @mb: mailbox of the slave, CoE claimed
  * @info: request, and its answer
- * @until_ns: when the last fragment must be here (ktime)
+ * @until_ns: limit for the last fragment (ktime)
  * @limit: for each fragment
  * @b: buffers
  *
@@ -204,15 +204,15 @@ int ec_coe_ask(struct ec_mbox *mb, struct ec_sdoinfo *info, u64 until_ns,
 }
 
 /**
- * ec_coe_info() - ask the slave about its object dictionary
+ * ec_coe_info() - read from the object dictionary of a slave
  * @mb: mailbox of the slave
  * @info: request, of ec_sdoinfo_init(), and its answer
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * SDO information (ETG.1000.6 clause 5.6.3). SDO transfers wait meanwhile.
  *
  * Context: Process. Waits for bus traffic.
- * Return: 0; -EIO with @info->abort set; -ENOBUFS for an answer larger than its place;
+ * Return: 0; -EIO with @info->abort set; -ENOBUFS for an answer larger than its buffer;
  * otherwise as ec_coe_upload().
  */
 int ec_coe_info(struct ec_mbox *mb, struct ec_sdoinfo *info, const struct ec_mbox_limit *limit)

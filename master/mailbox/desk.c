@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The desk of a mailbox: users come, wait and leave. It gives the message of the next one to the
- * machine, and each message of the slave to the user that waits for it.
+ * The mailbox queue: users enter, wait and leave. It gives the message of the next one to the
+ * mailbox transport, and each message of the slave to the user that waits for it.
  */
 #include <linux/ktime.h>
 #include "../wire/coe.h"
@@ -28,7 +28,7 @@ static void desk_finish(struct ec_mbox *mb, struct ec_mbox_user *u, int err)
 	u->done(mb, u);
 }
 
-/* All that have a message on its way or wait for one. */
+/* An error for all users that send a message or wait for one. */
 static void finish_all(struct ec_mbox *mb, int err)
 {
 	struct ec_mbox_user *u;
@@ -40,7 +40,7 @@ static void finish_all(struct ec_mbox *mb, int err)
 			desk_finish(mb, u, err);
 }
 
-/* The access to SM1 has brought nothing to those who want one only. */
+/* An access to SM1 has ended: users that want only one, and have no message, are DONE. */
 static void finish_once(struct ec_mbox *mb)
 {
 	struct ec_mbox_user *u;
@@ -51,7 +51,7 @@ static void finish_once(struct ec_mbox *mb)
 			desk_finish(mb, u, -ENOMSG);
 }
 
-/* A caller that runs into the time limit after that does not know what the slave has done. */
+/* A frame was lost: a user without an answer does not know what the slave has done. */
 static void mark_gap(struct ec_mbox *mb)
 {
 	struct ec_mbox_user *u;
@@ -62,7 +62,7 @@ static void mark_gap(struct ec_mbox *mb)
 			u->gap = true;
 }
 
-/* A message without a waiting request: a request gets its reply before such, or never. */
+/* The slave has sent another message, so it is not busy with the requests that wait. */
 static void mark_heard(struct ec_mbox *mb)
 {
 	struct ec_mbox_user *u;
@@ -84,7 +84,7 @@ static struct ec_mbox_user *next_user(struct ec_mbox *mb)
 	while ((u = list_first_entry_or_null(&mb->desk.queue, struct ec_mbox_user, list))) {
 		list_move_tail(&u->list, &mb->desk.users);
 		u->phase = EC_MBOX_USER_SENDING;
-		/* a slave that only passes INIT is waited for: its worker claims the mailbox */
+		/* not while a slave only passes INIT: its worker has claimed the mailbox */
 		if (ec_box_is_off(&mb->box))
 			desk_finish(mb, u, -EAGAIN);
 		else if (u->len + EC_MBOX_HDR > mb->box.tx_room && !u->discard)
@@ -118,7 +118,7 @@ static void job_over(struct ec_mbox *mb, int err)
 	struct ec_mbox_user *u = mb->desk.sending;
 
 	lockdep_assert_held(&mb->box.lock);
-	/* its answer may have come before */
+	/* its answer may have been received before */
 	if (!u || u->phase != EC_MBOX_USER_SENDING)
 		return;
 	u->lost |= err == -ENOTRECOVERABLE;
@@ -149,7 +149,7 @@ static enum ec_box_want desk_want(struct ec_box *box)
 	return want;
 }
 
-/* No answer comes before the request may have arrived. */
+/* May a message be the answer to this user? Only if the slave may have its request. */
 static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
 {
 	return u->phase == EC_MBOX_USER_WAITING ||
@@ -157,8 +157,8 @@ static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
 }
 
 /*
- * The user that a message of a type is for: of an error reply, which has no type, the one that
- * has sent its request first. One that has not taken its last message has to take that first.
+ * The user that a message of a type is for. An error reply has no type: it is for the user that
+ * has sent its request first. A user that is DONE has to take its previous message first.
  */
 static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type)
 {
@@ -180,7 +180,7 @@ static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type)
 	return reader;
 }
 
-/* Its message has arrived, whatever became of the frame. */
+/* The slave has answered, so it has the message of the user, even if its frame was lost. */
 static void desk_arrived(struct ec_mbox *mb, const struct ec_mbox_user *u)
 {
 	if (mb->desk.sending == u)
@@ -207,7 +207,7 @@ static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 	       !ec_coe_emergency_decode(mb->box.rx + EC_MBOX_HDR, h->len, &e);
 }
 
-/* Whose message is it? The machine holds it until it is taken. */
+/* Find the user that a message is for. The transport holds it until it is taken. */
 static void desk_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
 	bool emergency = is_emergency(mb, h);
@@ -319,7 +319,7 @@ const struct ec_box_ops ec_desk_ops = {
 	.event = desk_event,
 };
 
-/* A user may take the message that the machine holds now, or no user does any more. */
+/* The users have changed: find the one for the message that the transport holds. */
 static void retry_held(struct ec_mbox *mb)
 {
 	lockdep_assert_held(&mb->box.lock);
@@ -328,11 +328,11 @@ static void retry_held(struct ec_mbox *mb)
 }
 
 /**
- * ec_desk_has_reader() - a user has come for the message that none was there for
- * @mb: mailbox of the slave, the lock of its machine held, @handed_over
+ * ec_desk_has_reader() - give a VoE message that had no user to one that has entered since
+ * @mb: mailbox of the slave, the lock of its transport held, @handed_over
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: true: the user has it.
+ * Return: true: a user has it.
  */
 bool ec_desk_has_reader(struct ec_mbox *mb)
 {
@@ -351,7 +351,7 @@ bool ec_desk_has_reader(struct ec_mbox *mb)
 
 /* users ---------------------------------------------------------------------*/
 
-/* Into the queue with a message, else among the users. */
+/* A user with a message enters the queue, another one the list of users. */
 static void line_up(struct ec_mbox *mb, struct ec_mbox_user *u)
 {
 	bool sends = u->len || u->discard;
@@ -389,7 +389,7 @@ void ec_desk_enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 /**
  * ec_desk_again() - a user that has its result has another message, or waits for the next one
  * @mb: mailbox of the slave
- * @u: DONE, its members set anew up to @once; after an error it has to leave instead
+ * @u: DONE, its members up to @once set again; after an error it has to leave instead
  *
  * Context: Only @u->done. RT-safe: bounded, no sleep, no allocation.
  * Return: false after an error.
@@ -408,7 +408,7 @@ bool ec_desk_again(struct ec_mbox *mb, struct ec_mbox_user *u)
 }
 
 /**
- * ec_desk_wait_on() - the message was not the one: wait for another
+ * ec_desk_wait_on() - the message was not the expected one: wait for another
  * @mb: mailbox of the slave
  * @u: DONE
  *
@@ -427,10 +427,10 @@ void ec_desk_wait_on(struct ec_mbox *mb, struct ec_mbox_user *u)
 }
 
 /**
- * ec_desk_leave() - a user has its result, or has given up
+ * ec_desk_leave() - a user has its result, or ends its wait
  * @mb: mailbox of the slave
  * @u: user that has entered; afterwards IDLE, and @u->done does not run any more
- * @answered: nothing of its exchange can come any more
+ * @answered: no message of its exchange can follow any more
  *
  * Context: Any, but @u->done. RT-safe: bounded, no sleep, no allocation.
  */
@@ -457,8 +457,8 @@ void ec_desk_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
  * @mb: mailbox of the slave
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether one does; it gets all that the slave sends. One that begins or changes its
- * queue just now, or whose datagram is just back, may be missed.
+ * Return: whether one does; it gets all that the slave sends. A caller that enters or leaves a list
+ * at this moment, or whose datagram is just received, may be missed.
  */
 bool ec_mbox_in_use(const struct ec_mbox *mb)
 {
@@ -470,7 +470,7 @@ bool ec_mbox_in_use(const struct ec_mbox *mb)
  * ec_mbox_reset() - the slave is in INIT: its mailbox forgets all messages
  * @mb: mailbox of a slave
  *
- * A caller of the mailbox may still wait for a reply that cannot come any more.
+ * A caller of the mailbox may still wait for a reply that the slave will not send any more.
  *
  * Context: The slave's worker.
  */
@@ -480,7 +480,7 @@ void ec_mbox_reset(struct ec_mbox *mb)
 }
 
 /**
- * ec_mbox_fetch() - let the slave's messages be read, although no caller waits for them
+ * ec_mbox_fetch() - read messages of the slave although no caller waits for them
  * @mb: mailbox of the slave
  *
  * Emergencies and VoE messages are kept. Returns at once.

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* The desk of a mailbox: users come, wait and leave; which one gets a message of the slave? */
+/* The mailbox queue: users enter, wait and leave, and get the messages of the slave. */
 #ifndef EC_DESK_H
 #define EC_DESK_H
 

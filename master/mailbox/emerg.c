@@ -9,7 +9,7 @@
 #include "mbox.h"
 
 /**
- * ec_emerg_set() - where the emergencies of a slave go from now on
+ * ec_emerg_set() - set where the emergencies of a slave go
  * @mb: mailbox of the slave
  * @e: ring; NULL: only to the log. The previous ring is not used afterwards.
  *
@@ -23,13 +23,13 @@ void ec_emerg_set(struct ec_mbox *mb, struct ec_emerg *e)
 }
 
 /**
- * ec_emerg_describe() - write the mapped side of a ring anew
+ * ec_emerg_describe() - write the mapped side of a ring again
  * @mb: mailbox of a slave whose emergencies go there, or NULL
  * @e: ring
  * @data: offset of the entries in the mapped memory
  *
- * Of what the application can write only the number of those it has taken is not
- * known here. It stays, unless there cannot be so many left: then none is.
+ * The application may have written anything there. All is known here as well, except for the
+ * number of entries that it has taken. An invalid number is replaced: the ring is empty then.
  *
  * Context: Process; no ec_emerg_set() of @e meanwhile.
  */
@@ -90,7 +90,7 @@ unsigned int ec_emerg_last(struct ec_mbox *mb, struct ec_emergency *entry, u32 *
 /**
  * ec_emerg_push() - keep an emergency, also for the application
  * @mb: mailbox of a slave that sent it
- * @message: EC_EMERG_BYTES: code, error register, data (ETG.1000.6 5.6.4)
+ * @message: EC_EMERG_BYTES: code, error register, data (ETG.1000.6 clause 5.6.4)
  *
  * Context: Process.
  */

@@ -14,8 +14,8 @@ struct ec_mbox;
  * @ring: mapped by the application; of it only @tail is read, and not trusted
  * @data: entries, mapped
  * @count: how many
- * @head: put in so far
- * @overruns: lost so far
+ * @head: emergencies put in so far
+ * @overruns: emergencies lost so far
  */
 struct ec_emerg {
 	struct ec_emerg_ring *ring;

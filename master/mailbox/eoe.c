@@ -25,7 +25,7 @@ static int eoe_rx(void *ctx, const u8 *buf, size_t len)
 	return *a->result ? -EREMOTEIO : 0;
 }
 
-/* @len bytes of @b->tx go out, the answer of type @resp comes to @b->rx: its length. */
+/* Send @len bytes of @b->tx, get the answer of type @resp in @b->rx; returns its length. */
 static int eoe_exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u8 resp,
 			u16 *result)
 {
@@ -47,7 +47,7 @@ static int eoe_exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u
 /**
  * ec_eoe_set_ip() - give a slave IP parameters
  * @mb: mailbox of the slave
- * @p: parameters; those not in @which stay as they are
+ * @p: parameters; those not in @which do not change
  * @result: EC_EOE_OK... of the slave
  *
  * EoE "set IP parameter" (ETG.1000.6 clause 5.7).

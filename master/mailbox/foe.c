@@ -9,13 +9,13 @@
 #define PAUSE_US	2000	/* before a message is sent again to a slave that is busy */
 #define WHOLE_MS	900000	/* for all messages of a file, besides its bytes: an erase, say */
 
-/* a transfer on its way */
+/* a transfer in progress */
 struct transfer {
 	struct ec_foe *f;
 	struct ec_mbox *mb;
 	u64 begin_ns;
 	u64 busy_ns;	/* since when the slave is busy without progress, 0: it is not */
-	u16 done;	/* the highest value since then: one that goes up and down is none */
+	u16 done;	/* highest progress since then: only a higher value is progress */
 	u64 wait_ns;	/* since when it is busy before the first data, 0: it is not */
 };
 
@@ -26,14 +26,14 @@ static int foe_rx(void *ctx, const u8 *buf, size_t len)
 	size_t room = ec_mbox_room(ec_mbox_area(t->mb)->tx_size);
 	int ret = ec_foe_rx(t->f, buf, len, room > EC_FOE_HDR ? room - EC_FOE_HDR : 0);
 
-	/* busy before it has begun: one request, so nothing else ends it */
+	/* BUSY before the first data: still the same request, so its limit is here */
 	if (ret != EC_WAIT)
 		return ret;
 	t->wait_ns = t->wait_ns ?: ktime_get_ns();
 	return ktime_get_ns() - t->wait_ns > (u64)EC_FOE_BUSY_MS * NSEC_PER_MSEC ? -ETIMEDOUT : ret;
 }
 
-/* The slave has other things to do: time for them, but not for ever. */
+/* A slave that is BUSY gets time, but a limited one. */
 static int wait_busy(struct transfer *t)
 {
 	u64 now = ktime_get_ns();
@@ -52,7 +52,7 @@ static int wait_busy(struct transfer *t)
 	return 0;
 }
 
-/* Data of a read go to their place; -ENOBUFS: there is no room. */
+/* Store data of a read; -ENOBUFS: the file is too large. */
 static int foe_take(const struct ec_foe *f, const struct ec_foe_file *file, struct ec_mbox_buf *b)
 {
 	if (f->size > file->size)
@@ -77,7 +77,7 @@ static int foe_step(struct transfer *t, const struct ec_foe_file *file, struct e
 	/* the acknowledgement of the last data has no answer */
 	if (!f->write && f->last) {
 		ret = ec_mbox_send(t->mb, EC_MBOX_FOE, b, len, &req->limit);
-		/* the file is here */
+		/* the file is complete, even if the slave did not get this */
 		return ret == -ENOTRECOVERABLE ? 0 : ret;
 	}
 	req->limit.end_ns = ec_mbox_end_ns(t->begin_ns, WHOLE_MS, f->write ? f->at : f->size);
@@ -92,7 +92,7 @@ static int foe_step(struct transfer *t, const struct ec_foe_file *file, struct e
 	return ret;
 }
 
-/* A slave in the middle of a file is told that there is no more of it. */
+/* Report to a slave in the middle of a file that the transfer ends. */
 static void end_at_slave(struct transfer *t, struct ec_mbox_buf *b)
 {
 	int len = ec_foe_error_encode(b->tx, ec_mbox_room(ec_mbox_area(t->mb)->rx_size),
@@ -116,7 +116,7 @@ bool ec_foe_writes(const struct ec_mbox *mb)
 	return test_bit(EC_MBOX_FILE_WRITE, &mb->flags);
 }
 
-/* The caller may have been killed as the computer shuts down, and report nothing. */
+/* To the log, since the caller may have been killed by a shutdown, and reports nothing. */
 static void report_end(const struct ec_mbox *mb, const struct ec_foe *f, int ret)
 {
 	if (f->write && (ret == -EINTR || ret == -ECANCELED))
@@ -127,16 +127,16 @@ static void report_end(const struct ec_mbox *mb, const struct ec_foe *f, int ret
 /**
  * ec_foe_transfer() - read or write a file of a slave
  * @mb: mailbox of the slave
- * @f: transfer: direction, name, password; a write has its size. Then progress and error
+ * @f: transfer: direction, name, password; result: progress and error
  * @file: where the data are
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * Other protocols may use the mailbox between the messages. In BOOT the bootstrap mailbox is
  * used. A transfer that ends early is ended at the slave as well.
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EREMOTEIO when the slave refuses, with @f->error; -EINPROGRESS while another file
- * of this slave is transferred; -ENOBUFS for a file larger than there is room; -EPROTONOSUPPORT
+ * of this slave is transferred; -ENOBUFS for a file larger than @file->size; -EPROTONOSUPPORT
  * without FoE; -EMSGSIZE for a mailbox that is too small; -EAGAIN in INIT; -EBADMSG for a wrong
  * answer; -ETIMEDOUT; -ENOTRECOVERABLE when a lost frame ends a write; -EINTR; -ECANCELED;
  * -ENOMEM; what @file->copy returned.

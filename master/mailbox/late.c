@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Replies after their time limit. A slave that stores parameters has accepted a request and
- * replies many seconds later. Until then it takes no other request of that protocol, and its
- * reply must not pass for that of another request.
+ * replies many seconds later. Until then it accepts no other request of that protocol, and its
+ * reply must not be taken for that to another request.
  */
 #include <linux/ktime.h>
 #include "../carry/xfer.h"
@@ -77,7 +77,7 @@ void ec_mbox_forget_late(struct ec_mbox *mb, u16 types)
 }
 
 /**
- * ec_mbox_took_late() - a message has come that no request waits for
+ * ec_mbox_took_late() - a message is received that no request waits for
  * @mb: mailbox of the slave
  * @type: enum ec_mbox_type
  *
@@ -101,7 +101,7 @@ void ec_mbox_took_late(struct ec_mbox *mb, u8 type)
 			      ms);
 }
 
-/* None has come: this slave may just not reply to some requests. */
+/* No late reply was received: this slave may not reply to some requests at all. */
 static void late_give_up(struct ec_mbox *mb, u8 type)
 {
 	unsigned long flags;
@@ -144,7 +144,7 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 	ec_caller_enter(mb, &c);
 	while (!ret && is_awaited(mb, BIT(r->type))) {
 		ret = ec_mbox_over(mb, &until);
-		/* the result is there: see desk_finish() */
+		/* pairs with desk_finish(): the result is complete */
 		if (smp_load_acquire(&c.user.phase) == EC_MBOX_USER_DONE)
 			break;
 		if (!ret)
@@ -159,7 +159,7 @@ int ec_mbox_await_late(struct ec_mbox *mb, const struct ec_mbox_request *r, stru
 	} else if (ret && (ret != -ETIMEDOUT || until.ns == begin)) {
 		return ret;
 	}
-	/* also an error of the bus: the request gets it itself */
+	/* also after an error of the bus, which the request itself will get */
 	ec_mbox_forget_late(mb, BIT(r->type));
 	return 0;
 }

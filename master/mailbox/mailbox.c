@@ -6,7 +6,7 @@
 #include "caller.h"
 #include "mailbox.h"
 
-#define ONCE_MS	1000	/* for one look: as long as the slave passes INIT, say */
+#define ONCE_MS	1000	/* for one access: the slave may pass INIT, for example */
 #define LAST_NS		(75 * NSEC_PER_MSEC)	/* for a message that ends a transfer */
 
 /**
@@ -34,7 +34,7 @@ void ec_mbox_init(struct ec_mbox *mb)
  * ec_mbox_exit() - the slave is being freed
  * @mb: mailbox without users
  *
- * Context: Process. Waits for the datagram that may be on its way.
+ * Context: Process. Waits for the datagram that may be in flight.
  */
 void ec_mbox_exit(struct ec_mbox *mb)
 {
@@ -78,7 +78,7 @@ unsigned int ec_mbox_sms(const struct ec_mbox *mb, bool boot, u8 *page)
  * @protocol: EC_SII_PROTO_*
  * @message: bytes behind the mailbox header it needs at least
  *
- * The reply needs less than some requests, but not nothing: it has at least a header.
+ * For the reply a smaller mailbox is sufficient: it has to hold EC_MBOX_REPLY bytes of @message.
  *
  * Context: Process.
  * Return: 0; -EPROTONOSUPPORT when the slave does not have it; -EAGAIN in BOOT, unless it is
@@ -93,7 +93,7 @@ int ec_mbox_check(const struct ec_mbox *mb, u16 protocol, size_t message)
 	/* BOOT is for files only */
 	if (area != &mb->box.sii->std && protocol != EC_SII_PROTO_FOE)
 		return -EAGAIN;
-	/* the EEPROM may say anything; a message is one datagram */
+	/* the EEPROM may contain any size; a message is one datagram */
 	if (area->rx_size < EC_MBOX_HDR + message || area->rx_size > EC_MBOX_MAX ||
 	    area->tx_size < EC_MBOX_HDR + min_t(size_t, message, EC_MBOX_REPLY) ||
 	    area->tx_size > EC_MBOX_MAX)
@@ -128,7 +128,7 @@ static int answer(struct ec_mbox *mb, const struct ec_mbox_request *r,
 	return r->rx(r->ctx, u->rx, u->got);
 }
 
-/* The request, until its answer is here or it is too late. */
+/* Exchange a request for its answer, within the time limit. */
 static int mailbox_exchange(struct ec_mbox *mb, const struct ec_mbox_request *r,
 			    const struct ec_mbox_limit *limit, struct ec_caller *c)
 {
@@ -150,7 +150,7 @@ static int mailbox_exchange(struct ec_mbox *mb, const struct ec_mbox_request *r,
 	}
 }
 
-/* The slave has the request, and its reply is late. It may come just now. */
+/* The slave has the request, and its reply is late: a patient caller waits, others check once. */
 static int mailbox_go_on(struct ec_mbox *mb, const struct ec_mbox_request *r,
 			 struct ec_caller *c)
 {
@@ -213,7 +213,7 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
  * @type: enum ec_mbox_type
  * @b: message in @tx
  * @len: bytes of the message
- * @limit: when to give up
+ * @limit: time limits
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0, -EAGAIN in INIT, -EMSGSIZE, -ETIMEDOUT, -EINTR, -ECANCELED; -ENOTRECOVERABLE when
@@ -235,13 +235,13 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 }
 
 /**
- * ec_mbox_send_last() - end a transfer at the slave, as well as it can be done
+ * ec_mbox_send_last() - try to send a message that ends a transfer at the slave
  * @mb: mailbox that ec_mbox_check() has accepted
  * @type: enum ec_mbox_type
  * @b: message in @tx
  * @len: bytes of the message
  *
- * Also for a caller that has been killed, so nothing is waited for but the mailbox.
+ * Also for a caller that was killed, so it only waits for the mailbox, 75 ms at most.
  *
  * Context: Process. Waits for bus traffic.
  */
@@ -268,8 +268,8 @@ void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_
  * ec_mbox_forget() - empty the mailbox for a new application
  * @mb: mailbox of a slave with mailbox, in PREOP
  *
- * What the slave has sent before, emergencies and VoE messages too, is none of it. Answers
- * that a caller waits for are delivered.
+ * Messages that the slave has sent before, emergencies and VoE as well, are not for the new
+ * application. Answers that a caller waits for are delivered.
  *
  * Context: The slave's worker. Waits for bus traffic.
  * Return: 0; -ENOMEM; -ECANCELED; -EBUSY when it cannot be emptied; -EMSGSIZE when it is
@@ -295,8 +295,8 @@ int ec_mbox_forget(struct ec_mbox *mb)
  * ec_mbox_wait_voe() - wait for a VoE message
  * @mb: mailbox that ec_mbox_check() has accepted
  * @b: the message is in @rx
- * @blind: one access to the mailbox without a look whether it is full
- * @limit: when to give up; @timeout_ms 0: no wait
+ * @blind: one access to the mailbox without a poll of its status
+ * @limit: time limits; @timeout_ms 0: no wait
  *
  * The message may have arrived earlier. Others can use the mailbox meanwhile.
  *
@@ -321,7 +321,7 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 			ret = -EAGAIN;
 		else
 			ret = ec_mbox_over(mb, &until);
-		/* the result is there: see desk_finish() */
+		/* pairs with desk_finish(): the result is complete */
 		if (smp_load_acquire(&c.user.phase) == EC_MBOX_USER_DONE) {
 			ret = c.user.err ?: c.user.got_type == EC_MBOX_ERR ?
 			      ec_mbox_error_reply(mb, b->rx, c.user.got) : c.user.got;
@@ -338,7 +338,7 @@ int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,
 	ec_desk_leave(mb, &c.user, false);
 	if (ret != -ENOMSG && ret != -ETIMEDOUT)
 		return ret;
-	/* one that has come before this caller was one of the users */
+	/* one may have been received before this caller entered */
 	kept = ec_mbox_take_kept(mb, b->rx);
 	return kept != -ENOMSG ? kept : blind ? -ENOMSG : ret;
 }

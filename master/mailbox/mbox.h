@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Mailbox of a slave: its machine (box.h), its desk (desk.h), and what the protocols share. */
+/* Mailbox of a slave: transport (box.h), queue (desk.h), and what the protocols share. */
 #ifndef EC_MBOX_H
 #define EC_MBOX_H
 
@@ -15,12 +15,12 @@
 struct ec_emerg;
 struct ec_mbox;
 
-#define EC_MBOX_READ_TRIES	4	/* of what changes nothing, after lost frames */
+#define EC_MBOX_READ_TRIES	4	/* of a transfer that changes nothing, if frames are lost */
 #define EC_MBOX_KEPT	16	/* messages kept for their reader */
 #define EC_MBOX_ALL	0xffff	/* all protocols: no other caller uses the mailbox */
-#define EC_MBOX_REPLY	10	/* bytes behind the header that a reply has at most, at least */
-#define EC_MBOX_LATE_MS	30000	/* so long a reply is waited for after its time limit */
-#define EC_MBOX_KIB_MS	4000	/* for a KiB of a transfer: its rate must not be lower */
+#define EC_MBOX_REPLY	10	/* bytes behind the header that a mailbox for replies must hold */
+#define EC_MBOX_LATE_MS	30000	/* wait for a reply after its time limit */
+#define EC_MBOX_KIB_MS	4000	/* time for a KiB of a transfer: its minimum rate */
 
 enum ec_mbox_flag {
 	EC_MBOX_FILE,	/* a file is transferred */
@@ -57,16 +57,16 @@ enum ec_mbox_phase {
 };
 
 /**
- * struct ec_mbox_user - who has a message for the slave, or waits for one
+ * struct ec_mbox_user - user that has a message for the slave, or waits for one
  *
- * It belongs to its user, who sets the first members, and may read the results while it is DONE.
- * From ec_desk_enter() until ec_desk_leave() has returned the rest is of desk.c, under the lock
- * of the machine. Nothing is allocated for it.
+ * It belongs to the user, which sets the members up to @once, and may read the results while it is
+ * DONE. From ec_desk_enter() until ec_desk_leave() has returned the others are of desk.c, under the
+ * lock of the transport. Nothing is allocated for it.
  */
 struct ec_mbox_user {
 	/**
 	 * @done: it is DONE. Once for each ec_desk_enter() and ec_desk_again(), with the lock of
-	 * the machine held, where the frame has arrived: possibly in a hard interrupt. So it
+	 * the transport held, where the frame has arrived: possibly in a hard interrupt. So it
 	 * takes no sleeping lock, is bounded, and calls nothing of the mailbox but
 	 * ec_desk_again(). Never after ec_desk_leave() has returned
 	 */
@@ -81,7 +81,7 @@ struct ec_mbox_user {
 	u8 type;
 	/** @answer: its message has an answer */
 	bool answer;
-	/** @first: read SM1 until it is empty before, unless nothing can be there */
+	/** @first: read SM1 until it is empty before, unless it must be empty already */
 	bool first;
 	/** @discard: it has no message: what the slave has sent so far is discarded */
 	bool discard;
@@ -107,9 +107,9 @@ struct ec_mbox_user {
 };
 
 /**
- * struct ec_desk - where requests wait and messages are kept
+ * struct ec_desk - mailbox queue: requests that wait, and messages that are kept
  *
- * Under the lock of the machine, but for the last two groups.
+ * Under the lock of the transport, except for the last two groups.
  */
 struct ec_desk {
 	/* of desk.c */
@@ -117,7 +117,7 @@ struct ec_desk {
 	struct list_head queue;
 	/** @users: users that wait for messages, the oldest first */
 	struct list_head users;
-	/** @sending: whose message the machine has; NULL: the user has left */
+	/** @sending: user whose message the transport has; NULL: none, or it has left */
 	struct ec_mbox_user *sending;
 	/** @flood_ns: no @fetch before that time (ktime): the slave sends without end */
 	u64 flood_ns;
@@ -125,13 +125,13 @@ struct ec_desk {
 	u8 fetched;
 	/** @fetch: SM1 is read until it is empty, although no user waits */
 	bool fetch;
-	/** @handed_over: @unasked takes the message that the machine holds */
+	/** @handed_over: @unasked takes the message that the transport holds */
 	bool handed_over;
-	/** @answered: nothing of an earlier exchange can come any more */
+	/** @answered: no message of an earlier exchange can follow any more */
 	bool answered;
 
 	/* of late.c; a user that gets its answer clears @never_late, INIT clears all */
-	/** @never_late: the last late reply did not come; the next one is not waited for */
+	/** @never_late: the last late reply was not received: no wait for the next one */
 	bool never_late;
 
 	/* of unasked.c, with more below */
@@ -182,7 +182,7 @@ struct ec_mbox {
 	struct ec_base *base;
 	/** @stop: what ends exchanges, immutable */
 	struct ec_stop *stop;
-	/** @changes: counts users that come; NULL: nobody wants to know; pointer immutable */
+	/** @changes: counts users that enter; NULL: they are not counted; pointer immutable */
 	atomic_t *changes;
 	/** @position: ring position, for the log; pointer immutable */
 	const u16 *position;
@@ -193,12 +193,12 @@ struct ec_mbox {
 	u32 profile;
 	/** @flags: bits enum ec_mbox_flag, atomic; of foe.c */
 	unsigned long flags;
-	/** @strict: the slave refuses SM1 with an event; of who brings it to its state */
+	/** @strict: the slave refuses SM1 with an event, as its way to PREOP has shown */
 	bool strict;
 
-	/** @box: machine that writes, polls, reads and repeats */
+	/** @box: transport that writes, polls, reads and repeats */
 	struct ec_box box;
-	/** @desk: where requests wait and messages are kept */
+	/** @desk: queue of requests, messages that are kept */
 	struct ec_desk desk;
 };
 
@@ -213,7 +213,7 @@ struct ec_mbox_buf {
 };
 
 /**
- * struct ec_mbox_limit - when a transfer has to give up
+ * struct ec_mbox_limit - time limits of a transfer
  * @timeout_ms: per message, 0: the protocol's default
  * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
  * @end_ns: time (ktime) until which all of its messages have to be exchanged, 0: unlimited
@@ -234,8 +234,8 @@ struct ec_mbox_limit {
  * @first: of a transfer: replies to earlier ones are discarded
  * @late: the next transfer begins when the reply to this message has come, however late
  * @limit: for the answer; @timeout_ms is not 0
- * @rx: takes each message of @type: 0 and EC_MORE end the wait, EC_STALE
- *	goes on, EC_WAIT goes on with a new time limit, or -errno
+ * @rx: takes each message of @type: 0, EC_MORE and -errno end the wait, EC_STALE
+ *	continues it, EC_WAIT continues it with a new time limit
  * @ctx: for @rx
  */
 struct ec_mbox_request {
@@ -286,15 +286,15 @@ static inline struct ec_mbox_limit ec_mbox_limit(const struct ec_mbox_limit *set
 }
 
 /*
- * The end of a transfer that has moved @bytes since @begin_ns: a slave that replies within the
- * time limit of each message, with next to nothing in it, would go on for hours.
+ * The limit of a transfer that has moved @bytes since @begin_ns. Without it a transfer would take
+ * hours, if the slave replies in time but with hardly any data in each message.
  */
 static inline u64 ec_mbox_end_ns(u64 begin_ns, u32 ms, u64 bytes)
 {
 	return begin_ns + (ms + (bytes * EC_MBOX_KIB_MS >> 10)) * NSEC_PER_MSEC;
 }
 
-/* Nothing was to be changed, so a lost frame has left nothing unknown. */
+/* The result of a read, whose outcome is known after a lost frame: it has changed nothing. */
 static inline int ec_mbox_read_result(int ret)
 {
 	return ret == -ENOTRECOVERABLE ? -ETIMEDOUT : ret;

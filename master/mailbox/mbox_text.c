@@ -29,10 +29,10 @@ static const struct {
  * ec_mbox_fail_text() - one line for a failed transfer
  * @ret: -errno of the transfer
  * @protocol: of the mailbox, "CoE" for example
- * @buf: room for the text
+ * @buf: result
  * @size: of @buf
  *
- * Abort and error codes of the protocol are the caller's; a mailbox error reply has its text.
+ * The caller reports abort and error codes of the protocol; a mailbox error reply has its text.
  *
  * Context: Any.
  * Return: @buf.

@@ -60,10 +60,10 @@ static int soe_transfer(struct ec_mbox *mb, struct ec_soe_access *a,
  * @drive: 0 to 7
  * @idn: number
  * @data: result
- * @cap: room at @data
+ * @cap: size of @data
  * @size: bytes read
  * @error: SoE error code of the slave, or 0
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EIO with @error set; -ENOBUFS when the value is larger than @cap;
@@ -99,7 +99,7 @@ int ec_soe_read(struct ec_mbox *mb, u8 drive, u16 idn, u8 *data, size_t cap, siz
  * @data: value
  * @size: bytes
  * @error: SoE error code of the slave, or 0
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_soe_read(); -ENOTRECOVERABLE when a lost frame leaves the outcome unknown.

@@ -67,7 +67,7 @@ static void unasked_keep(struct ec_mbox *mb, const u8 *rx, u16 len)
 }
 
 /**
- * ec_mbox_keep_voe() - are there readers of VoE messages?
+ * ec_mbox_keep_voe() - keep or drop VoE messages
  * @mb: mailbox of the slave
  * @on: keep those that arrive while another caller uses the mailbox; false: drop
  *	them, and those that are kept
@@ -112,7 +112,7 @@ int ec_mbox_take_kept(struct ec_mbox *mb, u8 *rx)
 }
 
 /**
- * ec_mbox_flush_kept() - forget the kept VoE messages
+ * ec_mbox_flush_kept() - drop the kept VoE messages
  * @mb: mailbox of the slave
  *
  * Context: Process.
@@ -144,7 +144,7 @@ int ec_mbox_error_reply(struct ec_mbox *mb, const u8 *rx, size_t len)
 	return ec_mbox_error_errno(detail);
 }
 
-/* To its protocol; what no protocol wants is an answer that is too late. */
+/* Pass a message to its protocol; a message that no protocol wants is a late reply. */
 static void unasked_take(struct ec_mbox *mb)
 {
 	const u8 *rx = mb->box.rx + EC_MBOX_HDR;
@@ -177,10 +177,10 @@ void ec_mbox_unasked(struct work_struct *work)
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	if (unable)
 		ec_mbox_warn(mb, "does not repeat mailbox messages, although its EEPROM has that flag; what a lost frame loses is lost\n");
-	/* a message that is handed over stays in the machine */
+	/* the transport holds a message with @handed_over */
 	if (!taken) {
 		unasked_take(mb);
-		/* a reader may have come meanwhile */
+		/* a reader may have entered meanwhile */
 		wake_up_all(&mb->stop->wake);
 	}
 	raw_spin_lock_irqsave(&mb->box.lock, flags);

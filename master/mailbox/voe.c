@@ -10,7 +10,7 @@
  * @h: header
  * @data: of the vendor
  * @size: bytes
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -EPROTONOSUPPORT without VoE; -EMSGSIZE when it does not fit into
@@ -53,12 +53,12 @@ static int voe_take(const u8 *rx, size_t len, struct ec_voe_hdr *h, u8 *data, si
 /**
  * ec_voe_read() - receive a message
  * @mb: mailbox of the slave
- * @blind: fetch the mailbox once without a look whether it is full
+ * @blind: read the mailbox once without a poll of its status
  * @h: its header
  * @data: of the vendor
- * @cap: room at @data
+ * @cap: size of @data
  * @size: bytes
- * @limit: when to give up; NULL: as usual
+ * @limit: time limits; NULL: the defaults
  *
  * The message may have come before, while others used the mailbox; see
  * ec_mbox_keep_voe().

@@ -92,7 +92,7 @@ COMMENTS = {
     "master/carry": 0,
     "master/cycle": 98,
     "master/link": 0,
-    "master/mailbox": 67,
+    "master/mailbox": 0,
     "master/session": 55,
     "tool": 35,
     "tool/sim": 12,
