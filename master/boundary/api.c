@@ -4,8 +4,8 @@
 #include "../../lib/ecrt/ecrt_int.h"
 
 /*
- * What a cyclic call could not do itself: gives the links back to its cycle after a stall, and
- * logs a call from a wrong context.
+ * Work that a cyclic call cannot do itself: it makes the bus access cyclic again after a cycle
+ * timeout, and logs a call from a wrong context.
  */
 static void work(struct work_struct *work)
 {
@@ -25,7 +25,7 @@ static void work(struct work_struct *work)
 }
 
 /**
- * ec_api_create() - a master can be requested by applications in the kernel
+ * ec_api_create() - let applications in the kernel request a master
  * @m: master
  *
  * Context: Process. May sleep.
@@ -62,7 +62,7 @@ void ec_api_destroy(struct ec_master *m)
 }
 
 /**
- * ec_command() - give a command
+ * ec_command() - execute a command
  * @m: master
  * @cmd: EC_IOC_*
  * @arg: its argument; addresses in it are the kernel's

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Applications in the kernel: include/ecrt.h as exported functions. They give
- * the same commands as a process does through ioctl(), by the same sources in lib/ecrt/;
- * only states and a cycle that the application runs have a way of their own, which never
- * sleeps.
+ * Applications in the kernel: include/ecrt.h as exported functions. They use
+ * the same commands as a process does through ioctl(), by the same sources in lib/ecrt/.
+ * States, and a cycle that the application runs, have functions of their own, which never
+ * sleep.
  */
 #ifndef EC_API_H
 #define EC_API_H
@@ -33,14 +33,14 @@ struct task_struct;
  * @file: stands for the open file of a process
  * @reserved: it has reserved the master, and holds this module
  * @active: its session while that is active
- * @wanted: its domains and slave configurations
+ * @wanted: the domains and slave configurations of its session
  * @cycle: its cycle
  * @image: data of its domains while the kernel runs the cycle
  * @busy: 1: a call exchanges process data with the cycle that the kernel runs
  * @requests: list of its requests
- * @work: what a cyclic call leaves to a thread that may sleep
- * @atomic: a call came where its device needs a thread
- * @warned: the log has the warning
+ * @work: work of a cyclic call that has to sleep
+ * @atomic: a cyclic call was made outside of a thread, though the device needs one
+ * @warned: @atomic has been logged
  * @send_cb: sends between two cycles, or NULL; see ecrt_master_callbacks()
  * @receive_cb: receives there, or NULL
  * @cb_data: for both
@@ -75,7 +75,7 @@ static inline struct ec_config *ec_api_config(const ec_slave_config_t *sc)
 /* The active session, or NULL. */
 static inline struct ec_session *ec_api_session(const struct ec_api *api)
 {
-	/* pairs with ecrt_master_activate(): all of the session is there */
+	/* pairs with ecrt_master_activate(): the session is complete */
 	return smp_load_acquire(&api->active);
 }
 
@@ -96,7 +96,7 @@ void ec_api_left(struct ec_master *m);
 
 #define ec_exchange_word(p, value) xchg(p, value)
 #define ec_div64(a, b) div64_u64(a, b)
-/* the pair is named where they are used */
+/* their users say what they pair with */
 #define ec_load_acquire(p) smp_load_acquire(p)
 #define ec_store_release(p, value) smp_store_release(p, value)
 
@@ -191,13 +191,13 @@ static inline u32 *ec_emerg_cleared(const ec_slave_config_t *sc)
 #define ec_zalloc(size) kvzalloc(size, GFP_KERNEL)
 #define ec_free(p) kvfree(p)
 
-/* what a function returns that makes no handle */
+/* the return value of a function that creates a handle, on failure */
 static inline void *ec_no_handle(int err)
 {
 	return NULL;
 }
 
-/* process data of applications in the kernel have their place from activation on */
+/* process data of applications in the kernel get their memory at activation only */
 static inline int ec_memory_frozen(const struct ec_master *m, const char *what)
 {
 	return 0;

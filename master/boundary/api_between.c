@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Frames of others between two cycles of an application in the kernel: with
- * ecrt_master_callbacks() it lets the master's own thread send and receive while
- * its cycle rests. One thread calls both hooks, and only while the session is
- * active, so that a module may go as soon as it has deactivated the master.
+ * Acyclic frames between two cycles of an application in the kernel: with
+ * ecrt_master_callbacks() a thread of the master sends and receives between the calls of
+ * the application. It calls both hooks only while the session is active, so a module may
+ * be removed once it has deactivated the master.
  */
 #include <linux/delay.h>
 #include <linux/kthread.h>
 #include <linux/sched.h>
 #include "api.h"
 
-#define LOOK_US	50	/* between two looks for what has come back */
+#define LOOK_US	50	/* between two polls for replies */
 
 void ecrt_master_callbacks(ec_master_t *master, void (*send_cb)(void *),
 			   void (*receive_cb)(void *), void *cb_data)
@@ -28,13 +28,13 @@ void ecrt_master_callbacks(ec_master_t *master, void (*send_cb)(void *),
 }
 EXPORT_SYMBOL_GPL(ecrt_master_callbacks);
 
-/* The queue for the cycle is not empty; what it has may be sent already. */
+/* Do posts wait for the cycle? It may be sending them now. */
 static bool left(const struct ec_master *m)
 {
 	return ec_carry_has_left(&m->carry);
 }
 
-/* Somebody has a slot while the cycle runs, so a frame of his may be on its way. */
+/* Do posts wait or are they in flight, with cyclic access? Then the hooks have to be called. */
 static bool awaited(const struct ec_master *m)
 {
 	return ec_carry_is_busy(&m->carry) &&
@@ -112,7 +112,7 @@ bool ec_api_is_between(const struct ec_api *api)
 }
 
 /**
- * ec_api_left() - a frame was left for the cyclic caller
+ * ec_api_left() - a post waits for the cycle owner
  * @m: master
  *
  * Context: Process.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * The cycle of an application in the kernel. It may run where nothing may sleep,
- * so the lock of a process' cycle is not for it: the links are entered or the
- * call says why not. Deactivation waits for who has entered them.
+ * so it does not take the mutex of a process' cycle: it enters the links, or the call
+ * fails. Deactivation waits for a caller that has entered them.
  */
 #include <linux/sched.h>
 #include "../../lib/ecrt/ecrt_int.h"
@@ -11,7 +11,7 @@
 #include "../link/device.h"
 #include "../session/reserve.h"
 
-/* May the devices be used here? */
+/* May the devices be used in the present context? */
 static bool place_is_right(const struct ec_links *l)
 {
 	if (!ec_links_need_thread(l))
@@ -41,10 +41,10 @@ static int api_cycle_enter(struct ec_master *m, struct ec_session **s)
 	*s = ec_api_session(api);
 	if (!*s)
 		return -EINVAL;
-	/* the links are its */
+	/* the thread of the kernel cycle uses the links */
 	if (api->cycle.exchange)
 		return -EBUSY;
-	/* without a device the links need not be had back */
+	/* no reason to make the access cyclic again */
 	if (!ec_links_attached(&m->links))
 		return -ENODEV;
 	ret = ec_access_try_enter(&m->links);
@@ -78,7 +78,7 @@ static int api_cycle_exchange(struct ec_master *m,
 
 	if (atomic_cmpxchg(&m->api->busy, 0, 1))
 		return -EBUSY;
-	/* read again: deactivation waits for a call that finds it here */
+	/* read again with @busy set: deactivation waits for that call */
 	st = ec_active_status(m);
 	ret = st ? fn(m, st) : -EINVAL;
 	atomic_set_release(&m->api->busy, 0);
@@ -96,7 +96,7 @@ int ecrt_master_receive(ec_master_t *master)
 	if (ret)
 		return ret;
 	if (ec_api_is_between(master->api)) {
-		/* for those who wait; process data belong to the cycle */
+		/* for callers that wait; process data belong to the cycle */
 		ec_links_poll(&master->links);
 	} else {
 		ret = ec_cycle_do_receive(&s->cycle);
@@ -154,7 +154,7 @@ int ecrt_master_application_time(ec_master_t *master, uint64_t app_time)
 	if (READ_ONCE(api->active))
 		api->cycle.next.flags |= EC_SEND_FLAG_APP_TIME;
 	else
-		/* there is no cycle it could go with */
+		/* without a cycle no send carries it */
 		ec_session_app_time(&master->sessions, app_time);
 	return 0;
 }

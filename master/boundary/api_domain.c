@@ -16,7 +16,7 @@ void ecrt_domain_external_memory(ec_domain_t *domain, uint8_t *memory)
 		return;
 	m = ec_master_of(ec_domain_session(domain));
 	mutex_lock(&m->sessions.lock);
-	/* not the session of the handle: after a takeover that one never becomes active */
+	/* not the session of the handle, which after a takeover never becomes active */
 	if (!READ_ONCE(m->api->active))
 		domain->memory = domain->data = memory;
 	else

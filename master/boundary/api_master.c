@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Requesting a master, activating and giving it back; for the kernel. */
+/* Request, activate and release a master; for applications in the kernel. */
 #include <linux/delay.h>
 #include "cdev.h"
 #include "../../lib/ecrt/ecrt_int.h"
@@ -17,7 +17,7 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 		return NULL;
 	}
 	m = ec_cdev_master(master_index);
-	/* who found the symbols by symbol_get() has no lasting hold on the module */
+	/* a caller that got the symbols by symbol_get() does not keep the module loaded */
 	__module_get(THIS_MODULE);
 	ret = ec_do(m, EC_IOC_RESERVE, NULL, "reserve the master");
 	if (ret) {
@@ -31,14 +31,14 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 }
 EXPORT_SYMBOL_GPL(ecrt_request_master);
 
-/* Cyclic calls find nothing from now on; their state begins anew. */
+/* The session is not active any more: cyclic calls do not find it, and their state is cleared. */
 static void forget(struct ec_master *m)
 {
 	struct ec_api *api = m->api;
 
 	ec_api_between_stop(m);
 	WRITE_ONCE(api->active, NULL);
-	/* a call that has found the session leaves it */
+	/* wait for a call that has found the session */
 	while (atomic_cmpxchg(&api->busy, 0, 1))
 		usleep_range(50, 100);
 	memset(&api->cycle, 0, sizeof(api->cycle));
@@ -64,7 +64,7 @@ void ecrt_release_master(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_release_master);
 
-/* It may be the candidate of a detached one. */
+/* The session of the application; it may be the candidate for a detached one. */
 static struct ec_session *session_of(struct ec_master *m)
 {
 	struct ec_session *s;
@@ -102,8 +102,8 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
 
 /*
- * Data of the domains while the kernel runs the cycle: the application's, as an image is
- * exchanged for another one in each cycle. What is in external memory is sent first.
+ * Memory for process data of the domains while the kernel runs the cycle. It belongs to the
+ * application, as each cycle exchanges images. External memory of domains has the first outputs.
  */
 static int make_image(struct ec_master *m, struct ec_ioc_activate *i)
 {
@@ -118,7 +118,7 @@ static int make_image(struct ec_master *m, struct ec_ioc_activate *i)
 	if (s && s->cycle.setup.kernel.period_ns)
 		size = ec_session_place(s);
 	ec_sessions_unlock(&m->sessions);
-	/* one that is too large is refused with the reason */
+	/* activation refuses an image that is too large, with the reason */
 	if (!size || size > EC_MAX_IMAGE)
 		return 0;
 	api->image = ec_zalloc(size);
@@ -174,11 +174,11 @@ int ecrt_master_activate(ec_master_t *master)
 	master->api->atomic = false;
 	master->api->warned = false;
 	ret = place_domains(master, master->sessions.session);
-	/* who sees the session finds all that belongs to it */
+	/* a cyclic call that sees the session finds it complete */
 	smp_store_release(&master->api->active, master->sessions.session);
 	ret = ret ?: ec_api_between_start(master);
 	if (ret) {
-		/* what another application has started goes on */
+		/* a cycle that another application has started continues */
 		if (i.taken_over)
 			forget(master);
 		else

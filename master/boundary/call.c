@@ -34,7 +34,7 @@ int ec_refuse(struct ec_call *call, int err, const char *fmt, ...)
 }
 
 /**
- * ec_call_forget_reason() - a command begins: one that fails without text has no reason
+ * ec_call_forget_reason() - clear the reason, at the begin of a command
  * @f: open file
  *
  * Context: Process.
@@ -47,7 +47,7 @@ void ec_call_forget_reason(struct ec_file *f)
 }
 
 /**
- * ec_ioc_limit() - refuse what is beyond the memory of a master's sessions
+ * ec_ioc_limit() - give the reason when the memory of a master's sessions is exceeded
  * @call: command
  * @ret: result so far
  *
@@ -217,7 +217,7 @@ static int with_slave(struct ec_call *call, const struct ec_ioctl *op)
 	if (ret)
 		return ret;
 	ret = op->fn(call);
-	/* lost meanwhile: that is the cause */
+	/* the slave was lost meanwhile: report that as the cause */
 	return ret == -EAGAIN || ret == -ETIMEDOUT ? refuse_lost(call, op, ret) : ret;
 }
 
@@ -233,7 +233,7 @@ static int with_show(struct ec_call *call, const struct ec_ioctl *op)
 		ret = (call->slave ? 0 : show_session(call, op)) ?: op->fn(call);
 		if (call->showing)
 			ec_show_end(&call->master->base->show);
-		/* changes may come one after the other, and no wait looks at signals then */
+		/* with one change after the other no wait would notice a signal */
 		if (ret == -EAGAIN && signal_pending(current))
 			ret = -ERESTARTSYS;
 	} while (ret == -EAGAIN);
@@ -295,7 +295,7 @@ static int put_buffer(struct ec_call *call, const struct ec_ioctl *op)
 
 /**
  * ec_call_run() - carry out a command
- * @f: open file that gave it
+ * @f: open file of the caller
  * @op: its entry in the table
  * @arg: its argument, in kernel memory
  * @user: a buffer that @arg names is in the process' memory

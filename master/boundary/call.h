@@ -41,10 +41,10 @@ struct ec_ioc_buffer {
  * @fn: handler
  * @flags: F_*
  * @known: flags of the argument that are known
- * @min: bytes the oldest program sends, less is no such argument; 0: all of them
+ * @min: size of the argument in the oldest interface, a shorter one is refused; 0: the full size
  * @class: what ec_call_run() finds and locks
- * @at: where the argument has the address or index for that
- * @buffer: @most is 0 when there is none
+ * @at: offset in the argument: address or index of that object
+ * @buffer: its @most is 0 without a buffer
  * @reserved: fields that must be zero; size 0 ends them
  */
 struct ec_ioctl {

@@ -56,7 +56,7 @@ void ec_cdev_add(struct ec_master *m)
 }
 
 /**
- * ec_cdev_remove() - take the last master away
+ * ec_cdev_remove() - remove the last master from the table
  *
  * Context: Process, without open files.
  * Return: that master, or NULL: there is none left.
@@ -305,7 +305,7 @@ int ec_cdev_init(void)
 	if (ret)
 		goto err_region;
 	ec_class->devnode = devnode;
-	/* not in the memory of this module: the kernel lets go of it at its leisure */
+	/* not in the memory of this module: the kernel may use it after the module was removed */
 	cdev = cdev_alloc();
 	if (!cdev) {
 		ret = -ENOMEM;
@@ -323,7 +323,7 @@ err_region:
 }
 
 /**
- * ec_cdev_exit() - end that
+ * ec_cdev_exit() - free what ec_cdev_init() has allocated
  *
  * Context: Process. May sleep.
  */

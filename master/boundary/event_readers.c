@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * read() and poll() of events. A reader costs the master nothing but the work that wakes it:
- * writers of events know no readers, the monitor sees at each of its polls whether there are
- * new events, and a worker wakes the readers then.
+ * read() and poll() of events. A reader costs the master only the work that wakes it: writers of
+ * events do not know readers. The monitor checks for new events at each of its polls, and a worker
+ * wakes the readers.
  */
 #include <linux/ktime.h>
 #include <linux/sched/signal.h>
@@ -26,7 +26,7 @@ static void wake_readers(struct work_struct *work)
 }
 
 /**
- * ec_event_readers_init() - there are no readers yet
+ * ec_event_readers_init() - prepare the list of readers, which is empty
  * @m: master
  *
  * Context: Any.
@@ -50,7 +50,7 @@ void ec_event_readers_exit(struct ec_master *m)
 }
 
 /**
- * ec_event_readers_kick() - let readers know of new events, if there are any
+ * ec_event_readers_kick() - wake the readers if there are new events
  * @m: master
  *
  * Context: The monitor.
@@ -63,7 +63,7 @@ void ec_event_readers_kick(struct ec_master *m)
 	if (head == rs->woken)
 		return;
 	rs->woken = head;
-	/* the number of events before that of readers: a new reader looks at the events first */
+	/* the number of events before that of readers: a new reader reads the events itself */
 	smp_rmb();
 	if (READ_ONCE(rs->count))
 		queue_work(system_unbound_wq, &rs->work);
@@ -80,7 +80,7 @@ static void begin(struct ec_event_reader *r, struct ec_ioc_events *arg)
 	mutex_unlock(&r->lock);
 }
 
-/* The reader of a file, made when there is none yet; NULL: no memory. */
+/* The reader of a file, created at the first call; NULL: no memory. */
 static struct ec_event_reader *reader(struct ec_file *f)
 {
 	struct ec_event_readers *rs = &f->master->readers;
@@ -105,7 +105,7 @@ static struct ec_event_reader *reader(struct ec_file *f)
 	return r;
 }
 
-/* Command: the file becomes a reader of events, or begins anew. */
+/* Command: the file becomes a reader of events, or begins again. */
 int ec_ioc_events(struct ec_call *call)
 {
 	struct ec_ioc_events *arg = call->arg;
@@ -138,7 +138,7 @@ void ec_event_reader_end(struct ec_file *f)
 	list_del(&f->reader->list);
 	WRITE_ONCE(rs->count, rs->count - 1);
 	mutex_unlock(&rs->lock);
-	/* no work finds it any more, and an entry of poll() has left with the file */
+	/* the work does not find it any more, and entries of poll() end with the file */
 	kfree(f->reader);
 }
 
@@ -166,7 +166,7 @@ static ssize_t event_readers_copy(struct ec_event_reader *r, char __user *to, si
 			mutex_unlock(&r->lock);
 			return done ?: -EFAULT;
 		}
-		/* what the caller has not got stays */
+		/* events that were not copied are read next time */
 		ec_write64(&r->at, at);
 		done += sizeof(e);
 		cond_resched();
@@ -197,7 +197,7 @@ ssize_t ec_event_reader_read(struct ec_file *f, char __user *to, size_t size, bo
 
 	if (!r || size < sizeof(struct ec_event))
 		return -EINVAL;
-	/* a read of more is a read of that: no length of the caller is added up */
+	/* more is never kept; a limited size cannot overflow */
 	size = min_t(size_t, size, EC_EVENTS_KEPT * sizeof(struct ec_event));
 	while (!n) {
 		n = event_readers_copy(r, to, size);

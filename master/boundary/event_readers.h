@@ -20,7 +20,7 @@ struct ec_master;
  * @list: open files that read events
  * @count: entries in @list
  * @work: wakes them
- * @woken: number of the next event when they were woken last; the monitor's
+ * @woken: number of the next event when they were woken last; for the monitor only
  */
 struct ec_event_readers {
 	struct mutex lock;

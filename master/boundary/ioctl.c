@@ -54,7 +54,7 @@ static int check(struct ec_call *call, const struct ec_ioctl *op, unsigned int c
 {
 	unsigned int size = _IOC_SIZE(cmd), min = op->min ?: _IOC_SIZE(op->cmd);
 
-	/* a newer program has a longer one: fetch_arg() looks at the rest */
+	/* the argument of a newer program is longer: fetch_arg() checks the rest */
 	if (size < min || (size && !_IOC_DIR(cmd)))
 		return ec_refuse(call, -EINVAL,
 				 "command 0x%08x has an argument of %u bytes, needs %u; build the program with the header of this module",
@@ -87,7 +87,7 @@ static int check_unknown(struct ec_call *call, const struct ec_ioctl *op, const 
 }
 
 /**
- * ec_ioc() - give a command from within the kernel
+ * ec_ioc() - execute a command from within the kernel
  * @f: file that stands for the application
  * @cmd: EC_IOC_*
  * @arg: its argument; addresses in it are the kernel's
@@ -109,7 +109,7 @@ int ec_ioc(struct ec_file *f, unsigned int cmd, void *arg)
 	return ret ?: ec_call_run(f, op, arg, false);
 }
 
-/* Programs of the interface versions 1 and 2 do not name theirs. */
+/* Refuse programs of interface versions 1 and 2, which do not name their version. */
 static long refuse_old(struct ec_file *f)
 {
 	struct ec_call call = { .file = f };
@@ -158,7 +158,7 @@ static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long
 	op = &table[array_index_nospec(nr, ARRAY_SIZE(table))];
 	if (!op->fn || _IOC_DIR(cmd) != _IOC_DIR(op->cmd))
 		return -ENOTTY;
-	/* a failure without text must not show the one before */
+	/* a failure without text must not show the previous text */
 	if (op->fn != ec_ioc_reason)
 		ec_call_forget_reason(f);
 	ret = check(&call, op, cmd);
@@ -187,7 +187,7 @@ static noinline long dispatch(struct ec_file *f, unsigned int cmd, unsigned long
  *
  * Context: Process. May sleep; RECEIVE, SEND and APP_TIME are RT-safe.
  * Return: 0 or -errno; -ENOTTY for an unknown command, -EOPNOTSUPP for unknown
- * flags and reserved bytes, -EINVAL for a size that cannot be, -E2BIG for a
+ * flags and reserved bytes, -EINVAL for an invalid size, -E2BIG for a
  * non-zero tail, -EPERM, -EFAULT.
  */
 long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg)

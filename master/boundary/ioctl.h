@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Commands of an application or a tool. ec_call_run() finds and locks what a row of
- * commands.h names and copies its buffer; the handler does the rest. A process gives commands
+ * Commands of an application or a tool. ec_call_run() finds and locks the object that a row of
+ * commands.h names and copies its buffer; the handler does the rest. A process executes commands
  * by ioctl(), an application in the kernel by ec_command().
  */
 #ifndef EC_IOCTL_H
@@ -16,7 +16,7 @@ struct ec_slave;
 
 /**
  * struct ec_call - one command while it is carried out
- * @file: open file that gave it
+ * @file: open file of the caller
  * @master: of @file
  * @arg: argument, struct ec_ioc_*, in kernel memory; its @data member is not for handlers
  * @data: buffer of the command, in kernel memory; NULL when it has none, no bytes, or too many

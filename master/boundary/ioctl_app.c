@@ -64,7 +64,7 @@ int ec_ioc_reserve(struct ec_call *call)
 	}
 }
 
-/* Has this file reserved the master? What follows takes the lock itself. */
+/* Has this file reserved the master? No lock is kept: the rest of the command takes its own. */
 static int check_reserved(struct ec_call *call)
 {
 	int ret = ec_ioc_lock_session(call);
@@ -95,7 +95,7 @@ int ec_ioc_create_domain(struct ec_call *call)
 	return 0;
 }
 
-/* A configuration begins with the PDOs of its slave: they may be being read yet. */
+/* A configuration starts with the PDOs of its slave: wait until they are read. */
 static void wait_pdos(struct ec_call *call, const struct ec_ioc_slave_config *i)
 {
 	struct ec_slave *slave;
@@ -256,7 +256,7 @@ static int check_maps(struct ec_call *call, const struct ec_config *c)
 	return 0;
 }
 
-/* What no slave describes has to be named; that there is none is worth telling why. */
+/* Without a slave the PDOs have to be named; the reason includes why none is attached. */
 static void not_mapped(struct ec_call *call, const struct ec_config *c,
 		       const struct ec_ioc_reg_entry *i)
 {
@@ -332,7 +332,7 @@ int ec_ioc_sc_dc(struct ec_call *call)
 	return 0;
 }
 
-/* Flags of other masters' applications; they are kept and shown, few have a meaning here. */
+/* Flags as applications of the IgH EtherCAT Master set them: kept and shown, few have an effect. */
 int ec_ioc_sc_flag(struct ec_call *call)
 {
 	struct ec_ioc_sc_flag *i = call->arg;
@@ -413,7 +413,7 @@ static int take_over(struct ec_call *call)
 {
 	char why[96];
 	const struct ec_session *candidate = call->master->sessions.candidate;
-	/* the handles of an application in the kernel are what it has configured */
+	/* handles of an application in the kernel are pointers to its own configurations */
 	int ret = ec_session_take_over(&call->master->sessions, why, sizeof(why),
 				       call->file == &call->master->api->file);
 

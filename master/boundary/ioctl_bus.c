@@ -10,7 +10,7 @@
 #include "../bus/slave.h"
 #include "../carry/xfer.h"
 
-/* By ring position an unscanned bus is reached as well. */
+/* An emergency access needs no scan: it goes to a ring position. Others go to a known slave. */
 static int reg_address(struct ec_call *call, struct ec_dg *dg, u8 cmd, unsigned int *position)
 {
 	const struct ec_ioc_reg *i = call->arg;

@@ -95,7 +95,7 @@ int ec_ioc_config_entry(struct ec_call *call)
 	return 0;
 }
 
-/* Copies in pieces, as much as there is a buffer for; returns as ec_ioc_pause() in between. */
+/* Copy in pieces, up to the size of the buffer, with pauses. Return: as ec_ioc_pause(). */
 static int copy_pieces(struct ec_call *call, const void *from, u32 size)
 {
 	u32 pos;
@@ -111,7 +111,7 @@ static int copy_pieces(struct ec_call *call, const void *from, u32 size)
 	return 0;
 }
 
-/* Return: as ec_ioc_pause(), or -ENOENT; 0: the section goes on. */
+/* Return: 0 within the same show section; -ENOENT; or as ec_ioc_pause(). */
 static int find_startup(struct ec_call *call, u8 type, u32 n, const struct ec_startup **found)
 {
 	const struct ec_startup *u;

@@ -51,7 +51,7 @@ static int check_cycle(struct ec_call *call, const struct ec_ioc_cycle *i)
 	return 0;
 }
 
-/* As sched_setscheduler() would allow it to the caller itself. */
+/* The priority, up to the limit that sched_setscheduler() has for the caller. */
 static u32 permitted(u32 priority)
 {
 	if (capable(CAP_SYS_NICE))

@@ -13,13 +13,13 @@
 #include "../session/session.h"
 
 /**
- * enter() - the cyclic caller begins receive or send
+ * enter() - the cycle owner begins receive or send
  * @f: open file
  *
- * A mutex is safe here in real time: besides the owner of the cycle only
- * deactivation takes it, for the time of one assignment, so it is free and costs
- * one atomic operation. Should the two meet, deactivation inherits the priority of the
- * cyclic caller under PREEMPT_RT, where a mutex is an rt_mutex.
+ * A mutex is safe here in real time: besides the cycle owner only deactivation takes
+ * it, for the time of one assignment, so it is free and costs one atomic operation. If
+ * both want it, deactivation inherits the priority of the cycle owner under PREEMPT_RT,
+ * where a mutex is an rt_mutex.
  *
  * Context: Process. The lock is held when a cycle is returned.
  * Return: the active cycle of this file, ERR_PTR(-EPERM), or ERR_PTR(-EBUSY) when the kernel
@@ -71,7 +71,7 @@ int ec_ioc_app_time(struct ec_call *call)
 	return 0;
 }
 
-/* Both without a call of their own: a cycle on the short way of ec_ioctl_advise() costs less. */
+/* Inlined twice, so that the shorter entry of ec_ioctl_advise() costs no call. */
 static __always_inline int ioctl_cyclic_receive(struct ec_file *f)
 {
 	struct ec_cycle *c = enter(f);
@@ -116,7 +116,7 @@ int ec_ioc_receive(struct ec_file *f)
  * @what: its argument, flags are known ones
  *
  * Context: Process. RT-safe.
- * Return: as ec_ioc_receive(); -ENOENT a domain is queued that there is not.
+ * Return: as ec_ioc_receive(); -ENOENT a domain is queued that does not exist.
  */
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what)
 {
@@ -129,12 +129,12 @@ MODULE_PARM_DESC(short_entry,
 		 "0: receive and send of a cycle by ioctl() only, not by posix_fadvise()");
 
 /**
- * ec_ioctl_admit() - a command of the cycle has come by ioctl()
+ * ec_ioctl_admit() - note that a command of the cycle was executed by ioctl()
  * @f: open file
  * @which: EC_ADMITTED_*
  *
- * Security modules and filters of system calls have let it through, so from now on it may take
- * the shorter entry.
+ * Security modules and filters of system calls have admitted it, so from now on it may use the
+ * shorter entry.
  *
  * Context: Process. RT-safe.
  */
@@ -149,7 +149,7 @@ static bool is_admitted(const struct ec_file *f, unsigned int which)
 	return likely(test_bit(which, &f->admitted));
 }
 
-/* A program that was built with a later header; a cycle of this one does not pay for it. */
+/* For a program that was built with a later header; not inline, so it costs others nothing. */
 static noinline int fetch_longer(struct ec_ioc_send *what, size_t size, const void __user *arg)
 {
 	return size < sizeof(*what) ? -EINVAL :
@@ -193,8 +193,8 @@ long ec_ioctl_send(struct ec_file *f, unsigned int cmd, unsigned long arg)
  * @advice: EC_ADVICE_RECEIVE, or EC_ADVICE_SEND with EC_SEND_FLAG_*
  *
  * Security modules examine each ioctl(), and that costs more than the rest of the entry. They
- * are not bypassed: a command that they have not let through on this file by ioctl() before is
- * no advice.
+ * are not bypassed: a command is accepted here only after they have admitted it by ioctl() on
+ * this file.
  *
  * Context: Process. RT-safe.
  * Return: as EC_IOC_RECEIVE and EC_IOC_SEND; for other advice as for any file: -EINVAL.

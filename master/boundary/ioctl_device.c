@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* The command that gives a master another network card. */
+/* The command that changes the main device of a master. */
 #include <linux/capability.h>
 #include "ioctl.h"
 #include "master.h"
@@ -19,8 +19,8 @@ static int check_name(struct ec_call *call, const struct ec_ioc_device_use *i)
 }
 
 /*
- * The slaves of the old device are forgotten before the new one is there, or they would be taken
- * for the new slaves with the same addresses.
+ * A scan without a device forgets the slaves of the old one. Otherwise slaves at the new device
+ * with the same addresses would be taken for them.
  */
 static int change(struct ec_call *call, const char *name)
 {
@@ -55,7 +55,7 @@ int ec_ioc_device_use(struct ec_call *call)
 	const struct ec_ioc_device_use *i = call->arg;
 	int ret;
 
-	/* it takes an interface from all others */
+	/* no other program can use the interface afterwards */
 	if (!capable(CAP_NET_ADMIN))
 		return ec_refuse(call, -EPERM, "a change of the device needs root (CAP_NET_ADMIN)");
 	ret = check_name(call, i);

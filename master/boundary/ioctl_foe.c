@@ -38,7 +38,7 @@ static int from_slave(void *ctx, u64 at, u8 *buf, size_t n)
 	return copy(ctx, at, buf, n, false);
 }
 
-/* What cannot be told to the caller is no reason to end the transfer. */
+/* Report progress to the caller; an invalid pointer does not end the transfer. */
 static void progress(void *ctx, u64 done)
 {
 	const struct ec_call *call = ctx;

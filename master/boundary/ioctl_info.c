@@ -122,12 +122,12 @@ static void cycle_info(const struct ec_cycle *c, struct ec_ioc_master *i)
 	i->late_cycles = READ_ONCE(c->carry->share.late_cycles);
 }
 
-/* What the session adds. */
+/* The part of a session in the state of the master. */
 static void session_info(struct ec_call *call, const struct ec_session *s, struct ec_ioc_master *i)
 {
 	const struct ec_status *st;
 
-	/* a name of the process that loaded it says nothing of an application in the kernel */
+	/* for an application in the kernel it is the process that loaded it: no useful name */
 	if (s->cycle.owner == &call->master->api->file)
 		strscpy(i->owner, "an application in the kernel", sizeof(i->owner));
 	else
@@ -190,7 +190,7 @@ int ec_ioc_master(struct ec_call *call)
 	return 0;
 }
 
-/* Way to the neighbour at a port, where both have a clock. */
+/* Delay to the neighbor at a port, if both have a clock. */
 static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int p)
 {
 	const struct ec_slave *next;
@@ -279,7 +279,7 @@ int ec_ioc_slave_why(struct ec_call *call)
 	ec_slave_why(s, i->why, sizeof(i->why));
 	ec_slave_cause(s, &i->cause);
 	ec_slave_warning(s, i->warning, sizeof(i->warning));
-	/* such a slave is used all the same, so it has no other text */
+	/* a slave with another revision is used nevertheless, so there is no other text */
 	if (c && ec_config_differs(c, s) && !i->warning[0])
 		ec_config_revision_text(c, s, i->warning, sizeof(i->warning));
 	return 0;

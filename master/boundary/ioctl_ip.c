@@ -10,7 +10,7 @@ static_assert(EC_IP_ALL == EC_EOE_ALL && EC_IP_NAME == EC_EOE_NAME);
 static_assert(sizeof(struct ec_ip_params) == sizeof(struct ec_eoe_ip));
 static_assert(offsetof(struct ec_ip_params, ip) == offsetof(struct ec_eoe_ip, ip));
 
-/* The parameters of a command serve as they are: both structures have the same layout. */
+/* No copy of the parameters of a command: both structures have the same layout. */
 static struct ec_eoe_ip *eoe_ip(struct ec_ip_params *p)
 {
 	return (struct ec_eoe_ip *)p;

@@ -5,7 +5,7 @@
 #include "ioctl.h"
 #include "../session/session.h"
 
-#define LATE_MAX	100000	/* a second */
+#define LATE_MAX	100000	/* delayed cycles a second */
 
 int ec_ioc_sc_overlap(struct ec_call *call)
 {

@@ -45,7 +45,7 @@ int ec_ioc_mbox_failed(struct ec_call *call, int ret, const char *protocol, cons
 
 /* SDOs -----------------------------------------------------------------------*/
 
-/* what holds without a limit of the caller */
+/* time limit of an SDO message, if the caller sets none */
 static u32 sdo_ms(const struct ec_call *call)
 {
 	return READ_ONCE(call->slave->mbox.reply_ms) ?: EC_SDO_TIMEOUT_MS;

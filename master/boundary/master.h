@@ -40,11 +40,11 @@ struct ec_master {
 	struct ec_api *api;
 	/** @monitor: thread that watches the bus; only monitor.c uses it and @rider */
 	struct task_struct *monitor;
-	/** @pause: it shall send nothing until this is cleared; power.c */
+	/** @pause: @monitor must send nothing until this is cleared; written by power.c */
 	bool pause;
-	/** @paused: it does not; monitor.c */
+	/** @paused: @monitor sends nothing; written by monitor.c */
 	bool paused;
-	/** @rider: its datagram in frames of the cycle */
+	/** @rider: datagram of @monitor in frames of the cycle */
 	struct ec_rider rider;
 };
 

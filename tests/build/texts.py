@@ -88,7 +88,7 @@ COMMENTS = {
     "lib": 0,
     "lib/ecrt": 5,
     "lib/tools": 20,
-    "master/boundary": 25,
+    "master/boundary": 0,
     "master/carry": 0,
     "master/cycle": 98,
     "master/link": 0,
