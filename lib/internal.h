@@ -81,8 +81,8 @@ struct ec_slave_config {
 	__atomic_load_n(&(field), __ATOMIC_RELAXED); })
 
 /*
- * Those of 64 bits take a program of 32 bits two loads, which belong together when
- * the kernel has written nothing in between. What is read later is not older.
+ * A program of 32 bits reads a field of 64 bits by two loads. They belong together when the
+ * kernel has written nothing in between. Fields that are read later are not older.
  */
 static inline __u64 ec_status_read64(const struct ec_status *st, const __u64 *field)
 {
@@ -197,7 +197,7 @@ static inline struct ec_master *ec_domain_master(const struct ec_domain *d)
 #define ec_zalloc(size) calloc(1, size)
 #define ec_free(p) free(p)
 
-/* what a function returns that makes no handle */
+/* the return value of a function that creates a handle, on failure */
 static inline void *ec_no_handle(int err)
 {
 	errno = -err;

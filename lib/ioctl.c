@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-/* The one way to the kernel, and the one line that says why it failed. */
+/* Commands of the kernel, and the line that reports why one failed. */
 
 #include <sys/ioctl.h>
 
@@ -10,7 +10,7 @@ int ec_command(const struct ec_master *m, unsigned int cmd, void *arg)
 	return ioctl(m->fd, cmd, arg) < 0 ? -errno : 0;
 }
 
-/* A device file was not opened, errno says why: a line on stderr that says what to do. */
+/* A device file cannot be opened, cause in errno: print a line with the remedy. */
 int ec_cannot_open(const char *path)
 {
 	const char *hint = "";
@@ -25,7 +25,7 @@ int ec_cannot_open(const char *path)
 	return -err;
 }
 
-/* A line on stderr; it ends with the reason of a command that failed. */
+/* Print a line on stderr; it ends with the reason of a command that failed. */
 int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int err,
 		bool with_reason, const char *fmt, ...)
 {

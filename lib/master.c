@@ -273,8 +273,8 @@ int ecrt_master_deactivate(ec_master_t *master)
 /* cycle --------------------------------------------------------------------*/
 
 /*
- * What a command of the cycle by the shorter entry has returned: 0, its error, or 1: give it by
- * ioctl(). That shows the cause when the module or a filter of system calls refuses the advice.
+ * The result of a command of the cycle by the shorter entry: 0, its error, or 1: execute it by
+ * ioctl(), which shows the cause when the module or a filter of system calls refuses the advice.
  */
 static inline int advised(struct ec_master *m, int err)
 {
@@ -292,7 +292,7 @@ static int send_next(struct ec_master *m)
 	if (__atomic_load_n(&m->cycle.started, __ATOMIC_RELAXED) &&
 	    __atomic_exchange_n(&m->cycle.started, 0, __ATOMIC_ACQUIRE))
 		next->flags |= EC_SEND_FLAG_REQUESTS;
-	/* an ioctl() has a place for both times */
+	/* two different times need the ioctl() */
 	if (!m->no_advice && (!(next->flags & EC_SEND_FLAG_SYNC_REF) ||
 			      next->sync_time == next->app_time))
 		ret = advised(m, posix_fadvise(m->fd, (off_t)next->app_time, (off_t)next->queued,

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
  * Process data before activation: memory of the library, at an address that stays.
- * Activation gives its content to the kernel as what the image begins with;
- * then the image itself takes its place, or, when the kernel runs the cycle,
- * the memory is kept.
+ * Activation passes its content to the kernel as the initial image. Then the image
+ * itself is mapped at this address; when the kernel runs the cycle, the memory is
+ * kept.
  */
 #include <sys/mman.h>
 #include <unistd.h>
@@ -17,7 +17,7 @@ static size_t to_pages(size_t size)
 	return (size + page - 1) / page * page;
 }
 
-/* Where the kernel would put the domains; returns bytes of all, or -errno. */
+/* Get the places of the domains from the kernel; returns bytes of all, or -errno. */
 static int measure(struct ec_master *m, size_t *total)
 {
 	struct ec_domain *d;
@@ -75,14 +75,14 @@ int ecrt_master_setup_domain_memory(ec_master_t *master)
 	return 0;
 }
 
-/* 0, or says that nothing can be registered any more. */
+/* 0, or an error after reporting that nothing can be registered any more. */
 int ec_memory_frozen(const struct ec_master *m, const char *what)
 {
 	return m->frozen ? ec_fail(NULL, -EBUSY, "%s after ecrt_master_setup_domain_memory()",
 				   what) : 0;
 }
 
-/* Maps the image; where the application has it already, in the same place. */
+/* Map the image, at the address that the application has already, if any. */
 int ec_memory_map_image(struct ec_master *m, size_t size)
 {
 	void *at;

@@ -88,7 +88,7 @@ ec_master_t *ecrt_request_master(unsigned int master_index)
 	return NULL;
 }
 
-/* Closing the file is what makes the kernel clean up. */
+/* The kernel ends the session when the file is closed. */
 void ecrt_release_master(ec_master_t *master)
 {
 	if (!master)

@@ -66,7 +66,7 @@ int ecrt_master_link_state(const ec_master_t *master, unsigned int dev_idx,
 
 	if (!master || !state)
 		return -EINVAL;
-	/* why there is no such link is the kernel's to say */
+	/* for another number the kernel reports the cause */
 	if (master->active && dev_idx < ec_status_read(master->status->link_count)) {
 		const struct ec_status_link *link = &master->status->links[dev_idx];
 

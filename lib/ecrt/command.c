@@ -3,12 +3,12 @@
 #include "ecrt_int.h"
 
 /**
- * ec_give() - give a command for ec_do()
+ * ec_give() - execute a command for ec_do()
  * @m: master, or NULL
  * @cmd: EC_IOC_*
  * @arg: its argument
  *
- * Return: as the command; -EINVAL without a master, or when the slave is not there: a
+ * Return: as the command; -EINVAL without a master, or when the slave is absent: a
  * command returns -ENOENT then, as EC_IOC_SLAVE does in the kernel.
  */
 int ec_give(const ec_master_t *m, unsigned int cmd, void *arg)

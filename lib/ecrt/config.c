@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
-/* What else is configured of a slave. */
+/* The configuration of a slave without its PDOs. */
 #include "ecrt_int.h"
 
 #define DRIVES	8
@@ -169,7 +169,7 @@ EXPORT_SYMBOL_GPL(ecrt_slave_config_idn);
 
 /* IP parameters of slaves with EoE -------------------------------------------*/
 
-/* A parameter of @size bytes, @at in struct ec_ip_params; the kernel adds them up. */
+/* A parameter of @size bytes, @at in struct ec_ip_params; the kernel keeps those set before. */
 static int set_ip(ec_slave_config_t *sc, __u32 which, size_t at, const void *value, size_t size,
 		  const char *what)
 {

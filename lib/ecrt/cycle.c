@@ -168,10 +168,10 @@ static void add_input(struct ec_domain *d, const struct ec_input *in)
 }
 
 /**
- * ec_exchange_add() - a domain takes part in the exchange
+ * ec_exchange_add() - add a domain to the exchange
  * @d: domain; its data get the values of the running cycle
  *
- * Finds its inputs: the rest of its data is the application's.
+ * Finds its inputs; the application writes the rest of its data.
  *
  * Return: 0; -EPROTO it does not fit a buffer; -ENOMEM.
  */
@@ -187,7 +187,7 @@ int ec_exchange_add(struct ec_domain *d)
 		return ret;
 	if (d->offset + d->size > a->stride - sizeof(struct ec_exchange_buffer))
 		return -EPROTO;
-	/* of a cycle that runs already: outputs and inputs as they are */
+	/* the present outputs and inputs of a cycle that runs already */
 	if (d->size)
 		memcpy(d->data, place(a, d, a->out_back), d->size);
 	d->n_inputs = 0;
@@ -211,7 +211,7 @@ int ec_exchange_add(struct ec_domain *d)
 
 /* cycle --------------------------------------------------------------------*/
 
-/* Exchanges a buffer we are done with for the one named by a word. */
+/* Exchange a used buffer for the one that a word names. */
 static unsigned int swap_buffer(__u32 *word, __u32 mine)
 {
 	__u32 n = ec_exchange_word(word, mine) & INDEX_MASK;
@@ -227,7 +227,7 @@ static int halted(const struct ec_status *st)
 	return ec_status_read(st->no_device) ? -ENODEV : 0;
 }
 
-/* Callers that check working counters only see the end of the cycle, too. */
+/* The end of the cycle, also for callers that check nothing but working counters. */
 static void nothing_back(ec_master_t *m)
 {
 	struct ec_domain *d;
@@ -301,7 +301,7 @@ static void copy_inputs(__u8 *to, const __u8 *from, const struct ec_input *in)
 			memcpy(to, from, in->size);
 }
 
-/* What ecrt_domain_process() does when the kernel runs the cycle. */
+/* ecrt_domain_process() for a cycle that the kernel runs */
 void ec_exchange_process(struct ec_domain *d)
 {
 	const struct ec_app_cycle *a = ec_app_cycle(ec_domain_master(d));
@@ -313,7 +313,7 @@ void ec_exchange_process(struct ec_domain *d)
 	d->snap = buffer(a, n)->domains[d->index];
 }
 
-/* What ecrt_domain_queue() does then. */
+/* ecrt_domain_queue() for a cycle that the kernel runs */
 void ec_exchange_queue(struct ec_domain *d)
 {
 	const struct ec_app_cycle *a = ec_app_cycle(ec_domain_master(d));
@@ -323,12 +323,12 @@ void ec_exchange_queue(struct ec_domain *d)
 }
 
 /**
- * ec_exchange_send() - give the outputs of the queued domains
+ * ec_exchange_send() - pass the outputs of the queued domains
  * @m: active master whose cycle the kernel runs
  * @st: its status page
  *
- * Domains that are not queued keep the outputs of before. These are still in the
- * buffer that was given last: it comes back only for the one given now.
+ * Domains that are not queued keep their previous outputs. These are still in the
+ * buffer that was passed last, since the kernel returns it only for the next one.
  *
  * Return: as ecrt_master_send().
  */

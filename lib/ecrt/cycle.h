@@ -11,14 +11,14 @@
 #endif
 
 /**
- * struct ec_app_cycle - state of the cycle owner, which alone uses it but for @started
+ * struct ec_app_cycle - state of the cycle owner; only it uses the members, except for @started
  * @next: what the next send does; its application time is the last one
  * @started: a request was started or cancelled since the last send, by any thread
  * @received: domains not processed since the last exchange, bit n: domain n
  * @exchange: of a cycle that the kernel runs; NULL: the application runs its cycle
  * @stride: from one buffer of @exchange to the next, bytes
  * @out_back: output buffer that the application holds
- * @out_last: the one that it gave last
+ * @out_last: output buffer that it passed last
  * @in_front: input buffer that the application holds
  * @in_taken: @in_front has inputs
  * @seen: last cycle that a thread has waited for; several may wait

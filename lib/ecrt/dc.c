@@ -47,7 +47,7 @@ int ecrt_master_sync_slave_clocks(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sync_slave_clocks);
 
-/* 0; -EINVAL @result is NULL; -EIO no frame has brought the time yet; as check() */
+/* 0; -EINVAL @result is NULL; -EIO no frame with the time is received yet; as check() */
 static int reference_time(const ec_master_t *master, bool whole, const void *result,
 			  uint64_t *time)
 {

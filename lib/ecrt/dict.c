@@ -61,7 +61,7 @@ static int decode_entry(const uint8_t *b, size_t len, ec_sdo_entry_info_t *info)
 
 /* at once --------------------------------------------------------------------*/
 
-/* @abort_code: the slave's when it refuses, and 0 otherwise; may be NULL */
+/* @abort_code: that of a slave that refuses, otherwise 0; may be NULL */
 static int ask(ec_master_t *master, struct ec_ioc_sdo_info *i, uint32_t *abort_code)
 {
 	int ret;
@@ -107,7 +107,7 @@ int ecrt_master_sdo_info_list(ec_master_t *master, uint16_t slave_position, uint
 }
 EXPORT_SYMBOL_GPL(ecrt_master_sdo_info_list);
 
-/* What an answer is decoded to depends on what was asked for. */
+/* Decode an answer by the kind of its question. */
 static int describe(ec_master_t *master, struct ec_ioc_sdo_info *i, void *info,
 		    uint32_t *abort_code)
 {

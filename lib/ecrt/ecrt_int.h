@@ -2,9 +2,9 @@
 /*
  * The part of ecrt.h that is written once and compiled twice, for libethercat and for
  * ec_master.ko: configuration, information and requests. A function builds the argument
- * of a command and gives it with ec_command(): ioctl() in a process, a call in the kernel.
+ * of a command and executes it by ec_command(): ioctl() in a process, a call in the kernel.
  *
- * Either side brings, in the header below: the handles (struct ec_master, ec_domain,
+ * The header of each side, included below, has the handles (struct ec_master, ec_domain,
  * ec_slave_config), the inline functions that read them, and ec_command(), ec_complain(),
  * ec_zalloc(), ec_free().
  */
@@ -89,7 +89,7 @@ struct ec_voe_handler {
 
 /**
  * struct ec_foe_request - a file of a slave
- * @r: what it has in common with other requests
+ * @r: part of all requests
  * @name: of the file on the slave; all bytes, or up to a zero
  * @filling: a write whose content is not in shared memory yet
  * @copied: bytes copied between buffer and shared memory
@@ -106,11 +106,11 @@ struct ec_foe_request {
 };
 
 /*
- * ec_do() gives a command. When the command fails, one line reports @fmt, which is an
+ * ec_do() executes a command. When the command fails, one line reports @fmt, which is an
  * infinitive without "to", and the reason that the command left. ec_fail() reports a call
- * that fails without a command. Those with a slave configuration name it at the end of the
- * line; ec_do_valid() gives no command when an argument is invalid. Without a handle nothing is
- * reported. Each returns 0 or -errno.
+ * that fails without a command. Macros with a slave configuration name it at the end of the
+ * line; ec_do_valid() executes no command when an argument is invalid. Without a handle nothing
+ * is reported. Each returns 0 or -errno.
  */
 #define ec_do(m, cmd, arg, ...) \
 	ec_complain(m, NULL, ec_give(m, cmd, arg), true, __VA_ARGS__)
@@ -130,7 +130,7 @@ static inline __u32 ec_u32(size_t size)
 
 int ec_give(const ec_master_t *m, unsigned int cmd, void *arg);
 
-/* request.c: what all kinds of requests have in common */
+/* request.c: for all kinds of requests */
 void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t object, size_t size);
 ec_request_state_t ec_app_request_state(struct ec_app_request *r);
 int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size);

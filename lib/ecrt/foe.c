@@ -17,7 +17,7 @@ static size_t name_length(const char *name)
 
 /* at once --------------------------------------------------------------------*/
 
-/* @error_code: the slave's when it refuses, and 0 otherwise; may be NULL */
+/* @error_code: that of a slave that refuses, otherwise 0; may be NULL */
 static int transfer(ec_master_t *master, unsigned int cmd, const char *name,
 		    struct ec_ioc_foe *i, uint32_t *error_code)
 {
@@ -174,7 +174,7 @@ int ecrt_foe_request_file(ec_foe_request_t *req, const char *file_name, uint32_t
 }
 EXPORT_SYMBOL_GPL(ecrt_foe_request_file);
 
-/* What a read and a write begin with. */
+/* Common begin of a read and a write. */
 static int begin(struct ec_foe_request *f, size_t size)
 {
 	struct ec_app_request *r = &f->r;
@@ -216,7 +216,7 @@ int ecrt_foe_request_read(ec_foe_request_t *req)
 }
 EXPORT_SYMBOL_GPL(ecrt_foe_request_read);
 
-/* What a handle to const points to never is. */
+/* The object of a const handle is never const itself. */
 ec_request_state_t ecrt_foe_request_state(const ec_foe_request_t *req)
 {
 	return req ? poll_file((ec_foe_request_t *)req) : EC_REQUEST_ERROR;

@@ -64,7 +64,7 @@ static noinline int fill_port(const ec_master_t *m, const struct ec_ioc_address 
 	return ret;
 }
 
-/* All of one slave, also if another one has its position by now. */
+/* Information on one slave, which stays the same if another one has its position by now. */
 static int get_slave(const ec_master_t *m, uint16_t position, ec_slave_info_t *info)
 {
 	struct ec_ioc_address device = { 0 };

@@ -4,7 +4,7 @@
 
 #define DRIVES	8
 
-/* What SDO and IDN requests have in common; @index and @subindex, or IDN and drive. */
+/* For SDO and IDN requests: @index and @subindex, or IDN and drive. */
 static int aim(struct ec_app_request *r, uint16_t index, uint8_t subindex, __u32 flags)
 {
 	if (ec_app_request_state(r) == EC_REQUEST_BUSY)

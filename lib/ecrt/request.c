@@ -63,7 +63,7 @@ void ec_app_requests_free(ec_master_t *m)
 
 /**
  * ec_app_requests_place() - find the records in the memory of the session
- * @m: master that has just become active, or is no more
+ * @m: master that has just become active or inactive
  *
  * Return: 0, -EPROTO when a record is missing.
  */
@@ -78,7 +78,7 @@ int ec_app_requests_place(ec_master_t *m)
 			ret = -EPROTO;
 			continue;
 		}
-		/* the application before may have started it */
+		/* the previous application may have started it */
 		r->start = ec_status_read(r->rec->start);
 		r->op = ec_status_read(r->rec->op);
 		if (ec_status_read(r->rec->done) != r->start)
@@ -88,7 +88,7 @@ int ec_app_requests_place(ec_master_t *m)
 }
 
 /**
- * ec_app_request_state() - how far a request is; takes the result of a finished one
+ * ec_app_request_state() - state of a request; takes the result of a finished one
  * @r: request
  *
  * Context: RT-safe: bounded, no sleep, no allocation.
@@ -223,7 +223,7 @@ DEFINE_SIZE(const ec_soe_request_t *, ecrt_soe_request_data_size);
 DEFINE_SIZE(const ec_voe_handler_t *, ecrt_voe_handler_data_size);
 DEFINE_SIZE(const ec_foe_request_t *, ecrt_foe_request_data_size);
 
-/* Some prototypes say const; what such a handle points to never is. */
+/* Some prototypes have a const handle; its object is never const itself. */
 #define DEFINE_STATE(type, function) \
 ec_request_state_t function(type req) \
 { \

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only OR LGPL-2.1-or-later
-/* What is configured of a session and its domains. */
+/* The configuration of a session and its domains. */
 #include "ecrt_int.h"
 
 /* the numbers of the options are those of the command */
@@ -95,7 +95,7 @@ int ecrt_domain_process(ec_domain_t *domain)
 	a = ec_app_cycle(m);
 	if (a->exchange)
 		return take_exchanged(domain, a);
-	/* a frame may have come with a later receive than the first one behind its send */
+	/* read now: a frame may be received later than by the first receive after its send */
 	st = &page->domains[domain->index];
 	domain->snap.working_counter = ec_status_read(st->working_counter);
 	domain->snap.wc_state = ec_status_read(st->wc_state);

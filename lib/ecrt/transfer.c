@@ -6,7 +6,7 @@
 
 /* SDOs ---------------------------------------------------------------------*/
 
-/* @abort_code: the slave's when it aborts, and 0 else; may be NULL */
+/* @abort_code: that of a slave that aborts, otherwise 0; may be NULL */
 static int sdo(ec_master_t *master, unsigned int cmd, struct ec_ioc_sdo *i,
 	       uint32_t *abort_code)
 {

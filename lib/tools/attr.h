@@ -6,7 +6,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
-/* printf() to a buffer; what does not fit is cut */
+/* printf() to a buffer; a text that does not fit is cut */
 void attr_path(char *buf, size_t size, const char *fmt, ...)
 	__attribute__((format(printf, 3, 4)));
 /* the first line of an attribute; false: there is none, @buf is "" */

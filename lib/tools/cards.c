@@ -33,7 +33,7 @@ static const struct {
 #undef EC_CHIP
 };
 
-/* the last part of what a symbolic link points to; false: there is none */
+/* the last part of the target of a symbolic link; false: no such link */
 static bool target(const char *dir, const char *name, char *buf, size_t size)
 {
 	char path[512], to[512];
@@ -204,7 +204,7 @@ static void claim(struct ect_list *all, unsigned int master, const struct ect_de
 	}
 }
 
-/* what the masters have; without the module none has anything */
+/* the devices of the masters; without the module there are none */
 static int ask_masters(struct ect_list *all)
 {
 	struct ect_handle *h = ect_new();

@@ -99,7 +99,7 @@ static void convert_value(struct ect_entry *e, u8 bit, u8 *to, const u8 *from, s
 }
 
 /*
- * What the slave does not give is no failure; nor is an older module, which asks for none.
+ * Values that the slave does not have are no failure; nor is an older module, which reads none.
  * @plain: bytes of the description without optional fields
  */
 static void ask_values(struct ect_handle *h, struct ec_ioc_sdo_info i, size_t plain, u8 *buf,
@@ -142,7 +142,7 @@ int ect_entry_read(struct ect_handle *h, uint64_t device, uint16_t index, uint8_
 		own.bits = d.bits;
 		own.access = d.access;
 		convert_name(own.name, d.name, d.name_len);
-		/* those that come without request leave the size of the rest unknown */
+		/* values that were not requested leave the size of the rest unknown */
 		if (values && !(d.info & EC_OD_INFO_VALUES))
 			ask_values(h, i, i.size, buf, values, &own);
 		ret = ect_give(h, e, &own, sizeof(own));

@@ -32,9 +32,9 @@ struct ect_handle {
 /**
  * struct ect_list - elements in one piece of memory
  * @n: how many
- * @room: for so many
+ * @room: elements that fit into the memory
  * @size: bytes of one, a multiple of 8
- * @at: they
+ * @at: the elements
  */
 struct ect_list {
 	size_t n;
@@ -53,7 +53,7 @@ int ect_fail(struct ect_handle *h, int err, const char *fmt, ...)
 /* the code of a slave that belongs to @err; returns @err */
 int ect_coded(struct ect_handle *h, int err, u32 code);
 int ect_no_memory(struct ect_handle *h);
-/* copies what the caller has room for; @from begins with struct_size, too */
+/* copies up to the struct_size of the caller's @to; @from begins with struct_size as well */
 int ect_give(struct ect_handle *h, void *to, void *from, size_t size);
 
 /* master.c, slave.c: into memory of the library */

@@ -54,7 +54,7 @@ int ect_reg_exchange(struct ect_handle *h, uint64_t device, uint16_t address, vo
 	return reg_transfer(h, EC_IOC_REG_RDWR, 0, ect_address(device), address, data, size);
 }
 
-#define ERRORS_TRIES	4	/* of a read that changes nothing */
+#define ERRORS_TRIES	4	/* attempts of a read that changes nothing */
 
 int ect_get_errors(struct ect_handle *h, u64 device, struct ect_errors *to)
 {

@@ -180,7 +180,7 @@ static int read_slaves(struct ect_handle *h, struct ect_list *l, u32 count)
 
 /*
  * The bus may change while it is read: when a scan took place meanwhile the
- * list is read again, and a slave that is gone by then ends it.
+ * list is read again; it ends before a slave that is absent by then.
  */
 static int read_list(struct ect_handle *h, struct ect_list *l)
 {
@@ -237,7 +237,7 @@ long ect_sii_read(struct ect_handle *h, uint64_t device, uint32_t offset, void *
 {
 	size_t done = 0;
 
-	/* whatever size the image has, the kernel may give it in pieces */
+	/* the kernel may return an image of any size in pieces */
 	while (done < size) {
 		struct ec_ioc_sii a = {
 			.slave = ect_address(device), .offset = offset + (u32)done,

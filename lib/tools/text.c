@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /*
- * What a slave calls itself ends up on a terminal: nothing in it may move the
- * cursor, change the terminal or turn the direction of the text around.
+ * Names from slaves are printed to a terminal: nothing in them may move the
+ * cursor, change the terminal or reverse the direction of the text.
  */
 #include "text.h"
 

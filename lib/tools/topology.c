@@ -93,7 +93,7 @@ static void branches(struct walk *w, u32 at)
 	}
 }
 
-/* the tree is given out as it is walked, a slave once its branches are known */
+/* nodes are added in the order of the walk, a slave once its branches are known */
 static void visit(struct walk *w, u32 root)
 {
 	w->seen[root] = true;

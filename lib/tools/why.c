@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-/* What the master knows, the list of findings, and the rules in their order. */
+/* The state of the master, the list of findings, and the rules in their order. */
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>

@@ -20,9 +20,9 @@
  * @findings: struct ect_finding
  * @counters: the user may read the error counters of the ports
  * @silent: slaves whose error counters could not be read
- * @late: frames return too late, so that working counters say nothing of slaves
+ * @late: there are late frames, so working counters show nothing about slaves
  * @failed: no memory for a finding
- * @lost: what a rule writes to then
+ * @lost: finding that a rule writes to instead
  */
 struct why {
 	struct ect_handle *h;
@@ -67,7 +67,7 @@ void why_set_remedy(struct ect_finding *f, const char *fmt, ...)
 void why_explain(struct why *w, struct ect_explained *c);
 bool why_in_op(const struct ect_explained *c);
 const char *why_slave_name(const struct why *w, unsigned int position, char *buf, size_t size);
-/* is there a finding with that cause? */
+/* does a finding have this cause? */
 bool why_has(const struct why *w, const char *cause);
 
 static inline struct ect_slave *why_slave(const struct why *w, size_t position)

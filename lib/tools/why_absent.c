@@ -65,8 +65,8 @@ static void lost_at(struct why *w, unsigned int position, unsigned int port, con
 }
 
 /*
- * Behind lost slaves the positions are not those that are configured: what another
- * configuration finds there says nothing before the cable is repaired.
+ * Downstream of lost slaves the ring positions are not the configured ones. Another slave at a
+ * configured position is no finding before the cable is repaired.
  */
 static void moved_up(struct why *w, u32 cable)
 {
@@ -81,7 +81,7 @@ static void moved_up(struct why *w, u32 cable)
 			why_config(w, i)->finding = cable;
 }
 
-/* what was lost behind slaves that are lost as well follows from their cable */
+/* slaves downstream of other lost slaves need no finding of their own */
 static void lost(struct why *w)
 {
 	u32 first = 0;
@@ -110,7 +110,7 @@ static void lost(struct why *w)
 		moved_up(w, first);
 }
 
-/* the configuration of the smallest ring position whose slave is not there, or NULL */
+/* the configuration of the smallest ring position whose slave is absent, or NULL */
 static struct ect_explained *first_absent(struct why *w)
 {
 	struct ect_explained *first = NULL;
@@ -133,14 +133,14 @@ static unsigned int last_position(const struct why *w)
 }
 
 /*
- * Do all slaves from @from on fit when they are looked for @gap positions earlier, but not all
- * where they are configured? Then those in between are missing.
+ * Do all slaves from @from on match @gap positions upstream of where they are configured, but not
+ * all of them where they are configured? Then the @gap slaves in between are missing.
  */
 static bool shifted(const struct why *w, unsigned int from, unsigned int gap)
 {
 	bool any = from >= w->bus->n;
 
-	/* more than the whole bus has: a match is chance, unless the bus ends where it should */
+	/* a gap longer than the bus: a match is chance, unless the bus ends where it would then */
 	if (!any && gap > w->bus->n && last_position(w) + 1 - gap != w->bus->n)
 		return false;
 	for (size_t i = 0; i < w->configs->n; i++) {
@@ -193,11 +193,11 @@ static void missing(struct why *w)
 	/* a device that stands elsewhere on a complete bus is at the wrong place, not missing */
 	if (!first || (w->bus->n > last && elsewhere(w, first)))
 		return;
-	/* where the ring ends, slaves without configuration are missing as well */
+	/* at the end of the ring, slaves without configuration are missing as well */
 	from = min(first->config.position, (unsigned int)w->bus->n);
 	for (gap = 1; from + gap <= last && !shifted(w, from, gap); gap++)
 		;
-	/* all of the rest: only when nothing is there instead */
+	/* the whole rest is missing only if no other slave is in its place */
 	if (from + gap > last && from < w->bus->n)
 		return;
 	f = why_add(w, MISSING, gap, gap == 1 ? "slave" : "slaves", from, w->bus->n,
@@ -338,7 +338,7 @@ void why_absent(struct why *w)
 		case ECT_CAUSE_UNATTACHED:
 			other(w, c);
 			break;
-		default:	/* a slave that cannot be read, or an older module: why_slaves() */
+		default:	/* an unreadable slave, or an older module: why_slaves() */
 			break;
 		}
 	}

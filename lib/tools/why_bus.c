@@ -43,7 +43,7 @@ struct ect_finding *why_scan(struct why *w)
 	return f;
 }
 
-/* A slave that cannot be read is tried again by scans: its own finding says enough. */
+/* Do scans only repeat an attempt to read a slave? It has a finding of its own. */
 static bool tries_again(const struct why *w)
 {
 	for (size_t i = 0; i < w->bus->n; i++)
@@ -79,7 +79,7 @@ bool why_bus(struct why *w)
 	return true;
 }
 
-/* slaves that cannot be in OP without a cycle follow from the newest finding */
+/* the newest finding explains slaves that need a cycle to be in OP */
 static void explain_cycle(struct why *w)
 {
 	for (size_t i = 0; i < w->configs->n; i++) {
@@ -97,7 +97,7 @@ static void no_cycle(struct why *w)
 	explain_cycle(w);
 }
 
-/* Then cycles are skipped in any case. */
+/* Is the wire time longer than the cycle? Then cycles are skipped in any case. */
 static bool too_short(struct why *w)
 {
 	const struct ect_master *m = &w->m;
@@ -112,7 +112,7 @@ static bool too_short(struct why *w)
 	return true;
 }
 
-/* The kernel runs the cycle, and has done with the outputs what the application has chosen. */
+/* Output stall: the kernel runs the cycle, and has applied the configured policy to the outputs. */
 static void stalled(struct why *w, u32 stall, u32 state)
 {
 	if (state == ECT_CYCLE_STOPPED) {
@@ -156,7 +156,7 @@ void why_cycle(struct why *w)
 		thread(w, &c, short_cycle);
 	if (w->m.no_cycle && !(c.kind == ECT_CYCLE_BY_KERNEL && c.state == ECT_CYCLE_STOPPED))
 		no_cycle(w);
-	/* that of the kernel sends a domain in its turn */
+	/* a kernel cycle sends a domain by its division */
 	if (c.kind == ECT_CYCLE_BY_APP)
 		why_unsent(w);
 }

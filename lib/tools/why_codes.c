@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-/* What to do about the codes of slaves. */
+/* Remedies for the codes of slaves. */
 #include "why.h"
 
 /* of AL status codes; others have a general remedy */
@@ -30,7 +30,7 @@ const char *why_al_remedy(u32 code)
 	return "look up the code in the manual of the slave; see also its messages: 'ethercat diag', 'ethercat emergencies'";
 }
 
-/* of an abort code of which more is known than that the SDO is wrong */
+/* of abort codes that have a more specific remedy than to check the SDO */
 static const struct {
 	u32 code;
 	u32 mask;

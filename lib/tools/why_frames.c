@@ -17,7 +17,7 @@ static u64 late_of(const struct ect_list *devices)
 	return sum;
 }
 
-/* Were the sends themselves in time? Then card and driver are the place, otherwise the CPU. */
+/* The place of the delay: card and driver if the sends were in time, otherwise the CPU. */
 static void late_place(struct why *w, struct ect_finding *f)
 {
 	const char *card = w->devices->n ? why_device(w, 0)->name : "";
@@ -62,7 +62,7 @@ void why_late_frames(struct why *w)
 	if (!n)
 		return;
 	w->late = true;
-	/* an application that is late fetches them late, and so it is with a short cycle */
+	/* frames of a delayed application, or of a cycle that is too short, are late as well */
 	if (why_has(w, "overruns") || why_has(w, "cycle_too_short"))
 		return;
 	f = why_add(w, LATE_FRAMES, (unsigned long long)n, n == 1 ? "frame" : "frames", LATE_MS);

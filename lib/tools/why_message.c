@@ -15,7 +15,7 @@ static void emergency(struct why *w, const struct ect_slave *s)
 	struct tm tm;
 	time_t t;
 
-	/* a slave that has left */
+	/* the slave was disconnected meanwhile */
 	if (ect_emergencies_read(w->h, s->device, NULL, &list))
 		return;
 	e = ect_list_get(list, ect_list_count(list) - 1);
@@ -36,7 +36,7 @@ static void emergency(struct why *w, const struct ect_slave *s)
 }
 
 /**
- * why_emergencies() - slaves whose last emergency was not taken back
+ * why_emergencies() - slaves whose last emergency is not a reset of errors
  * @w: what is known
  */
 void why_emergencies(struct why *w)

@@ -18,7 +18,7 @@ struct line {
 
 static void put(struct line *l, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 
-/* What does not fit is left out as a whole: a part of an entry would be another entry. */
+/* Append a text, or omit it if it does not fit: a part of an entry would be another entry. */
 static void put(struct line *l, const char *fmt, ...)
 {
 	char part[64];

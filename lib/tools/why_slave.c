@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
-/* Causes of slaves that are there: one function or one row for each kind. */
+/* Causes of slaves that are present: one function or one row for each kind. */
 #include <stdio.h>
 #include <string.h>
 
@@ -112,7 +112,7 @@ static struct ect_finding *al(struct why *w, const struct ect_explained *c,
 	return f;
 }
 
-/* what it takes to begin anew, with the place */
+/* the remedy by which the slave is configured again, with its position */
 static void again(struct ect_finding *f, const struct ect_cause *cause)
 {
 	char so_far[sizeof(f->remedy)];
@@ -163,7 +163,7 @@ static void add(struct why *w, int position, struct ect_explained *c, const stru
 	why_explain(w, c);
 }
 
-/* Somebody loads firmware into it, or has forgotten it there. */
+/* BOOT was requested: a firmware update is in progress, or its end was forgotten. */
 static bool in_boot(struct why *w, const struct ect_slave *s, struct ect_explained *c)
 {
 	struct ect_finding *f;
@@ -214,17 +214,17 @@ static void configured(struct why *w, struct ect_explained *c)
 	if (c->finding || !c->text[0])
 		return;
 	if (position < 0 && c->cause.kind >= ECT_CAUSE_SILENT)
-		position = c->cause.position;	/* what is there cannot be read */
+		position = c->cause.position;	/* the slave there is unreadable */
 	if (position >= 0 && (size_t)position < w->bus->n &&
 	    in_boot(w, why_slave(w, (size_t)position), c))
 		return;
-	/* what fails is reported before activation, too; the rest is no fault until then */
+	/* before activation only failures are reported; being not in OP is no fault then */
 	if (c->cause.kind == ECT_CAUSE_INACTIVE)
 		return;
 	add(w, position, c, &c->cause, c->text);
 }
 
-/* Used all the same, but not as it should be. */
+/* Slaves that are used with a warning. */
 static void warnings(struct why *w, const struct ect_slave *s)
 {
 	struct ect_finding *f;
@@ -246,7 +246,7 @@ static void warnings(struct why *w, const struct ect_slave *s)
 	f->slave = s->position;
 }
 
-/* told as that of its configuration, or of one that expects another slave in its place */
+/* has its configuration a finding, or one that expects another slave in its place? */
 static bool told(const struct why *w, const struct ect_slave *s)
 {
 	for (size_t i = 0; i < w->findings->n; i++) {

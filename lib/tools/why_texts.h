@@ -83,7 +83,7 @@
 	  "no slave has alias %u; %s is such a device, alias %u") \
 	X(ATTACHING, "attaching", UNDER_WAY, "", "repeat the command", "%s") \
 	X(TAKEN, "taken", FAULT, "", "connect the missing slave or restart the application", "%s") \
-	/* slaves; those with "%s" have the words of the kernel */ \
+	/* slaves; "%s" is a text of the kernel */ \
 	X(REQUESTED, "not_requested", FAULT, "", "", "%s") \
 	X(UNDER_WAY, "under_way", UNDER_WAY, "", \
 	  "repeat the command; nothing has failed so far", "%s") \

@@ -8,7 +8,7 @@
 #include "../../master/wire/regs.h"
 #include "why.h"
 
-#define LOOKS		3	/* at a working counter before it counts as incomplete */
+#define LOOKS		3	/* reads of a working counter before it counts as incomplete */
 #define LOOK_MS		20
 #define UNSENT		100	/* sends without a domain; before, its first one may come later */
 #define FMMU_TYPE	11	/* byte of the page: 1 reads, 2 writes */
@@ -41,7 +41,7 @@ static bool all_in_op(struct why *w, const struct ect_domain *dom)
 	return true;
 }
 
-/* of some looks each is incomplete: one lost frame is no fault of a slave */
+/* is each of some reads incomplete? One lost frame is no fault of a slave */
 static bool incomplete(struct why *w, u32 index, struct ect_domain *dom)
 {
 	const struct timespec pause = { 0, LOOK_MS * 1000000L };
@@ -81,7 +81,7 @@ static bool is_given(struct why *w, const struct ect_domain *dom, unsigned int s
 	return false;
 }
 
-/* Does a slave take part in a domain with an FMMU that no configuration has given it? */
+/* Does a slave process a domain by an FMMU that no configuration has given it? */
 static bool takes_part(struct why *w, struct ect_handle *h, const struct ect_domain *dom,
 		       unsigned int slave)
 {
@@ -132,7 +132,7 @@ static void too_high(struct why *w, const struct ect_domain *dom)
 	f->slave = found;
 }
 
-/* What the slaves of a domain do that gets no frames: they wait, or their watchdog expires. */
+/* Does the cause follow from a domain without frames: slaves wait, or their watchdog expires? */
 static bool follows(const struct ect_cause *cause)
 {
 	return cause->kind == ECT_CAUSE_UNDER_WAY ||
@@ -158,7 +158,7 @@ static void explain_domain(struct why *w, const struct ect_domain *dom)
 }
 
 /**
- * why_unsent() - domains that the application leaves out of its cycle
+ * why_unsent() - domains that the application does not queue in its cycle
  * @w: what is known; the application runs the cycle
  */
 void why_unsent(struct why *w)

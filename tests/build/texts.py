@@ -86,16 +86,16 @@ ALLOWED = {
 # folder: hits that are left in its comments. They only go down
 COMMENTS = {
     "lib": 0,
-    "lib/ecrt": 5,
-    "lib/tools": 20,
+    "lib/ecrt": 0,
+    "lib/tools": 0,
     "master/boundary": 0,
     "master/carry": 0,
     "master/cycle": 98,
     "master/link": 0,
     "master/mailbox": 0,
     "master/session": 55,
-    "tool": 35,
-    "tool/sim": 12,
+    "tool": 0,
+    "tool/sim": 0,
 }
 SOURCES = ("master", "devices", "lib", "tool", "include", "examples", "tests")
 PAGE = re.compile(r"[\w./-]*\w\.(?:md|rst)\b")
