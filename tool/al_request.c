@@ -7,7 +7,7 @@
 
 #define POLL_MS		10
 
-/* why a slave is not where it should be: ": text" parts, "" when all is well */
+/* why a slave is not in the requested state: ": text" parts, "" when it is */
 void al_reason(const struct ect_slave *s, char *buf, size_t size)
 {
 	char code[8];

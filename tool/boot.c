@@ -57,7 +57,7 @@ enum boot boot_state(const struct nic *n)
 	if (!*n->pci)
 		return BOOT_NONE;
 	rule_path(path, sizeof(path), n->pci);
-	/* a link is not ours, and a pipe must not hold us up */
+	/* a link is a file of the user, and an open of a pipe must not wait */
 	fd = open(path, O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
 	if (fd < 0)
 		return errno == ENOENT || errno == ENOTDIR ? BOOT_NONE : BOOT_FOREIGN;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* How far the sends of the cycle are from their schedule. */
+/* Cycle statistics: send deviations, execution times, the thread of a kernel cycle. */
 #include <string.h>
 
 #include "dev.h"
@@ -49,7 +49,7 @@ static void bars(const struct ect_cycle *st, unsigned int step)
 		size_t len;
 
 		n = sends_of(st, &r);
-		/* one send of a million is seen, too */
+		/* one send of a million is visible as well */
 		len = (size_t)((n * BAR + most - 1) / most);
 		memset(bar, '#', len);
 		bar[len] = 0;
@@ -139,7 +139,7 @@ static void who(const struct ect_cycle *i)
 	out_bool("interval_configured", i->interval_set, "%s)\n", i->interval_set ? "configured" : "measured");
 }
 
-/* of a cycle run by the kernel: where, if it shall be an interrupt */
+/* of a kernel cycle that is configured to run in an interrupt: where it runs */
 static void place(const struct ect_cycle *i)
 {
 	static const char *const text[] = {

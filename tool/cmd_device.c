@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* A network card gets its native driver, or the one of the system back; a master gets a card. */
+/* Give a network card its native driver, or the driver of the system; give a master a card. */
 #include <errno.h>
 #include <stdio.h>
 #include <string.h>
@@ -114,7 +114,7 @@ static int bind_at_boot(const struct tool *t, const struct nic *n)
 	return bind(t, n) || boot_write(n);
 }
 
-/* the driver and the rule, or what there is of them */
+/* remove the driver and the rule, as far as they exist */
 static int unbind_at_boot(const struct tool *t, const struct nic *n)
 {
 	bool set = n->boot == BOOT_SET || n->boot == BOOT_OTHER;

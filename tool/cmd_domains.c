@@ -34,7 +34,7 @@ static int fmmu(struct dev *d, const struct ect_domain *dom, unsigned int i, con
 	return 0;
 }
 
-/* how the application wants it sent, and what became of that */
+/* how the domain is configured to be sent, and how it is laid out */
 static void layout(const struct tool *t, const char *in, const struct ect_domain *dom)
 {
 	static const struct {

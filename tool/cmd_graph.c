@@ -84,7 +84,7 @@ static void edge(const struct slaves *all, const struct ect_slave *s, unsigned i
 	out_end();
 }
 
-/* The open port behind which nobody is; slave 0 is not there if it hangs at a later one. */
+/* The first open port without a slave behind it leads to the master; it may be on any slave. */
 static void to_master(const struct slaves *all, enum info info,
 		      const struct ect_errors *const *regs)
 {

@@ -26,7 +26,7 @@ static int read_all(struct dev *d, const struct ect_slave *s, struct latches *l)
 	    reg_read(d, s, EC_REG_DC_LATCH0_CTRL, l->control, INPUTS) ||
 	    reg_read(d, s, EC_REG_DC_LATCH0_STATUS, l->status, INPUTS))
 		return 1;
-	/* reading a time makes room for the next edge, so only where there is one */
+	/* reading a time re-arms the latch, so only where an edge has occurred */
 	for (u16 i = 0; i < INPUTS; i++)
 		if (l->status[i] & BOTH &&
 		    reg_read(d, s, (u16)(EC_REG_DC_LATCH0_POS + 16 * i), l->times[i], 16))
@@ -67,7 +67,7 @@ static void input(const struct latches *l, unsigned int i)
 	out_end();
 }
 
-/* The mode of an input that the slave's own CPU has is not ours to change. */
+/* Not for an input that the slave's own CPU controls. */
 static int set_mode(struct dev *d, const struct ect_slave *s, const char *mode)
 {
 	const u8 v = !strcmp(mode, "single") ? BOTH : 0;

@@ -115,7 +115,7 @@ static bool shown(const struct dev *d, bool follow, u64 *at, u64 end, const stru
 	return true;
 }
 
-/* events up to number @end, or for ever */
+/* events up to number @end, or without end */
 static int print(struct dev *d, u64 at, u64 end, bool follow)
 {
 	while (follow || at < end) {

@@ -68,7 +68,7 @@ static void device(const char *label, const struct ect_device *d)
 	snprintf(mac, sizeof(mac), "%02x:%02x:%02x:%02x:%02x:%02x", a[0], a[1], a[2], a[3], a[4],
 		 a[5]);
 	out_object(NULL);
-	/* without a device: what main_devices= says */
+	/* without a device: its name in main_devices= */
 	out_str("mac", mac, "    %s: %s (", label, attached || !d->name[0] ? mac : d->name);
 	out_bool("attached", attached, "%s)\n", attached ? "attached" : "waiting...");
 	out_str("interface", d->name, NULL);

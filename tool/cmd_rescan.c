@@ -28,7 +28,7 @@ static int each(const struct tool *t, struct dev *d)
 	char why[160];
 	int err;
 
-	/* without a link nothing is sent, so nothing would be done */
+	/* without a link nothing is sent: a scan would have no effect */
 	if (dev_master(d, &m) || dev_why_empty(d, &m, why, sizeof(why)))
 		return 1;
 	if (*why && !m.scan_busy)

@@ -39,7 +39,7 @@ static void limit(const char *name, const char **before, const struct dict_entry
 	*before = ", ";
 }
 
-/* A line of its own, which older readers of this listing take for none of theirs. */
+/* On a line of its own, which older readers of this listing ignore. */
 static void limits(const struct dict_entry *e)
 {
 	const char *before = "    ";

@@ -65,7 +65,7 @@ static size_t sort_once(struct slaves *s)
 	return n;
 }
 
-/* on stderr: what makes the list another one than the bus */
+/* on stderr: why the list may differ from the bus */
 static void remark(struct dev *d, const struct ect_master *m)
 {
 	char why[160] = "";
@@ -96,7 +96,7 @@ static void missing(struct dev *d, unsigned int configs)
 		char why[ECT_TEXT];
 
 		if (ect_config_read(d->h, i, &c))
-			break;	/* the application has gone meanwhile */
+			break;	/* the application has exited meanwhile */
 		if (c.slave_position >= 0 || n++ >= MISSING_LINES)
 			continue;
 		dev_config_why(d, i, why, sizeof(why));

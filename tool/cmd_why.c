@@ -17,7 +17,7 @@ struct report {
 	const struct ect_checked *checked;
 };
 
-/* what -a, -p or SLAVE leave; nothing given: everything */
+/* what -a, -p or SLAVE select; none given: everything */
 struct chosen {
 	bool all;
 	struct numbers slaves;
@@ -209,7 +209,7 @@ static void summary(const struct report *r, const struct count *n)
 {
 	bool well = !n->n[ECT_FAULT] && !n->n[ECT_UNDER_WAY];
 
-	/* what does not exist is neither well nor faulty */
+	/* a selection of nothing is neither well nor faulty */
 	if (n->nothing && well)
 		out_null("well", NULL);
 	else

@@ -150,7 +150,7 @@ static void idn(const struct ect_startup *i, const u8 *data, const char *in)
 	out_end();
 }
 
-/* An older module does not show them: nothing is claimed then. */
+/* An older module does not show IDNs: then nothing is printed. */
 static int idns(struct dev *d, const struct ect_config *c, const char *in)
 {
 	unsigned int pos;
@@ -280,7 +280,7 @@ static void reason(struct dev *d, const struct ect_config *c, const char *in)
 		out_null("not_in_op", NULL);
 }
 
-/* What is not certain of the process data, also in OP. */
+/* A warning about the process data, also in OP. */
 static void warning(struct dev *d, const struct ect_config *c, const char *in)
 {
 	struct ect_slave s = { .struct_size = sizeof(s) };

@@ -72,7 +72,7 @@ static unsigned int master_count(void)
 	return n;
 }
 
-/* Others of the list exist, so that the command does its work. */
+/* A note on masters of a list that do not exist, if others do. */
 static void note_absent(const struct list *l, unsigned int count)
 {
 	for (unsigned int i = 0; l->given && i < l->n; i++)

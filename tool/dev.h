@@ -75,7 +75,7 @@ int dev_none_present(struct dev *d);
 /* exactly one */
 int dev_select_single(struct dev *d, const struct tool *t, struct ect_slave *s);
 
-/* why nobody is on the bus, as far as the master knows; "" when it does not */
+/* why no slave is on the bus, as far as the master knows; "" when it does not */
 int dev_why_empty(struct dev *d, const struct ect_master *m, char *buf, size_t size);
 int dev_wait_scan(struct dev *d, double timeout_s);
 

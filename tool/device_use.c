@@ -50,8 +50,8 @@ static int check_address(const struct tool *t, const char *interface)
 }
 
 /*
- * The name by which the master knows the card: a MAC address and an interface as they are given,
- * of a card with its native driver the whole PCI address.
+ * The name by which the master knows the card: the whole PCI address of a card with its native
+ * driver, otherwise the MAC address or interface that the user has given.
  */
 static int name_of(const struct tool *t, struct nics *all, const char *name, char *buf, size_t size)
 {

@@ -112,7 +112,7 @@ static void convert(FILE *f, char how, const struct ec_diag_param *p,
 /**
  * diag_substitute() - put the parameters of a message into its text
  * @text: of the device description, with %d, %x, %s... for one parameter after the other
- * @m: message; a place without a valid parameter stays as it is
+ * @m: message; a place without a valid parameter does not change
  * @texts: of the device description
  *
  * The text comes from a file: it is never the format of a printf().

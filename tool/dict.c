@@ -30,7 +30,7 @@ bool dict_described(const struct ect_slave *s)
 	       (!s->coe_details || s->coe_details & EC_SII_COE_SDO_INFO);
 }
 
-/* what the slave does not describe is left out: 0; any other failure is reported */
+/* entries that the slave does not describe are skipped: 0; any other failure is reported */
 static int failed(struct dict *x, int err, bool quiet)
 {
 	u32 abort = ect_error_code(x->d->h);
@@ -128,7 +128,7 @@ static int dictionary(struct dict *x)
  * @s: slave
  * @r: what is done with it
  *
- * Objects and entries that the slave refuses to describe are left out.
+ * Objects and entries that the slave refuses to describe are skipped.
  *
  * Return: 0, or 1 after printing why it ended.
  */
@@ -178,7 +178,7 @@ static const struct ec_type *type_for(u16 code, size_t size)
 /**
  * dict_value_text() - a value as text for one line, harmless to a terminal
  * @type: data type
- * @data: bytes, with room for one behind them
+ * @data: bytes, in a buffer with one byte more
  * @size: how many
  *
  * Return: text, to be freed; NULL without memory.

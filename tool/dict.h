@@ -7,7 +7,7 @@
 
 /**
  * struct dict_value - value of an entry
- * @data: bytes, with room for one behind them; NULL: none was read
+ * @data: bytes, in a buffer with one byte more; NULL: none was read
  * @size: how many
  * @abort: abort code of the slave, 0: none
  * @err: errno of a transfer without answer, 0: none
@@ -36,7 +36,7 @@ struct dict_entry {
  * @limits: and their limits
  * @listing: what it shows goes to stdout while it is read: no progress on the same terminal
  * @object: called for each object
- * @entry: for each entry of it; what it points to is gone afterwards
+ * @entry: for each entry of it; the memory it points to is freed afterwards
  * @object_end: behind the entries of it, may be NULL
  * @ctx: of the caller
  */

@@ -23,7 +23,7 @@ static void sort(struct dict_image *i)
 		qsort(i->v, i->n, sizeof(*i->v), by_number);
 }
 
-/* a comparison under way */
+/* while two dictionaries are compared */
 struct comparison {
 	const char *left;	/* names of the two */
 	const char *right;
@@ -82,7 +82,7 @@ static void compare_entry(struct comparison *c, const struct dict_entry *a,
 	    !memcmp(x->data, y->data, x->size)) {
 		c->equal++;
 	} else if (x && y && !x->data && !y->data) {
-		/* what no state lets read, on both sides, is not worth a line */
+		/* no line for entries that both slaves can read in no state */
 		if (!x->abort && !x->err && !y->abort && !y->err)
 			return;
 		c->unreadable++;

@@ -12,7 +12,7 @@
 #include "out.h"
 #include "progress.h"
 
-/* what the thread shows that watches a transfer */
+/* state of the thread that shows the progress of a transfer */
 struct watch {
 	const struct foe *f;
 	u64 done;	/* written by the kernel */
@@ -39,7 +39,7 @@ static void show(struct watch *w)
 {
 	w->shown = true;
 	fputc('\r', stderr);
-	/* how long the file is only a writer knows */
+	/* the length of the file is known for a write only */
 	progress_bar(__atomic_load_n(&w->done, __ATOMIC_RELAXED), w->f->write ? w->f->size : 0,
 		     "bytes");
 }
@@ -130,7 +130,7 @@ int foe_check_name(const char *name)
 	return 0;
 }
 
-/* A read sets @f->size to what has come. */
+/* A read sets @f->size to the bytes received. */
 int foe_transfer(struct dev *d, const struct tool *t, const struct ect_slave *s, struct foe *f)
 {
 	struct watch w = { .f = f };

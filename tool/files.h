@@ -10,8 +10,8 @@
  * @write: to the slave
  * @name: of the file on the slave
  * @password: 0: none
- * @data: its content, or room for it
- * @size: bytes of it
+ * @data: its content, or the buffer for it
+ * @size: bytes of @data
  */
 struct foe {
 	bool write;
@@ -25,7 +25,7 @@ struct foe {
 
 const char *base_name(const char *path);
 int foe_password(int argc, char **argv, struct foe *f);
-/* The name must be one the kernel takes. */
+/* Check that the kernel accepts the name. */
 int foe_check_name(const char *name);
 int foe_transfer(struct dev *d, const struct tool *t, const struct ect_slave *s, struct foe *f);
 

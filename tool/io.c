@@ -123,7 +123,7 @@ int io_value(const struct ec_type *t, const char *text, u8 **data, size_t *size)
 	if (!strcmp(text, "-")) {
 		if (io_read("-", &in, &len))
 			return 1;
-		/* what ends the line is no part of a number */
+		/* the end of the line is no part of a number */
 		while (!value_is_text(t) && len && strchr(" \t\r\n", in[len - 1]))
 			in[--len] = 0;
 	}
@@ -178,7 +178,7 @@ static void print_json(const struct ec_type *t, const u8 *data, size_t size)
 	}
 }
 
-/* a value on stdout: text as it is, the rest formatted; JSON adds the bytes */
+/* a value on stdout: text unchanged, other types formatted; JSON adds the bytes */
 int io_print(const struct ec_type *t, const u8 *data, size_t size)
 {
 	size_t bytes = value_bytes(t), cap = max((size_t)VALUE_TEXT, 5 * size + 1), len = size;

@@ -13,7 +13,7 @@
 #include "../lib/tools/text.h"
 #include "out.h"
 
-/* keywords of both lines of the field's tool, and what they mean */
+/* keywords of both versions of the tool of the IgH EtherCAT Master, and their meaning */
 static const struct {
 	const char *word;
 	u32 which;

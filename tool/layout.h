@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Sync managers, PDOs and entries of one slave. */
+/* SyncManagers, PDOs and entries of one slave. */
 #ifndef EC_TOOL_LAYOUT_H
 #define EC_TOOL_LAYOUT_H
 

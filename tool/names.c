@@ -39,7 +39,7 @@ static bool exists(const struct cmd *c)
 /**
  * cmd_lookup() - find a command by its name or an abbreviation
  * @text: as typed
- * @found: room for all commands; receives the candidates of the stage that
+ * @found: array for all commands; receives the candidates of the stage that
  *	had any
  *
  * An exact name wins, also of a command that this version lacks; then come the names

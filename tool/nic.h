@@ -16,9 +16,9 @@
  * @pci: address of its PCI function, "" without
  * @mac: of the interface or of the master's device, "" when unknown
  * @driver: "" without
- * @chip: name of the chip in the native driver's list, "" when it is not there
+ * @chip: name of the chip in the native driver's list, "" when it is not in the list
  * @why_not: why there is no native driver, "" when there is
- * @by: who uses it, "" for no one
+ * @by: user of the card, "": none
  * @master: of a master; else of the system, if @by is not ""
  * @kept: only the native driver may have it, which is not loaded
  * @tested: tests run the chip with the native driver, in QEMU

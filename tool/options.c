@@ -271,11 +271,11 @@ static const char *meant_command(int argc, char **argv)
  * @t: options
  * @argc: of main()
  * @argv: of main()
- * @args: arguments, room for @argc; the first is the command
+ * @args: arguments, an array of @argc; the first is the command
  * @nargs: how many
  * @help: -h was given
  * @seen: letters of the options given
- * @seen_size: room at @seen
+ * @seen_size: size of @seen
  *
  * Options may stand anywhere; "--" ends them.
  *

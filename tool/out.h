@@ -33,12 +33,12 @@ void out_str(const char *key, const char *v, const char *fmt, ...) OUT_FMT(3);
 void out_null(const char *key, const char *fmt, ...) OUT_FMT(2);
 /* bytes: one string of hex digits in JSON, rows of 16 behind @indent in text */
 void out_hex(const char *key, const u8 *data, size_t size, const char *indent);
-/* as they are; on a terminal without what could control it */
+/* unchanged; on a terminal without characters that could control it */
 void out_text_bytes(const u8 *data, size_t size);
 bool out_is_line(const u8 *data, size_t size);
 void out_utf16(const u8 *data, size_t size);
 bool out_to_terminal(void);
-/* bytes: hex digits in JSON, as they are in text; those not to a terminal */
+/* bytes: hex digits in JSON, unchanged in text; unchanged bytes not to a terminal */
 int out_binary_allowed(const char *instead);
 void out_binary(const char *key, const u8 *data, size_t size);
 

@@ -8,7 +8,7 @@
 
 #define BAR	"##############################"
 
-/* only a user at a terminal wants it */
+/* only for a user at a terminal */
 bool progress_wanted(const struct tool *t)
 {
 	return !t->json && t->verbosity >= 0 && isatty(STDERR_FILENO);
@@ -57,7 +57,7 @@ void progress_step(struct progress *p, const char *what, u64 done, u64 all, cons
 	progress_bar(done, all, unit);
 }
 
-/* The line stays; what comes next begins a new one. */
+/* End the line: other output begins a new one. */
 void progress_end(struct progress *p)
 {
 	if (p->shown)

@@ -5,12 +5,12 @@
 
 #include "tool.h"
 
-#define PROGRESS_FIRST_MS	1000	/* what is done sooner needs no progress */
+#define PROGRESS_FIRST_MS	1000	/* shorter work shows no progress */
 #define PROGRESS_NEXT_MS	200
 
 /**
- * struct progress - work that tells itself how far it is
- * @wanted: someone looks at it
+ * struct progress - work that shows its progress
+ * @wanted: a user at a terminal sees it
  * @shown: there is a line
  * @due_s: when the next one is due (now_s())
  */

@@ -6,7 +6,7 @@
 
 #include "dev.h"
 
-/* What was done to which slave is in @text already: "SDO 0x1018:01 of slave 1: no CoE mailbox". */
+/* The cause alone: @text names SDO and slave already, "SDO 0x1018:01 of slave 1: no CoE mailbox". */
 static const char *cause_of(const char *reason, const char *text)
 {
 	const char *of = strstr(reason, " of slave "), *colon = of ? strchr(of, ':') : NULL;

@@ -42,7 +42,7 @@ int reg_write(struct dev *d, const struct ect_slave *s, u16 address, const u8 *d
 	return 0;
 }
 
-/* one datagram: @data is written, and what was there before is in it afterwards */
+/* one datagram: @data is written, and gets the previous content */
 int reg_rdwr(struct dev *d, const struct ect_slave *s, u16 address, u8 *data, size_t size)
 {
 	int err;

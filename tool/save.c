@@ -29,7 +29,7 @@ static FILE *part_file(char *part, const struct stat *old)
 }
 
 /**
- * save_begin() - write a file; what it had stays until save_end()
+ * save_begin() - write a file; its previous content stays until save_end()
  * @s: result
  * @path: name, valid until save_end(); a device, a pipe and a link are written themselves, so is
  *	a file in a folder that takes no other
@@ -60,7 +60,7 @@ int save_begin(struct save *s, const char *path)
  * save_end() - the file is whole
  * @s: of save_begin(); its stream is closed
  *
- * Return: 0, or 1 after printing what failed: a file that is replaced is then as it was before.
+ * Return: 0, or 1 after printing what failed: a file to be replaced is unchanged then.
  */
 int save_end(struct save *s)
 {

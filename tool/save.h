@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Files that the user named for a result: whole, or as they were before. */
+/* Files that the user named for a result: complete, or unchanged. */
 #ifndef EC_TOOL_SAVE_H
 #define EC_TOOL_SAVE_H
 

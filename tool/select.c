@@ -188,7 +188,7 @@ static int select_group(const struct list *positions, const struct ect_slave *sl
 	return ret;
 }
 
-/* by alias: 1 + position of the first slave with it, 0: nobody; to be freed */
+/* by alias: 1 + position of the first slave with it, 0: none; to be freed */
 static u32 *first_with(const struct ect_slave *slaves, size_t count)
 {
 	u32 *first = calloc(0x10000, sizeof(*first));

@@ -193,7 +193,7 @@ static void general(const struct ect_slave *s)
 	out_end();
 }
 
-/* lines the historic output does not have, behind all of those it has */
+/* lines that the historic output does not have, after all of its lines */
 static void diagnosis(const struct ect_slave *s)
 {
 	out_text("Diagnosis:\n");

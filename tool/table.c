@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Every command. A name of older tools without a function here is only known so that
- * the message can say that this version lacks it.
+ * Every command. Names of older tools without a function here are listed, so that a
+ * message can say that this version lacks them.
  */
 #include "tool.h"
 

@@ -13,7 +13,7 @@
 #define EC_TOOL_VERSION		"0.1.0"
 #endif
 
-#define EC_TOOL_COMMANDS	64	/* room for all */
+#define EC_TOOL_COMMANDS	64	/* at most */
 
 /* bits of struct cmd.flags */
 #define CMD_ONE_MASTER		1	/* -m must leave exactly one */
@@ -81,8 +81,8 @@ struct tool {
  * @name: as typed
  * @run: does it; returns the exit code
  * @args: synopsis of the arguments
- * @opts: letters of the options it looks at; those without a short form have letters of
- *	options.c; -h and -j go unsaid
+ * @opts: letters of the options it uses, except for -h and -j; options without a short form have
+ *	letters of options.c
  * @summary: one line
  * @help: paragraphs, may be NULL
  * @json: keys of the JSON output

@@ -177,7 +177,7 @@ static int parse_raw(const char *p, u8 *buf, size_t cap, size_t *size, const cha
  * @size: set to the bytes used
  * @why: set to what is wrong
  *
- * Strings are taken as they are; raw data are hex bytes.
+ * Strings are not changed; raw data are hex bytes.
  *
  * Return: 0, -EINVAL when it is malformed, -ERANGE when it does not fit.
  */

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Faults while a segment runs. A datagram is one fault, the answer is empty or
- * says what is wrong. Whoever may write to the socket's file may send: root.
+ * reports what is wrong. Only root may write to the socket's file, and send faults.
  */
 #include <errno.h>
 #include <stdio.h>
@@ -32,7 +32,7 @@ static int address(struct sockaddr_un *a, const char *path)
 	return -1;
 }
 
-/* A socket nobody listens at any more is in the way. */
+/* Remove a socket that has no listener any more. */
 static void remove_stale(const struct sockaddr_un *a)
 {
 	struct stat st;
@@ -49,7 +49,7 @@ static void remove_stale(const struct sockaddr_un *a)
 }
 
 /**
- * control_open() - make the socket; says what is wrong on stderr
+ * control_open() - create the socket; reports errors on stderr
  * @path: of its file, which only its owner may use
  *
  * Return: descriptor or -1.
@@ -76,7 +76,7 @@ int control_open(const char *path)
 }
 
 /**
- * control_receive() - take the faults that have come
+ * control_receive() - apply the faults that were received
  * @fd: of control_open()
  * @sim: segment
  */
@@ -106,7 +106,7 @@ void control_receive(int fd, struct ec_sim *sim)
 }
 
 /**
- * control_close() - take the socket away
+ * control_close() - remove the socket
  * @fd: of control_open(), or -1
  * @path: its path
  */
@@ -119,7 +119,7 @@ void control_close(int fd, const char *path)
 }
 
 /**
- * control_tell() - send a fault to a running ethercat-sim; says what is wrong on stderr
+ * control_tell() - send a fault to a running ethercat-sim; reports errors on stderr
  * @path: its socket
  * @text: fault
  *

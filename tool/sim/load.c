@@ -47,7 +47,7 @@ static int load_image(void *ctx, const char *name, u8 *buf, size_t cap)
 	return (int)slurp(full, buf, cap);
 }
 
-/* Room for one more statement behind the text. */
+/* The text, in a buffer with space for one more statement. */
 static char *text_of(const char *name, size_t *len)
 {
 	const char *builtin = ec_sim_builtin(name);
@@ -75,7 +75,7 @@ static char *text_of(const char *name, size_t *len)
 }
 
 /**
- * load_segment() - build a segment; says what is wrong on stderr
+ * load_segment() - build a segment; reports errors on stderr
  * @name: built-in segment or path of a description
  * @seed: 0..EC_SIM_SEED_MAX in place of the segment's own, -1: its own
  *
@@ -91,7 +91,7 @@ struct ec_sim *load_segment(const char *name, long long seed)
 
 	if (!text)
 		return NULL;
-	/* the last seed counts, and lines keep their numbers */
+	/* at the end: the last seed counts, and lines keep their numbers */
 	if (seed >= 0)
 		len += (size_t)sprintf(text + len, "\nsegment seed=%lld\n", seed);
 	if (ec_sim_describe(&sim, &load_ops, text, len, &loader, &err)) {

@@ -70,7 +70,7 @@ static int parse_bug(const char *text, enum ec_sim_bug *bug)
 	return -1;
 }
 
-/* 0: go on, 1: done, -1: wrong */
+/* 0: continue, 1: done, -1: invalid */
 static int parse(int argc, char **argv, struct options *o)
 {
 	static const struct option longs[] = {

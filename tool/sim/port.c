@@ -31,7 +31,7 @@ static int request(const struct port *p, unsigned long what, struct ifreq *r)
 	return ioctl(p->fd, what, r);
 }
 
-/* Is it there, Ethernet, up? */
+/* Does the interface exist, is it Ethernet, is it up? */
 static int check_kind(struct port *p)
 {
 	struct ifreq r;
@@ -94,7 +94,7 @@ static struct sock_filter ethercat[] = {
 	BPF_STMT(BPF_RET | BPF_K, 0),
 };
 
-/* Only what comes from the wire, whoever it is addressed to. */
+/* Receive frames from the wire only, with any destination address. */
 static int attach(struct port *p)
 {
 	struct sockaddr_ll at = {
@@ -120,7 +120,7 @@ static int attach(struct port *p)
 }
 
 /**
- * port_open() - begin to listen; says what is wrong on stderr
+ * port_open() - begin to listen; reports errors on stderr
  * @p: port
  * @name: of the interface
  *
@@ -160,7 +160,7 @@ void port_close(struct port *p)
 }
 
 /**
- * port_check() - look after the interface; tells on stderr what has changed
+ * port_check() - check the interface; reports changes on stderr
  * @p: port
  *
  * A socket whose interface was down receives again once it is up.
@@ -213,10 +213,10 @@ static bool tag_of(struct msghdr *msg, uint8_t tag[VLAN_TAG])
 /**
  * port_receive() - next frame
  * @p: port
- * @buf: gets it as it was on the wire, Ethernet header first
+ * @buf: gets the bytes on the wire, Ethernet header first
  * @cap: bytes at @buf
  *
- * Return: bytes of the frame, more than @cap: too long; 0: none there.
+ * Return: bytes of the frame, more than @cap: too long; 0: no frame.
  */
 int port_receive(struct port *p, void *buf, size_t cap)
 {

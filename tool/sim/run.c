@@ -2,7 +2,7 @@
 /*
  * Real time is model time, from 0 at the start. A frame enters the segment
  * when it is read from the interface, and leaves after the time the modelled
- * wire takes, or as soon after as the machine manages.
+ * wire takes, or as soon after that as this computer can.
  */
 #include <poll.h>
 #include <signal.h>
@@ -15,12 +15,12 @@
 #include "control.h"
 #include "run.h"
 
-#define FRAMES	1024		/* on their way at once */
+#define FRAMES	1024		/* in flight at once */
 #define BURST	64		/* frames read before others are sent */
 #define LOOK_NS	100000000ull	/* longest sleep */
 #define SECOND	1000000000ull
 
-/* a frame on its way back */
+/* a frame that returns to the master */
 struct flying {
 	struct flying *next;
 	u64 due_ns;
@@ -206,7 +206,7 @@ static void rest(struct run *r, const sigset_t *mask)
 		control_receive(r->control, r->sim);
 }
 
-/* Now and then: time for a quiet segment, a look at the interfaces. */
+/* Periodic: advance the time of a quiet segment, check the interfaces. */
 static bool look(struct run *r, u64 now)
 {
 	ec_sim_advance(r->sim, now);
@@ -263,7 +263,7 @@ static void catch_signals(sigset_t *old)
  * @control: socket of control_open(), -1: none
  * @verbose: counters every second
  *
- * Return: exit status: 0 after a signal, 1 when an interface is gone.
+ * Return: exit status: 0 after a signal, 1 when an interface was removed.
  */
 int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, int control, bool verbose)
 {
