@@ -52,7 +52,7 @@ struct ect_config_why {
 };
 
 /**
- * ect_config_why() - why the slave of a configuration is not in OP, as the master says it
+ * ect_config_why() - why the slave of a configuration is not in OP, in the words of the master
  * @h: master
  * @index: of the configuration
  * @w: result, with its @struct_size
@@ -216,9 +216,9 @@ struct ect_domain {
 	uint32_t options;	/* ECT_DOMAIN_* */
 	uint32_t datagram_count;
 	uint32_t datagram_bytes;	/* headers and working counters included */
-	uint32_t age;		/* sends since that of the data */
+	uint32_t age;		/* sends since the one that brought the data */
 	uint32_t wc_state;	/* ECT_WC_* */
-	uint32_t unsent;	/* sends since activation, while none has had the domain */
+	uint32_t unsent;	/* sends since activation if none of them had the domain, else 0 */
 };
 
 /* the share of a slave configuration in a domain */

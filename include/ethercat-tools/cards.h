@@ -43,7 +43,7 @@ int ect_cards_read(struct ect_handle *h, struct ect_list **list);
 /* settings of a network card that matter to a cycle */
 struct ect_card_settings {
 	uint32_t struct_size;
-	/* 0, or why the settings are not known: -EOPNOTSUPP if the driver has no such ones */
+	/* 0, or why the settings are not known: -EOPNOTSUPP if the driver does not have them */
 	int32_t coalesce_error;	/* of @rx_usecs and @adaptive_rx */
 	int32_t eee_error;	/* of @eee */
 	int32_t pause_error;	/* of @pause_rx and @pause_tx */

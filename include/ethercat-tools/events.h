@@ -10,7 +10,7 @@ extern "C" {
 #endif
 
 #define ECT_EVENT_ARGS		8
-#define ECT_EVENT_MISSED	0x00	/* kind: @missed events were lost by this reader */
+#define ECT_EVENT_MISSED	0x00	/* kind: this reader has missed @missed events */
 
 /* types of arguments */
 #define ECT_ARG_UNSIGNED	1
@@ -39,7 +39,7 @@ struct ect_event {
 
 /**
  * ect_events_begin() - begin to read events
- * @h: master; each open handle is a reader of its own and takes nothing from others
+ * @h: master; each open handle is a reader of its own, and each reader gets all events
  * @flags: ECT_EVENTS_*
  * @first: NULL, or set to the number of the first event that ect_events_read() gets
  * @next: NULL, or set to the number of the event that comes next

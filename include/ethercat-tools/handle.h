@@ -17,7 +17,7 @@ extern "C" {
 #define ECT_NONE32	0xffffffffU
 
 /* flags of ect_open() */
-#define ECT_OPEN_WRITE	1U	/* for traffic and changes, not to read what the master knows */
+#define ECT_OPEN_WRITE	1U	/* for bus traffic and changes; not needed to read states */
 
 struct ect_handle;
 struct ect_list;
@@ -120,8 +120,8 @@ unsigned int ect_interface(void);
  * ect_reason() - why the last function failed, in words
  * @h: handle
  *
- * Cause and remedy of the master or of this library. The errno that the function returned has
- * its own words, which are not repeated here.
+ * Cause and remedy, from the master or from this library. The text of the errno that the function
+ * returned is not repeated here.
  *
  * Context: The thread of the handle.
  * Return: one line without its end; "" if there is nothing to add. Valid up to the next call.
@@ -152,7 +152,7 @@ size_t ect_list_count(const struct ect_list *l);
  * @i: which, from 0
  *
  * Context: Any thread, while no other one frees the list.
- * Return: structure of the kind that the function has that made the list; NULL behind the end.
+ * Return: element, whose structure the function that made the list names; NULL behind the end.
  */
 const void *ect_list_get(const struct ect_list *l, size_t i);
 
@@ -160,7 +160,7 @@ const void *ect_list_get(const struct ect_list *l, size_t i);
  * ect_list_free() - free a list and its elements
  * @l: list, or NULL
  *
- * Context: Any thread; the handle that made the list may be gone.
+ * Context: Any thread; the handle that made the list may be freed already.
  */
 void ect_list_free(struct ect_list *l);
 

@@ -131,7 +131,7 @@ int ect_object_read(struct ect_handle *h, uint64_t device, uint16_t index, uint3
  * @device: number of the slave
  * @index: of the object
  * @subindex: of the entry
- * @values: ECT_VALUE_* that the slave is asked for; without them it is no failure
+ * @values: ECT_VALUE_* to request; it is no failure if the slave omits some
  * @timeout_ms: of each reply, 0: default
  * @e: result, with its @struct_size
  *
@@ -182,7 +182,7 @@ int ect_soe_write(struct ect_handle *h, uint64_t device, unsigned int drive, uin
  * @password: 0: none
  * @data: for @size bytes
  * @size: bytes
- * @done: NULL, or where another thread finds how many bytes have come so far
+ * @done: NULL, or set to the bytes received so far, for another thread
  *
  * Context: The thread of the handle; waits for the slave.
  * Return: bytes of the file; or a negative errno. -EIO: the slave has refused with an error code,
@@ -199,7 +199,7 @@ long ect_foe_read(struct ect_handle *h, uint64_t device, const char *name, uint3
  * @password: 0: none
  * @data: @size bytes
  * @size: bytes
- * @done: NULL, or where another thread finds how many bytes were sent so far
+ * @done: NULL, or set to the bytes sent so far, for another thread
  *
  * Context: The thread of the handle; waits for the slave.
  * Return: 0, or a negative errno as ect_foe_read().

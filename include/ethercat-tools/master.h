@@ -131,7 +131,7 @@ struct ect_device {
 
 #define ECT_BUCKETS	240	/* of the histogram of send deviations */
 
-/* the cycle that runs, otherwise the last one; how far its sends are from their schedule */
+/* the cycle that runs, otherwise the last one, and its send deviations */
 struct ect_cycle {
 	uint32_t struct_size;
 	uint32_t kind;		/* ECT_CYCLE_BY_* */
@@ -194,7 +194,7 @@ int ect_rescan(struct ect_handle *h);
 /**
  * ect_debug() - set how much the master writes to the kernel log
  * @h: master, open for writing
- * @level: 0 normal, 1 more events, 2 the content of all frames, too
+ * @level: 0 normal, 1 more events, 2 also the content of all frames
  *
  * Context: The thread of the handle.
  * Return: 0 or a negative errno.

@@ -28,7 +28,7 @@ extern "C" {
 #define ECT_CAUSE_DIFFERENT	6	/* the slave at @position has another identity */
 #define ECT_CAUSE_TAKEN		7	/* the one at @position is that of configuration @code */
 #define ECT_CAUSE_UNATTACHED	8	/* the one at @position matches and is not attached yet */
-/* it is connected, and the cause is not its own */
+/* the slave is connected, and the cause is not in the slave */
 #define ECT_CAUSE_INACTIVE	16	/* the application has not activated the master */
 #define ECT_CAUSE_REQUESTED	17	/* @state is requested, not OP */
 #define ECT_CAUSE_NO_CYCLE	18	/* the application sends no cyclic frames */
@@ -153,8 +153,8 @@ int ect_slaves_read(struct ect_handle *h, struct ect_list **list);
  * @position: from 0
  * @s: result, with its @struct_size
  *
- * A program resolves what a user has named once, and names the device from then on: between two
- * calls the ring may change.
+ * The ring may change between two calls: a program resolves a position that a user has given once,
+ * and uses @device of the result from then on.
  *
  * Context: The thread of the handle; no traffic.
  * Return: 0, -EINVAL without such a slave, or another negative errno.
@@ -296,7 +296,7 @@ struct ect_errors {
  * @device: number of the slave
  * @e: result, with its @struct_size
  *
- * They are of use where frames are lost: a read without reply is repeated.
+ * A read without reply is repeated, since error counters are of use where frames are lost.
  *
  * Context: The thread of the handle; waits for the bus.
  * Return: As ect_reg_read().

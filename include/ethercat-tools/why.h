@@ -43,7 +43,7 @@ struct ect_explained {
 	struct ect_config config;	/* last, as it grows */
 };
 
-/* what was checked, so that silence means something */
+/* what was checked: no finding means that it is in order */
 struct ect_checked {
 	uint32_t struct_size;
 	uint32_t unreachable;	/* no slave can be reached: only the link was checked */
@@ -77,7 +77,7 @@ int ect_why(struct ect_handle *h, struct ect_why **w);
  * ect_why_free() - free a result and all that was got from it
  * @w: result, or NULL
  *
- * Context: Any thread; the handle may be gone.
+ * Context: Any thread; the handle may be freed already.
  */
 void ect_why_free(struct ect_why *w);
 
