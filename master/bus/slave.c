@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../base/once64.h"
+#include "../carry/carry.h"
 #include "slave.h"
 
 #define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
@@ -434,7 +435,7 @@ void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...)
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
 {
 	lockdep_assert(lockdep_is_held(&slave->lock) ||
-		       current == READ_ONCE(slave->bus->links->monitor));
+		       current == READ_ONCE(slave->bus->links->carry->monitor));
 	slave->retry_ms = clamp_t(u32, 2 * slave->retry_ms, EC_RETRY_MIN_MS, max_ms);
 	ec_write64(&slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
 }
