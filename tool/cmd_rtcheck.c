@@ -32,6 +32,7 @@ static int run(struct tool *t, int argc, char **argv)
 	rt_check_interrupts(&r);
 	rt_check_user(&r);
 	ret = rt_check_cards(&r);
+	rt_check_posts(&r);
 	if (r.failed)
 		ret = fail("out of memory");
 	out_array("checks");
@@ -58,7 +59,10 @@ const struct cmd cmd_rtcheck = {
 	.help = "Checks kernel, CPUs, interrupts, the rights of the user, and the network cards of the\n"
 		"masters. Each line has a level: an error delays cycles, a warning may delay them, and\n"
 		"what cannot be read is unknown. The line below it says how to change the setting.\n"
-		"Changes nothing. Exit code 1 if there is an error.\n",
+		"Changes nothing. Exit code 1 if there is an error.\n"
+		"The line \"posts\" says which one loses where they share a CPU: the cycle, or the\n"
+		"thread EtherCAT<n>-post, which finds lost acyclic frames. The cycle of an application\n"
+		"is its thread with the highest priority; to see that of another user it needs root.\n",
 	.json = "checks[]: level (ok, warning, error, unknown), check, found, fix; errors, warnings,\n"
 		"unknown",
 };

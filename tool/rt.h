@@ -58,5 +58,7 @@ void rt_check_cpus(struct rt *r);
 void rt_check_interrupts(struct rt *r);
 void rt_check_user(struct rt *r);
 int rt_check_cards(struct rt *r);
+/* after rt_check_cpus(), which finds the reserved ones */
+void rt_check_posts(struct rt *r);
 
 #endif

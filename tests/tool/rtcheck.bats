@@ -56,6 +56,35 @@ setup() {
 	put "$c/power/control" on
 	put "$c/net/eth0/type" 1
 	put "$c/net/eth0/address" 02:00:00:12:34:56
+	thread 40 EtherCAT0-post 1 1 0-3
+}
+
+# thread [PID/task/]TID NAME PRIORITY POLICY CPUS: 0 is SCHED_OTHER, 1 SCHED_FIFO, 2 SCHED_RR
+thread() {
+	local d=$FAKE_PROC/$1
+
+	put "$d/comm" "$2"
+	# fields 40 and 41 after 37 others
+	put "$d/stat" "${1##*/} ($2) S $(printf '7%.0s ' {4..39})$3 $4 0 0 0"
+	put "$d/status" "$(printf 'Name:\t%s\nCpus_allowed_list:\t%s' "$2" "$5")"
+}
+
+# opened PID FLAGS: it has Master0 open
+opened() {
+	mkdir -p "$FAKE_PROC/$1/fd"
+	ln -s /dev/null "$FAKE_PROC/$1/fd/0"
+	ln -s /dev/EtherCAT0 "$FAKE_PROC/$1/fd/5"
+	put "$FAKE_PROC/$1/fdinfo/0" "flags:	0100002"
+	put "$FAKE_PROC/$1/fdinfo/5" "$(printf 'pos:\t0\nflags:\t%s' "$2")"
+}
+
+# application PRIORITY POLICY [CPUS]: with a cycle of its own, in a second thread
+application() {
+	export FAKE_BUS=app
+	thread 500 "my) app" 0 0 0-3
+	thread 500/task/500 "my) app" 0 0 0-3
+	thread 500/task/501 "my) app" "$1" "$2" "${3:-0-3}"
+	[ -e "$FAKE_PROC/500/fd" ] || opened 500 02100002
 }
 
 cpu() { echo "$FAKE_SYS/devices/system/cpu/$1"; }
@@ -69,7 +98,7 @@ wrong() {
 	grep -q "^$1 * $2 .*$3" <<<"$output"
 	[ -z "${4:-}" ] || grep -qF "set: $4" <<<"$output"
 }
-all=24
+all=25
 
 @test "rtcheck finds nothing on a computer with the right settings" {
 	run ethercat rtcheck
@@ -244,11 +273,82 @@ all=24
 	[[ $output != *coalescing* ]]
 }
 
+@test "rtcheck: a cycle at SCHED_OTHER loses to the thread that finds lost frames" {
+	application 0 0
+	wrong warning posts "the cycle (my) app, thread 50[01], SCHED_OTHER) loses: EtherCAT0-post (SCHED_FIFO 1) preempts it" \
+		"sched_setscheduler() in the application, or chrt -f -p 80 50"
+	# with fifo_posts=N
+	thread 40 EtherCAT0-post 0 0 0-3
+	wrong warning posts "SCHED_OTHER) loses: each program may delay it, and EtherCAT0-post (SCHED_OTHER), too" \
+		"sched_setscheduler() in the application, or chrt -f -p 80 50"
+}
+
+@test "rtcheck: a cycle at SCHED_FIFO 1 that spins delays the finding of lost frames" {
+	application 1 1
+	wrong warning posts "EtherCAT0-post (SCHED_FIFO 1) loses if the cycle spins.*the cycle (my) app, thread 501, SCHED_FIFO 1)" \
+		"sched_setscheduler() in the application, or chrt -f -p 80 501"
+	application 1 2
+	wrong warning posts "loses if the cycle spins.*SCHED_RR 1)"
+}
+
+@test "rtcheck: a cycle above it wins, and starves it with fifo_posts=N" {
+	application 2 1
+	ethercat rtcheck | grep "^ok * posts .*the cycle (my) app, thread 501, SCHED_FIFO 2) preempts EtherCAT0-post (SCHED_FIFO 1)$"
+	thread 40 EtherCAT0-post 0 0 0-3
+	wrong warning posts "EtherCAT0-post (SCHED_OTHER) loses: the cycle (my) app, thread 501, SCHED_FIFO 2) preempts it" \
+		"load ec_master without fifo_posts=N"
+	# SCHED_DEADLINE
+	application 0 6
+	wrong warning posts "EtherCAT0-post (SCHED_OTHER) loses: the cycle (my) app, thread 501, SCHED_DEADLINE) preempts it"
+}
+
+@test "rtcheck: on a CPU of its own no cycle loses" {
+	local p
+
+	# 3 is reserved: the scheduler moves the thread of the module there never
+	for p in "0 0" "1 1"; do
+		# shellcheck disable=SC2086
+		application $p 3
+		thread 500/task/500 "my) app" 0 0 3
+		ethercat rtcheck | grep "^ok * posts .*and EtherCAT0-post (SCHED_FIFO 1) share no CPU$"
+	done
+	thread 40 EtherCAT0-post 1 1 3
+	wrong warning posts "EtherCAT0-post (SCHED_FIFO 1) loses if the cycle spins"
+}
+
+@test "rtcheck: a cycle of the kernel beside the thread that finds lost frames" {
+	export FAKE_BUS=kcycle
+	ethercat rtcheck | grep "^ok * posts .*the cycle (of the kernel, SCHED_FIFO 40) preempts EtherCAT0-post (SCHED_FIFO 1)$"
+	# its CPU is 2
+	thread 40 EtherCAT0-post 0 0 2-3
+	wrong warning posts "EtherCAT0-post (SCHED_OTHER) loses: the cycle (of the kernel, SCHED_FIFO 40)"
+	thread 40 EtherCAT0-post 0 0 0-1
+	ethercat rtcheck | grep "^ok * posts .*share no CPU$"
+}
+
+@test "rtcheck names the thread that a later cycle will meet" {
+	ethercat rtcheck | grep "^ok * posts .*no cycle runs; one with SCHED_FIFO 2 or more preempts EtherCAT0-post (SCHED_FIFO 1)$"
+	thread 40 EtherCAT0-post 0 0 0-3
+	wrong warning posts "no cycle runs; EtherCAT0-post (SCHED_OTHER) loses to one with SCHED_FIFO" \
+		"load ec_master without fifo_posts=N"
+}
+
+@test "rtcheck ignores programs that only read, and reports an application it cannot see" {
+	# open for reading: a command that shows something
+	opened 500 02100000
+	application 80 1
+	wrong unknown posts "no process that has /dev/EtherCAT0 open for writing can be seen" "run it as root"
+	rm -r "$FAKE_PROC/500/fd"
+	wrong unknown posts "no process that has /dev/EtherCAT0 open for writing can be seen" "run it as root"
+	rm -r "$FAKE_PROC/40"
+	wrong unknown posts "there is no thread EtherCAT0-post" "run it as root"
+}
+
 @test "rtcheck reports unreadable settings as unknown" {
 	rm -r "$FAKE_PROC" "$FAKE_SYS/devices/system" "$FAKE_SYS/class"
 	run ethercat rtcheck
 	echo "$output"
-	for c in clocksource throttling timers watchdog isolation interrupts card; do
+	for c in clocksource throttling timers watchdog isolation interrupts card posts; do
 		grep -q "^unknown * $c " <<<"$output"
 	done
 	FAKE_ETHTOOL= run ethercat rtcheck
@@ -257,7 +357,7 @@ all=24
 
 @test "rtcheck: JSON" {
 	put "$(cpu smt/active)" 1
-	out rtcheck -j | json 'len(d["checks"]) == 24 and d["warnings"] == 1 and d["errors"] == 0'
+	out rtcheck -j | json 'len(d["checks"]) == 25 and d["warnings"] == 1 and d["errors"] == 0'
 	out rtcheck -j | json 'd["checks"][0] == {"level": "ok", "check": "kernel",
 		"found": "6.1.0-rt, PREEMPT_RT", "fix": ""}'
 	out rtcheck -j | json '[c["fix"] for c in d["checks"] if c["level"] != "ok"] == ["kernel parameter nosmt"]'
