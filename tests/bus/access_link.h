@@ -153,6 +153,22 @@ static inline unsigned long bus_post_slept(const struct bus *b)
 	return READ_ONCE(bus_carry(b)->thread->nvcsw);
 }
 
+/* its work begins now */
+static inline void bus_post_kick(const struct bus *b)
+{
+	ec_carry_kick(bus_carry(b));
+}
+
+/* as at the end of the master, whose device may still be there: no post is taken */
+static inline void bus_post_close(const struct bus *b, bool closed)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&bus_carry(b)->lock, flags);
+	bus_carry(b)->closed = closed;
+	raw_spin_unlock_irqrestore(&bus_carry(b)->lock, flags);
+}
+
 /* posts that have not left, and frames on their way */
 static inline u32 bus_posts(const struct bus *b)
 {

@@ -5,7 +5,6 @@
  */
 #include <linux/kthread.h>
 #include "master/carry/direct.h"
-#include "cyc.h"
 #include "posts.h"
 
 #define ALL	(BIT(POSTS) - 1)
@@ -418,30 +417,39 @@ static void post_beside_link_that_is_down(struct kunit *test)
 	rig_expect(r, BIT(0), 3, 0);
 }
 
-/* Beside a cycle that nothing happens to, and on a bus without one, its thread sleeps. */
-static void post_thread_rests(struct kunit *test)
+/* A caller that sleeps and comes after the end of the posts is told, as no thread would be left. */
+static void post_after_end(struct kunit *test)
 {
-	struct bus *b = bus_up(test, "slave a EK1100\nslave d drive in=8 out=8\n", 2);
-	unsigned long before, idle, beside;
-	struct cyc *c;
+	struct rig *r = rig_new(test);
+	struct ec_post_wait wait = { .pending = 1 };
+	struct ec_dg dg[6];
+	u32 i;
 
-	bus_idle(b);
-	before = bus_post_slept(b);
-	msleep(10000);
-	idle = bus_post_slept(b) - before;
-	c = cyc_in_op(b, 0, 2);
-	cyc_run(c, 2000);
-	before = bus_post_slept(b);
-	cyc_run(c, 10000);
-	beside = bus_post_slept(b) - before;
-	bus_figure("thread of the posts in 10 s: %lu times without cycle, %lu beside one", idle,
-		   beside);
-	KUNIT_EXPECT_LT(test, idle, 100ul);
-	KUNIT_EXPECT_LT(test, beside, 100ul);
+	for (i = 0; i < ARRAY_SIZE(dg); i++)
+		dg[i] = EC_DG(EC_CMD_FPRW, POSTS_ADP, 0x1000, 2, r->data[0][0]);
+	init_completion(&wait.done);
+	r->post[0].wait = &wait;
+	r->post[0].done = NULL;
+	bus_post_close(r->b, true);
+	ec_post_send(&r->post[0], 0);
+	KUNIT_EXPECT_EQ(test, r->dg[0][0].err, -ENODEV);
+	KUNIT_EXPECT_EQ(test, wait.pending, 0u);
+	/* it would sleep for ever */
+	if (completion_done(&wait.done)) {
+		KUNIT_EXPECT_EQ(test, bus_xfer(r->b, dg, 1), -ENODEV);
+		/* those that have memory of their own, in two halves */
+		KUNIT_EXPECT_EQ(test, bus_xfer(r->b, dg, ARRAY_SIZE(dg)), -ENODEV);
+		for (i = 0; i < ARRAY_SIZE(dg); i++)
+			KUNIT_EXPECT_EQ(test, dg[i].err, -ENODEV);
+	} else {
+		KUNIT_FAIL(test, "the caller sleeps for ever");
+	}
+	bus_post_close(r->b, false);
+	KUNIT_EXPECT_EQ(test, r->frames[0], 0u);
+	KUNIT_EXPECT_EQ(test, bus_posts(r->b), 0u);
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(post_thread_rests),
 	KUNIT_CASE(post_shares_frame),
 	KUNIT_CASE(post_changed_frame_refused),
 	KUNIT_CASE(post_truncated_frame_refused),
@@ -456,6 +464,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(post_on_two_links),
 	KUNIT_CASE(post_one_copy_of_two),
 	KUNIT_CASE(post_beside_link_that_is_down),
+	KUNIT_CASE(post_after_end),
 	{}
 };
 

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* The thread of the posts: when it runs, and what is said when it cannot. */
+#include <linux/delay.h>
+#include "bus.h"
+#include "cyc.h"
+
+/* Beside a cycle that nothing happens to, and on a bus without one, its thread sleeps. */
+static void post_thread_rests(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\nslave d drive in=8 out=8\n", 2);
+	unsigned long before, idle, beside;
+	struct cyc *c;
+
+	bus_idle(b);
+	before = bus_post_slept(b);
+	msleep(10000);
+	idle = bus_post_slept(b) - before;
+	c = cyc_in_op(b, 0, 2);
+	cyc_run(c, 2000);
+	before = bus_post_slept(b);
+	cyc_run(c, 10000);
+	beside = bus_post_slept(b) - before;
+	bus_figure("thread of the posts in 10 s: %lu times without cycle, %lu beside one", idle,
+		   beside);
+	KUNIT_EXPECT_LT(test, idle, 100ul);
+	KUNIT_EXPECT_LT(test, beside, 100ul);
+}
+
+/* the thread of the posts has work, and gets no CPU */
+static void keep_cpu(struct bus *b, unsigned int ms)
+{
+	preempt_disable();
+	bus_post_kick(b);
+	mdelay(ms);
+	preempt_enable();
+}
+
+/* the machine stands still: not even its timers run */
+static void stand_still(struct bus *b, unsigned int ms)
+{
+	local_irq_disable();
+	bus_post_kick(b);
+	mdelay(ms);
+	local_irq_enable();
+}
+
+static u64 lines(const struct bus *b)
+{
+	return READ_ONCE(bus_base(b)->log.lines);
+}
+
+/* A thread of higher priority on its CPU is reported after a second, and no sooner. */
+static void post_thread_starved_reported(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
+	u64 l0;
+
+	bus_idle(b);
+	msleep(11000);
+	l0 = lines(b);
+	keep_cpu(b, 900);
+	msleep(2000);
+	KUNIT_EXPECT_EQ(test, lines(b), l0);
+	keep_cpu(b, 1100);
+	KUNIT_EXPECT_EQ(test, lines(b), l0 + 1);
+	msleep(5000);
+	KUNIT_EXPECT_EQ(test, lines(b), l0 + 1);
+}
+
+/* A guest that is paused stands still with all that is in it: none of its threads is starved. */
+static void post_thread_of_paused_machine_not_reported(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
+	u64 l0;
+
+	bus_idle(b);
+	msleep(11000);
+	l0 = lines(b);
+	stand_still(b, 5000);
+	msleep(5000);
+	KUNIT_EXPECT_EQ(test, lines(b), l0);
+	/* but afterwards as ever */
+	preempt_disable();
+	stand_still(b, 5000);
+	mdelay(1100);
+	preempt_enable();
+	KUNIT_EXPECT_EQ(test, lines(b), l0 + 1);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(post_thread_rests),
+	KUNIT_CASE(post_thread_starved_reported),
+	KUNIT_CASE(post_thread_of_paused_machine_not_reported),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_post_thread",
+	.exit = bus_exit,
+	.test_cases = cases,
+};
+kunit_test_suite(suite);
+
+MODULE_LICENSE("GPL");
