@@ -88,6 +88,16 @@ static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
 	return top;
 }
 
+/* To the nearest, halves to the even one: what is always cut adds up along a line. */
+static s64 divide(s64 way, s32 parts)
+{
+	s64 whole = div_s64(way, parts), rest = 2 * (way - whole * parts);
+
+	if (rest > parts || (rest == parts && whole & 1))
+		return whole + 1;
+	return rest < -parts || (rest == -parts && whole & 1) ? whole - 1 : whole;
+}
+
 /*
  * The slaves of a chain are reached one after the other. What the frame did not stay at them it
  * was on the way, in equal parts: there and back for one. Times that no frame can have count as
@@ -106,7 +116,7 @@ static s32 place_chain(struct ec_dc_node *nodes, s32 first, u32 start, s32 round
 		bad |= stay(&nodes[b]) < -NOISE_NS;
 		parts++;
 	}
-	way = div_s64(way, max(parts, 2));
+	way = divide(way, max(parts, 2));
 	bad |= way < -NOISE_NS || way > WAY_MAX_NS;
 	/* noise of the receive times can make a short way negative */
 	way = way > 0 && !bad ? way : 0;
