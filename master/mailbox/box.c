@@ -13,72 +13,16 @@
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
 #include "box.h"
-#include "box_post.h"
-
-#define ACK_FAILS	3	/* repeat requests without acknowledgement */
-#define ACK_POLLS	50	/* of a repeat request */
-#define ACK_NS		(300 * NSEC_PER_USEC)	/* between them */
-#define UNSEEN_NS	(5 * NSEC_PER_MSEC)	/* for one that the slave cannot acknowledge */
-#define ORDERED		3	/* messages with the next counter in a row */
+#include "box_repeat.h"
+#include "box_state.h"
 
 /* states --------------------------------------------------------------------*/
-
-static void box_set_job(struct ec_box *box, enum ec_box_job job)
-{
-	/* jobs that may precede */
-	static const u8 from[] = {
-		[EC_BOX_NO_JOB] = U8_MAX,
-		[EC_BOX_EMPTYING] = BIT(EC_BOX_NO_JOB),
-		[EC_BOX_DISCARDING] = BIT(EC_BOX_NO_JOB),
-		[EC_BOX_WRITING] = BIT(EC_BOX_NO_JOB) | BIT(EC_BOX_EMPTYING) | BIT(EC_BOX_BLOCKED),
-		[EC_BOX_BLOCKED] = BIT(EC_BOX_WRITING),
-	};
-
-	lockdep_assert_held(&box->lock);
-	WARN_ON_ONCE(!(from[job] & BIT(box->job)));
-	box->job = job;
-}
-
-static void box_set_gap(struct ec_box *box, enum ec_box_gap gap)
-{
-	/* states that may precede */
-	static const u8 from[] = {
-		[EC_BOX_WHOLE] = U8_MAX,
-		[EC_BOX_UNREAD] = BIT(EC_BOX_WHOLE) | BIT(EC_BOX_UNREAD),
-		[EC_BOX_GAP] = BIT(EC_BOX_WHOLE) | BIT(EC_BOX_GAP) | BIT(EC_BOX_GAP_LOOK),
-		[EC_BOX_GAP_LOOK] = BIT(EC_BOX_GAP),
-	};
-
-	lockdep_assert_held(&box->lock);
-	WARN_ON_ONCE(!(from[gap] & BIT(box->gap)));
-	box->gap = gap;
-}
-
-static void box_end_job(struct ec_box *box, int err)
-{
-	box_set_job(box, EC_BOX_NO_JOB);
-	box->ops->event(box, EC_BOX_ON_JOB, err);
-}
-
-/* The slave cannot be reached, or its mailbox not be used. */
-static void box_fail(struct ec_box *box, int err)
-{
-	box_set_job(box, EC_BOX_NO_JOB);
-	box->ops->event(box, EC_BOX_ON_FAILED, err);
-}
-
-/* SM1 was accessed once without a repetition. */
-static void looked(struct ec_box *box)
-{
-	if (box->gap == EC_BOX_GAP_LOOK)
-		box_set_gap(box, EC_BOX_GAP);
-}
 
 /* SM1 was read or is empty, so it does not keep the slave from emptying SM0. */
 static void unblock(struct ec_box *box)
 {
 	if (box->job == EC_BOX_BLOCKED)
-		box_set_job(box, EC_BOX_WRITING);
+		ec_box_set_job(box, EC_BOX_WRITING);
 }
 
 static bool is_emptying(const struct ec_box *box)
@@ -89,9 +33,9 @@ static bool is_emptying(const struct ec_box *box)
 static void end_emptying(struct ec_box *box, int err)
 {
 	if (box->job == EC_BOX_DISCARDING)
-		box_end_job(box, err);
+		ec_box_end_job(box, err);
 	else
-		box_set_job(box, EC_BOX_WRITING);
+		ec_box_set_job(box, EC_BOX_WRITING);
 }
 
 /* Begin to read SM1, or REST if it does not fit: its size changes with the state of the slave. */
@@ -100,7 +44,7 @@ static enum ec_box_step begin_read(struct ec_box *box)
 	u16 size = ec_box_area(box)->tx_size;
 
 	if (size > box->rx_room || size < EC_MBOX_HDR) {
-		box_fail(box, -EMSGSIZE);
+		ec_box_fail(box, -EMSGSIZE);
 		return EC_BOX_REST;
 	}
 	box->size = size;
@@ -130,7 +74,7 @@ static void renew(struct ec_box *box)
 	box->seen = 0;
 	box->in_order = 0;
 	box->counts = false;
-	box_set_gap(box, EC_BOX_WHOLE);
+	ec_box_set_gap(box, EC_BOX_WHOLE);
 	box->asked = false;
 	box->repeats = false;
 	box->ops->event(box, EC_BOX_ON_RENEWED, 0);
@@ -138,7 +82,7 @@ static void renew(struct ec_box *box)
 
 static void begin_job(struct ec_box *box, enum ec_box_job job)
 {
-	box_set_job(box, job);
+	ec_box_set_job(box, job);
 	box->doubtful = false;
 	box->orphan = false;
 	box->drained = 0;
@@ -198,7 +142,7 @@ bool ec_box_take_back(struct ec_box *box)
 	if (box->step == EC_BOX_WRITE)
 		box->orphan = true;
 	else
-		box_set_job(box, EC_BOX_NO_JOB);
+		ec_box_set_job(box, EC_BOX_NO_JOB);
 	return doubtful;
 }
 
@@ -213,7 +157,7 @@ bool ec_box_take_back(struct ec_box *box)
 void ec_box_arrived(struct ec_box *box)
 {
 	lockdep_assert_held(&box->lock);
-	box_set_job(box, EC_BOX_NO_JOB);
+	ec_box_set_job(box, EC_BOX_NO_JOB);
 }
 
 static enum ec_box_step box_choose(struct ec_box *box)
@@ -235,7 +179,7 @@ static enum ec_box_step box_choose(struct ec_box *box)
 			break;
 		if (begin_write(box))
 			return EC_BOX_WRITE;
-		box_end_job(box, -EMSGSIZE);
+		ec_box_end_job(box, -EMSGSIZE);
 	}
 	if (!read)
 		return EC_BOX_REST;
@@ -302,42 +246,6 @@ void ec_box_drop(struct ec_box *box)
 	box->held = false;
 }
 
-/* Is the message in @rx the last one again, from a slave with correct counters so far? */
-static bool is_twice(struct ec_box *box, u8 counter)
-{
-	bool same = !memcmp(box->begin, box->rx, sizeof(box->begin));
-
-	lockdep_assert_held(&box->lock);
-	memcpy(box->begin, box->rx, sizeof(box->begin));
-	if (counter == box->seen) {
-		same &= box->in_order >= ORDERED;
-		/* of a slave that stops counting one message is discarded, not more */
-		box->in_order -= same;
-		return same;
-	}
-	box->in_order = counter == ec_mbox_next_counter(box->seen) ?
-		       min(box->in_order + 1, ORDERED) : 0;
-	return false;
-}
-
-/*
- * Has this message been received before? The counter shows it when the slave has repeated its last
- * message although nothing was lost, or has sent a message twice.
- */
-static bool is_known(struct ec_box *box, u8 counter)
-{
-	bool twice = is_twice(box, counter);
-	bool again = counter && counter == box->seen && (box->repeats || twice);
-
-	lockdep_assert_held(&box->lock);
-	box->repeats = false;
-	if (again)
-		return true;
-	box->counts = counter && box->seen && counter != box->seen;
-	box->seen = counter;
-	return false;
-}
-
 /* SM1 was read: its content is in @rx. */
 static void box_received(struct ec_box *box)
 {
@@ -345,10 +253,10 @@ static void box_received(struct ec_box *box)
 
 	lockdep_assert_held(&box->lock);
 	if (box->gap == EC_BOX_UNREAD)
-		box_set_gap(box, EC_BOX_WHOLE);
+		ec_box_set_gap(box, EC_BOX_WHOLE);
 	if (ec_box_message(box, &h)) {
 		box->ops->event(box, EC_BOX_ON_MALFORMED, 0);
-	} else if (is_known(box, h.counter)) {
+	} else if (ec_box_is_known(box, h.counter)) {
 		box->ops->event(box, EC_BOX_ON_REPEATED, 0);
 	} else {
 		box->held = true;
@@ -378,17 +286,17 @@ static void found_empty(struct ec_box *box)
 
 static enum ec_box_step on_status(struct ec_box *box, int ret)
 {
-	looked(box);
+	ec_box_looked(box);
 	if (ret == -ETIMEDOUT && !is_emptying(box)) {
 		ec_box_pause(box);
 		return EC_BOX_REST;
 	}
 	if (ret) {
-		box_fail(box, ret);
+		ec_box_fail(box, ret);
 		return EC_BOX_REST;
 	}
 	if (box->gap == EC_BOX_UNREAD)
-		box_set_gap(box, EC_BOX_WHOLE);
+		ec_box_set_gap(box, EC_BOX_WHOLE);
 	if (box->status[0] & EC_SM_ST_FULL) {
 		box->took_ns = ktime_get_ns() - box->since_ns;
 		box->due_ns = 0;
@@ -405,14 +313,14 @@ static enum ec_box_step on_status(struct ec_box *box, int ret)
  */
 static void read_lost(struct ec_box *box)
 {
-	box_set_gap(box, box->can_repeat ? EC_BOX_GAP : EC_BOX_UNREAD);
+	ec_box_set_gap(box, box->can_repeat ? EC_BOX_GAP : EC_BOX_UNREAD);
 	box->ops->event(box, EC_BOX_ON_GAP, 0);
 	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
 }
 
 static enum ec_box_step on_read(struct ec_box *box, int ret)
 {
-	looked(box);
+	ec_box_looked(box);
 	if (!ret) {
 		box->at += box->dg.len;
 		if (box->at < box->size)
@@ -431,15 +339,8 @@ static enum ec_box_step on_read(struct ec_box *box, int ret)
 	/* also when the link is down: it may have been read */
 	read_lost(box);
 	if (ret != -ETIMEDOUT)
-		box_fail(box, ret);
+		ec_box_fail(box, ret);
 	return EC_BOX_REST;
-}
-
-/* The message is in SM0, or may be and must not be sent again. */
-static void box_written(struct ec_box *box)
-{
-	ec_box_progress(box);
-	box_end_job(box, box->doubtful ? -ENOTRECOVERABLE : 0);
 }
 
 static enum ec_box_step on_written(struct ec_box *box, int ret)
@@ -452,85 +353,20 @@ static enum ec_box_step on_written(struct ec_box *box, int ret)
 		if (box->at < box->size)
 			return EC_BOX_WRITE;
 		box->doubtful = false;
-		box_written(box);
+		ec_box_written(box);
 	} else if (ret == -ETIMEDOUT) {
 		/* the slave may have it; if it can repeat, it drops a second one: send it again */
 		box->doubtful = true;
 		if (!box->can_repeat || box->orphan)
-			box_written(box);
+			ec_box_written(box);
 	} else if (ret == -EIO) {
 		/* SM0 is full, until the message of the slave is read */
-		box_set_job(box, box->orphan ? EC_BOX_NO_JOB : EC_BOX_BLOCKED);
+		ec_box_set_job(box, box->orphan ? EC_BOX_NO_JOB : EC_BOX_BLOCKED);
 		ec_box_pause(box);
 	} else {
-		box_fail(box, ret);
+		ec_box_fail(box, ret);
 	}
 	return EC_BOX_REST;
-}
-
-/*
- * Let the slave put its last message into SM1 again (ETG.1000.4 clause 6.7.3, registers
- * 0x080E, 0x080F). A request that is written again after a lost frame has the same value, so the
- * slave does not repeat twice.
- */
-static enum ec_box_step on_repeat_get(struct ec_box *box)
-{
-	u8 *b = box->status;
-
-	if (!box->asked) {
-		box->asked = true;
-		box->asked_bit = !(b[0] & EC_SM_ACT_REPEAT);
-		/* left from before INIT: the slave cannot show that it has repeated */
-		box->unseen = !!(b[1] & EC_SM_PDI_REPEAT_ACK) == box->asked_bit;
-	}
-	b[0] &= ~EC_SM_ACT_REPEAT;
-	if (box->asked_bit)
-		b[0] |= EC_SM_ACT_REPEAT;
-	box->acks = 0;
-	return EC_BOX_REPEAT_SET;
-}
-
-static enum ec_box_step no_repetition(struct ec_box *box, bool silent)
-{
-	box->due_ns = 0;
-	if (!silent || ++box->ack_fails < ACK_FAILS) {
-		box_set_gap(box, EC_BOX_GAP_LOOK);
-		return EC_BOX_REST;
-	}
-	box->can_repeat = false;
-	box_set_gap(box, EC_BOX_WHOLE);
-	if (ec_box_is_doubtful(box))
-		box_written(box);
-	box->ops->event(box, EC_BOX_ON_UNABLE, 0);
-	return EC_BOX_REST;
-}
-
-static enum ec_box_step on_ack(struct ec_box *box)
-{
-	if (!!(box->status[1] & EC_SM_PDI_REPEAT_ACK) == box->asked_bit) {
-		box_set_gap(box, EC_BOX_WHOLE);
-		box->asked = false;
-		box->repeats = true;
-		box->ack_fails = 0;
-		box->due_ns = 0;
-		return EC_BOX_REST;
-	}
-	if (++box->acks >= ACK_POLLS)
-		return no_repetition(box, true);
-	box->due_ns = ktime_get_ns() + ACK_NS;
-	return EC_BOX_REPEAT_ACK;
-}
-
-static enum ec_box_step on_repeat(struct ec_box *box, int ret)
-{
-	if (ret)
-		return no_repetition(box, false);
-	if (box->step == EC_BOX_REPEAT_GET)
-		return on_repeat_get(box);
-	if (box->step == EC_BOX_REPEAT_ACK)
-		return on_ack(box);
-	box->due_ns = box->unseen ? ktime_get_ns() + UNSEEN_NS : 0;
-	return EC_BOX_REPEAT_ACK;
 }
 
 /* The datagram was not sent: the same step again, perhaps with a shorter piece. */
@@ -558,7 +394,7 @@ static enum ec_box_step on_step(struct ec_box *box, int ret)
 	case EC_BOX_REST:
 		return EC_BOX_REST;
 	default:
-		return on_repeat(box, ret);
+		return ec_box_on_repeat(box, ret);
 	}
 }
 

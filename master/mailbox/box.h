@@ -20,10 +20,4 @@ void ec_box_arrived(struct ec_box *box);
 int ec_box_message(const struct ec_box *box, struct ec_mbox_hdr *h);
 void ec_box_drop(struct ec_box *box);
 
-/* May the slave have the message of the job, although the job has not ended? */
-static inline bool ec_box_is_doubtful(const struct ec_box *box)
-{
-	return box->job != EC_BOX_NO_JOB && box->doubtful;
-}
-
 #endif

@@ -55,7 +55,7 @@ enum ec_box_step {
 };
 
 /**
- * enum ec_box_job - message for the slave; box_set_job() alone changes it
+ * enum ec_box_job - message for the slave; ec_box_set_job() alone changes it
  * @EC_BOX_NO_JOB: none
  * @EC_BOX_EMPTYING: first SM1 is read until it is empty
  * @EC_BOX_DISCARDING: no message, but what the slave has in SM1 is discarded
@@ -84,7 +84,7 @@ enum ec_box_job {
 };
 
 /**
- * enum ec_box_gap - has a message of the slave been lost? box_set_gap() alone changes it
+ * enum ec_box_gap - has a message of the slave been lost? ec_box_set_gap() alone changes it
  * @EC_BOX_WHOLE: none, as far as the master knows
  * @EC_BOX_UNREAD: the frame that read SM1 was lost, and the slave cannot repeat: if SM1 is full,
  *	it was not read
@@ -168,7 +168,7 @@ struct ec_box_ops {
 /**
  * struct ec_box - mailbox transport of a slave
  *
- * Members that are not described otherwise are under @lock, and box.c alone changes them.
+ * Members that are not described otherwise are under @lock. The files box*.c alone change them.
  */
 struct ec_box {
 	/** @ops: calls, immutable */

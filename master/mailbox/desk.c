@@ -5,6 +5,7 @@
  */
 #include <linux/ktime.h>
 #include "../wire/coe.h"
+#include "box_state.h"
 #include "desk.h"
 
 #define FLOOD_NS	(250 * NSEC_PER_MSEC)	/* of a slave that sends without end */
