@@ -121,6 +121,7 @@ static enum ec_box_step on_ack(struct ec_box *box)
  */
 enum ec_box_step ec_box_on_repeat(struct ec_box *box, int ret)
 {
+	lockdep_assert_held(&box->lock);
 	if (ret)
 		return no_repetition(box, false);
 	if (box->step == EC_BOX_REPEAT_GET)

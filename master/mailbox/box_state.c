@@ -56,6 +56,7 @@ void ec_box_set_gap(struct ec_box *box, enum ec_box_gap gap)
  */
 void ec_box_end_job(struct ec_box *box, int err)
 {
+	lockdep_assert_held(&box->lock);
 	ec_box_set_job(box, EC_BOX_NO_JOB);
 	box->ops->event(box, EC_BOX_ON_JOB, err);
 }
@@ -69,6 +70,7 @@ void ec_box_end_job(struct ec_box *box, int err)
  */
 void ec_box_fail(struct ec_box *box, int err)
 {
+	lockdep_assert_held(&box->lock);
 	ec_box_set_job(box, EC_BOX_NO_JOB);
 	box->ops->event(box, EC_BOX_ON_FAILED, err);
 }
@@ -81,6 +83,7 @@ void ec_box_fail(struct ec_box *box, int err)
  */
 void ec_box_looked(struct ec_box *box)
 {
+	lockdep_assert_held(&box->lock);
 	if (box->gap == EC_BOX_GAP_LOOK)
 		ec_box_set_gap(box, EC_BOX_GAP);
 }
@@ -93,6 +96,7 @@ void ec_box_looked(struct ec_box *box)
  */
 void ec_box_written(struct ec_box *box)
 {
+	lockdep_assert_held(&box->lock);
 	ec_box_progress(box);
 	ec_box_end_job(box, box->doubtful ? -ENOTRECOVERABLE : 0);
 }

@@ -54,6 +54,7 @@ bool ec_clocks_used(const struct ec_session *s)
  */
 bool ec_clocks_begin_now(const struct ec_session *s)
 {
+	lockdep_assert_held(s->wanted.lock);
 	return ec_clocks_used(s) ||
 	       (s->ref_config < s->wanted.n_configs &&
 		!ec_dc_can_be(s->sessions->dc, ec_clocks_choice(s)));
