@@ -7,7 +7,7 @@
 #include "copy.h"
 
 /**
- * struct step - a copy with everything found out
+ * struct step - a copy, prepared
  * @domain: of the inputs, its working counter says whether they are valid
  * @to_domain: of the outputs
  * @from: bit in the image
@@ -25,7 +25,7 @@ struct step {
 };
 
 /**
- * struct ec_copying - the copies of an active cycle; the cyclic caller's
+ * struct ec_copying - the copies of an active cycle; of the cycle owner
  * @n: entries in @steps
  * @last: last valid values, behind @steps
  * @steps: copies
@@ -173,7 +173,7 @@ int ec_copy_begin(const struct ec_copies *c, const struct ec_wanted *w,
  * While the working counter of the source's domain is not complete the last
  * values stay; initially they are zero.
  *
- * Context: The master's single cyclic caller, between receive and send. RT-safe.
+ * Context: The cycle owner, between receive and send. RT-safe.
  */
 void ec_copy_run(struct ec_copying *k, const struct ec_status *st,
 		 const struct ec_cyc_domain *domains)

@@ -8,15 +8,15 @@
 
 /**
  * struct ec_cyc_domain - received data of a domain
- * @expected: working counter when every slave takes part
+ * @expected: working counter if every slave processes its datagrams
  * @send: number of the newest send of which data were received
  * @wkc: sum of the working counters of that send
- * @partial: one of them was not the expected one; others may make up for it in @wkc
- * @age: sends of the domain since that one
+ * @partial: one of these working counters is not the expected one, even if their sum is
+ * @age: sends of the domain since @send
  * @max_age: data that are older are stale, 0: none are
- * @stale: age of the oldest stale data that came back, for the log
- * @stale_logged: the log has said so; only the monitor's
- * @image: what the offsets of its datagrams count from
+ * @stale: age of the oldest stale data received, for the log
+ * @stale_logged: @stale was logged; for the monitor only
+ * @image: image to which the offsets of its datagrams refer
  * @seen: working counter and its state of the last receive
  * @noted: the counter of the last event about it
  * @noted_state: its state

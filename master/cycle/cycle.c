@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Cycles of a master: which one runs, and for whom. */
+/* Cycles of a master: which one runs, and its owner. */
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
@@ -82,7 +82,7 @@ int ec_cycle_layout(struct ec_cycle *c)
 	ec_for_each_domain(d, c->wanted)
 		c->domains[d->index] = (struct ec_cyc_domain){
 			.expected = d->expected, .max_age = d->max_age,
-			/* offsets are those of the image of all domains; a thread exchanges those */
+			/* offsets count from the image of all domains; a thread exchanges that */
 			.image = d->memory && !c->setup.kernel.period_ns ? d->memory - d->offset :
 									   c->shared->image,
 		};
@@ -93,7 +93,7 @@ int ec_cycle_layout(struct ec_cycle *c)
 	return ec_copy_begin(&c->setup.copies, c->wanted, &c->copying);
 }
 
-/* Replies to what is in flight will not be received. */
+/* Cancel the frames in flight: their replies will not be received. */
 static void forget_flights(struct ec_cycle *c)
 {
 	unsigned int i;
@@ -130,7 +130,7 @@ void ec_cycle_free(struct ec_cycle *c)
 /**
  * ec_cycle_set_active() - a cycle may be run from now on, or none
  * @cycles: of the master
- * @c: cycle with a layout, or NULL: the cyclic caller has left when this returns
+ * @c: cycle with a layout, or NULL: the cycle owner has left when this returns
  *
  * Context: Process, lock of the configuration held. May sleep.
  */
@@ -144,7 +144,7 @@ void ec_cycle_set_active(struct ec_cycles *cycles, struct ec_cycle *c)
 }
 
 /**
- * ec_cycle_set_owner() - the active cycle changes hands
+ * ec_cycle_set_owner() - change the owner of the active cycle
  * @c: active
  * @owner: open file, or NULL
  * @waiters: wait queue of that file, or NULL
@@ -166,7 +166,7 @@ void ec_cycle_set_owner(struct ec_cycle *c, const void *owner, struct ec_waiters
 		ec_waiters_wake(before);
 }
 
-/* Applications that look at working counters only must see it as well. */
+/* Also for applications that check nothing but working counters. */
 static void nothing_back(struct ec_cycle *c)
 {
 	struct ec_status *st = c->shared->status;
@@ -182,7 +182,7 @@ static void nothing_back(struct ec_cycle *c)
 }
 
 /**
- * ec_cycles_nothing_back() - the device was detached: no frame on its way will return
+ * ec_cycles_nothing_back() - the device was detached: no frame in flight will be received
  * @cycles: of the master
  *
  * Context: Process. May sleep.

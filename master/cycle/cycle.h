@@ -26,8 +26,8 @@ struct ec_waiters;
  * struct ec_cyc_flight - a frame of the cycle in flight
  * @slot: frame
  * @send: number of the send it belongs to
- * @first: first datagram of the layout it may carry
- * @count: how many; those of @queued it does
+ * @first: first datagram of the layout that it may carry
+ * @count: datagrams from @first on; it carries those of domains in @queued
  * @queued: domains of that send, bit n: domain n
  * @missed: a receive has not found its reply
  * @direct: sent from struct ec_cycle.direct
@@ -72,9 +72,9 @@ struct ec_cycles {
 	/** @dc: distributed clocks */
 	struct ec_dc *dc;
 
-	/** @lock: held by the cyclic caller in receive and send; protects @active */
+	/** @lock: held by the cycle owner in receive and send; protects @active */
 	struct mutex lock;
-	/** @active: the cycle that runs; changed with the lock of its configuration, too */
+	/** @active: the cycle that runs; changed with the lock of its configuration as well */
 	struct ec_cycle *active;
 	/** @owner: of @active, to be compared without a lock; NULL: none */
 	const void *owner;
@@ -124,8 +124,8 @@ struct ec_cycle_watch {
 /**
  * struct ec_cycle - cycle of an application
  *
- * Its parts by who changes them: the application that configures (@setup), the monitor (@watch),
- * an activation (@layout, @copying and the pointers of the others), and the cyclic caller.
+ * Its parts by their writer: the application that configures (@setup), the monitor (@watch),
+ * an activation (@layout, @copying and the pointers of the others), and the cycle owner.
  */
 struct ec_cycle {
 	/** @cycles: of the master; immutable, as are the next six */
@@ -166,18 +166,18 @@ struct ec_cycle {
 	struct ec_cycle_thread *thread;
 	/** @slaves_down: the application takes the slaves to PREOP: working counters go down */
 	bool slaves_down;
-	/** @place: EC_CYCLE_PLACE_*, where the last cycle of the kernel ran; of who runs it */
+	/** @place: EC_CYCLE_PLACE_*, where the last cycle of the kernel ran; of the cycle owner */
 	u32 place;
 	/** @places: where cycles have run, bit n: place n; likewise */
 	u32 places;
 
 	/** @layout: datagrams; ec_cycle_free() sets it and all that follows to zero */
 	struct ec_layout layout;
-	/** @copying: the copies while active, or NULL; the cyclic caller's, as is all below */
+	/** @copying: the copies while active, or NULL; of the cycle owner, as is all below */
 	struct ec_copying *copying;
 	/** @clock: clock datagrams */
 	struct ec_dc_datagrams clock;
-	/** @late: distance of each send from its schedule */
+	/** @late: send deviations */
 	struct ec_late late;
 	/** @domains: received data */
 	struct ec_cyc_domain domains[EC_MAX_DOMAINS];
@@ -209,7 +209,7 @@ struct ec_cycle {
 	aligned_u64 sends;
 };
 
-/* @c may be NULL. What a master has of its cycle is under the lock of the one that is active. */
+/* For data of a master about its cycle: the lock of the active one, @c, which may be NULL. */
 static inline void ec_cycle_assert_held(const struct ec_cycle *c)
 {
 	lockdep_assert(!c || lockdep_is_held(c->wanted->lock));

@@ -20,7 +20,7 @@
 #include "waiters.h"
 
 #define INDEX_MASK	3
-#define STEADY		1000	/* cycles in which all take part, before that is relied on */
+#define STEADY		1000	/* complete cycles before no missing slave is expected */
 
 /* A number from memory of the application. */
 static u8 buffer_index(u32 word)
@@ -41,7 +41,7 @@ static bool take_outputs(struct ec_cycle_thread *t)
 	return true;
 }
 
-/* From now on the image is what is sent: its outputs are the newest ones. */
+/* Send the image from now on, with the newest outputs in it. */
 static void use_image(struct ec_cycle_thread *t)
 {
 	u8 *image = t->cycle->shared->image;
@@ -56,7 +56,7 @@ static void use_image(struct ec_cycle_thread *t)
 	smp_store_release(&t->cycle->direct, NULL);
 }
 
-/* Did all slaves take part when their domain was sent last? */
+/* Was the working counter of each domain complete when it was last received? */
 static bool all_take_part(const struct ec_cycle *c)
 {
 	const struct ec_status_domain *st = c->shared->status->domains;
@@ -68,10 +68,10 @@ static bool all_take_part(const struct ec_cycle *c)
 }
 
 /*
- * The buffer of the application is sent as it is, which spares a copy of each
- * slave's outputs, and of its inputs when they are back. The inputs in it are no
- * last values that a missing slave could leave: then and for a while after it, and
- * where the kernel itself writes outputs, the image is sent.
+ * The buffer of the application is sent directly, which saves a copy of each slave's
+ * outputs, and of its inputs when they are received. But its inputs are not the last
+ * values, which have to stay when a slave is missing. So the image is sent while a
+ * slave is missing and for STEADY cycles after it, and if the kernel copies to outputs.
  */
 static void choose_source(struct ec_cycle_thread *t)
 {
@@ -89,9 +89,9 @@ static void choose_source(struct ec_cycle_thread *t)
 /**
  * ec_cycle_run_wake() - wake the callers of the file that owns a cycle
  * @c: cycle that the kernel runs
- * @atomic: in a hard interrupt, which leaves those in poll() to the thread
+ * @atomic: in a hard interrupt: the thread of the cycle wakes callers of poll() instead
  *
- * No other file adds work to it.
+ * Callers of other files add no work to a cycle.
  *
  * Context: Process; with @atomic any. RT-safe: bounded by %EC_MAX_WAITERS.
  */
@@ -160,7 +160,7 @@ static void stop_outputs(struct ec_cycle_thread *t)
 	WRITE_ONCE(st->state, EC_CYCLE_STATE_STALLED);
 }
 
-/* Outputs of this cycle, new ones or what the policy says. */
+/* Outputs of this cycle: new ones, or those of the configured policy. */
 static void feed(struct ec_cycle_thread *t)
 {
 	struct ec_status_cycle *st = ec_cycle_run_status(t);
@@ -190,10 +190,10 @@ static void feed(struct ec_cycle_thread *t)
 }
 
 /**
- * ec_cycle_run_deal() - an application gets the buffers after those of the cycle
+ * ec_cycle_run_deal() - give an application the buffers that follow those of the cycle
  * @t: cycle
  *
- * Its outputs begin with the image.
+ * Its initial outputs are those of the image.
  *
  * Context: The cycle thread, or before it starts. RT-safe.
  */
@@ -211,18 +211,18 @@ void ec_cycle_run_deal(struct ec_cycle_thread *t)
 		memcpy(ec_cycle_run_buffer(t, n) + 1, t->cycle->shared->image, t->bytes);
 }
 
-/* The previous application may have exited at any point: the next one begins anew. */
+/* The previous application may have exited at any point: the next one gets all buffers again. */
 static void adopt(struct ec_cycle_thread *t)
 {
 	use_image(t);
 	t->given = false;
 	ec_cycle_run_deal(t);
-	/* the buffers are dealt before the application sees it */
+	/* the application gets the buffers before it sees the flag */
 	smp_store_release(&t->adopt, false);
 	complete(&t->adopted);
 }
 
-/* Receive and send of the application answer without a system call. */
+/* For receive and send of the application, which make no system call. */
 static void tell_device(const struct ec_cycle *c)
 {
 	u32 *no_device = &c->shared->status->no_device;
@@ -232,7 +232,7 @@ static void tell_device(const struct ec_cycle *c)
 		WRITE_ONCE(*no_device, gone);
 }
 
-/* Inputs and working counters of this cycle for the application, which is to be woken then. */
+/* Pass inputs and working counters of this cycle to the application; it is woken after that. */
 static void cycle_run_publish(struct ec_cycle_thread *t)
 {
 	struct ec_cycle *c = t->cycle;
@@ -258,7 +258,7 @@ static void cycle_run_publish(struct ec_cycle_thread *t)
 	ec_write64(&c->cycles->number, cycle);
 }
 
-/* Cycles whose time has passed are left out, so that the phase stays; how many. */
+/* Skip cycles whose time has passed, so that the phase stays. Return: how many. */
 static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
 {
 	u32 period = t->cycle->setup.kernel.period_ns;
@@ -273,7 +273,7 @@ static u64 skip_missed(struct ec_cycle_thread *t, u64 now)
 	return skipped;
 }
 
-/* Domains of this cycle; those whose turn was left out go now, then as before. */
+/* Domains of this cycle. One whose cycle was skipped is sent now, then in its phase again. */
 static u64 turn(struct ec_cycle_thread *t, u64 skipped)
 {
 	u64 domains = t->always;
@@ -310,7 +310,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 	int ret;
 
 	send.queued = turn(t, skip_missed(t, now));
-	/* before the first frame the links are not ours */
+	/* before the first send the cycle does not use the links */
 	if (entered)
 		ec_cycle_do_receive(c);
 	else if (ec_cycle_run_status(t)->state != EC_CYCLE_STATE_WAITING)

@@ -34,7 +34,7 @@ struct ec_cycle_slow {
 /**
  * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable; what a cycle changes
  *	belongs to the thread, or to the interrupt while @timed
- * @cycle: active cycle; its session ends the thread before it goes away
+ * @cycle: active cycle; its session ends the thread before it is freed
  * @ops: reports to higher layers
  * @task: thread
  * @outputs: areas that are taken from the application
@@ -45,28 +45,28 @@ struct ec_cycle_slow {
  * @bytes: of the image of all domains
  * @stride: distance of two buffers in the exchange
  * @next_ns: schedule of the next cycle (ktime)
- * @epoch_ns: what makes ktime an application time
- * @lock: application time; lets the cycle follow the reference clock
- * @front: output buffer it holds
- * @given: the application has given that buffer, and its outputs are still valid
- * @ahead: outputs of that buffer are not in the image
- * @steady: cycles in which all slaves took part in a row, up to STEADY
- * @back: input buffer it holds
- * @fed: there were outputs at least once
+ * @epoch_ns: initial application time less ktime, ns
+ * @lock: application time; synchronizes the cycle to the reference clock
+ * @front: output buffer that the cycle holds
+ * @given: @front is from the application, and its outputs are still valid
+ * @ahead: outputs of @front are not in the image
+ * @steady: cycles in a row whose working counters were complete, up to STEADY
+ * @back: input buffer that the cycle holds
+ * @fed: the application has given outputs at least once
  * @unfed: cycles without new outputs in a row
- * @stalls: output stalls as events
- * @stall_told: the present one is one
- * @adopt: another application shall get the buffers; cleared when it has them
- * @adopted: that has happened
+ * @stalls: rate of the events of output stalls
+ * @stall_told: the present output stall is an event
+ * @adopt: another application is to get the buffers; cleared when it has them
+ * @adopted: completed then
  * @timer: runs cycles in its interrupt
- * @timed: it does; until it is false the thread does not touch what a cycle uses
- * @polled: the interrupt asks the thread to wake callers of poll()
- * @ended: its cycle was the last one
+ * @timed: @timer runs the cycles; until it is false the thread does not touch what they use
+ * @polled: the interrupt requests that the thread wakes callers of poll()
+ * @ended: the last cycle was run in the interrupt
  * @stopped: by @panic
  * @end_ns: end of the last cycle (ktime)
  * @tight: cycles in a row that ended in the second half of their period
  * @in_thread: cycles that have to run in the thread
- * @panic: of the kernel: the timer stops
+ * @panic: notifier of a kernel panic, which stops @timer
  */
 struct ec_cycle_thread {
 	struct ec_cycle *cycle;

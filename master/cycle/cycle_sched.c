@@ -31,7 +31,7 @@ void ec_cycle_sched_set(const struct ec_cycle *c, struct task_struct *task)
  * ec_cycle_sched_log() - log which part of the priority is not permitted
  * @c: cycle with a thread
  *
- * The application does not learn from a successful activation what it lacks.
+ * The activation succeeds, so it does not report which right is missing.
  *
  * Context: Process, lock of the configuration held.
  */
@@ -54,7 +54,7 @@ void ec_cycle_sched_log(const struct ec_cycle *c)
 	"EC_CYCLE_INTERRUPT needs CAP_SYS_NICE or RLIMIT_RTPRIO 99 of the application (/etc/security/limits.d)"
 
 /**
- * ec_cycle_sched_log_place() - log where cycles have run, when they shall run in an interrupt
+ * ec_cycle_sched_log_place() - log where cycles have run that may run in an interrupt
  * @c: active cycle
  *
  * Each place once: a cycle that is too long now and then does not fill the log.
@@ -81,7 +81,7 @@ void ec_cycle_sched_log_place(struct ec_cycle *c)
 			ec_warn(c, "kernel cycle runs in its thread: %s\n", why[i]);
 }
 
-/* What a takeover has changed. */
+/* Log the change by a takeover. */
 static void log_right(const struct ec_cycle *c)
 {
 	if (!(c->setup.kernel.flags & EC_CYCLE_FLAG_INTERRUPT))
@@ -98,7 +98,7 @@ static void log_right(const struct ec_cycle *c)
  * @priority: SCHED_FIFO priority that the new application may use; 0: SCHED_OTHER
  * @may_interrupt: it may have the cycle run in an interrupt
  *
- * Otherwise a cycle would keep a right that its owner does not have, or lack one.
+ * Otherwise a cycle would keep a right that its new owner does not have, or lack one that it has.
  *
  * Context: Process, lock of the configuration held. May sleep.
  */
@@ -128,8 +128,8 @@ void ec_cycle_thread_inherit(struct ec_cycle *c, u32 priority, bool may_interrup
  * ec_cycle_thread_check_cpu() - keep the cycle thread on its CPU
  * @c: active cycle
  *
- * When that CPU goes offline the kernel lets the thread run on all others, for
- * ever. Once it is online again the thread returns to it.
+ * When that CPU goes offline the kernel lets the thread run on all others, and does
+ * not move it again. This function moves it to its CPU once that is online again.
  *
  * Context: The monitor thread, lock of the configuration held. May sleep.
  */
@@ -150,7 +150,7 @@ void ec_cycle_thread_check_cpu(struct ec_cycle *c)
 			"CPU %d of the cycle thread went offline: the thread runs on any CPU until CPU %d is online again\n",
 			cpu, cpu);
 	}
-	/* on its way down a CPU is still online */
+	/* a CPU that goes offline is still online for a while, but not active */
 	if (cpu_active(cpu) && !set_cpus_allowed_ptr(task, cpumask_of(cpu))) {
 		c->watch.cpu_lost = false;
 		ec_info(c, "cycle thread runs on CPU %d again\n", cpu);

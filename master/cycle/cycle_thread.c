@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The kernel runs the cycle: a real-time thread on an absolute timer is the
- * master's cyclic caller, or that timer itself (cycle_timer.c).
+ * The kernel runs the cycle: the cycle owner is a real-time thread on an absolute
+ * timer, or that timer itself (cycle_timer.c).
  */
 #include <linux/hrtimer.h>
 #include <linux/kthread.h>
@@ -31,7 +31,7 @@ static void find_turns(struct ec_cycle_thread *t)
 	}
 }
 
-/* Until the next cycle; false: the thread shall end. */
+/* Sleep until the next cycle; false: the thread has to end. */
 static bool cycle_thread_sleep(const struct ec_cycle_thread *t)
 {
 	ktime_t at = ns_to_ktime(t->next_ns);
@@ -126,7 +126,7 @@ static void free_thread(struct ec_cycle_thread *t)
  * ec_cycle_thread_create() - prepare a cycle run by the kernel
  * @c: cycle with a layout and @kernel.period_ns
  * @image_bytes: of all domains
- * @ops: what it reports; stays
+ * @ops: its callbacks; they stay valid
  *
  * The memory of the exchange with the application is in @c->shared.
  *
@@ -158,7 +158,7 @@ int ec_cycle_thread_create(struct ec_cycle *c, u32 image_bytes, const struct ec_
 		goto err;
 	}
 	if (cpu >= 0) {
-		/* no lock: one that goes offline now is found as one that goes later */
+		/* no lock: ec_cycle_thread_check_cpu() finds a CPU that goes offline now */
 		ret = cpu < nr_cpu_ids && cpu_online(cpu) ? 0 : -ENODEV;
 		if (!ret)
 			kthread_bind(t->task, cpu);
@@ -205,8 +205,8 @@ void ec_cycle_thread_start(struct ec_cycle *c)
  * ec_cycle_thread_stop() - end the cycle run by the kernel
  * @c: cycle; nothing happens when the application ran the cycle
  *
- * poll() of the application may still look at the cycle meanwhile: that is
- * waited for while cycles go on.
+ * poll() of the application may still read from the cycle. This function waits for
+ * it while cycles continue.
  *
  * Context: Process, lock of the configuration held. May sleep.
  */
@@ -248,8 +248,8 @@ bool ec_cycle_thread_ended(const struct ec_cycle *c)
  * ec_cycle_thread_adopt() - another application gets the exchange
  * @c: active cycle without an application
  *
- * Its output buffer has the image as it is, outputs and inputs; none of the
- * buffers that the application before has given is used any more.
+ * Its output buffer gets the present image, outputs and inputs. No buffer that the
+ * previous application has given is used any more.
  *
  * Context: Process, lock of the configuration held. Sleeps until the next cycle has begun.
  * Return: 0; -ETIMEDOUT the cycle does not run.
@@ -265,20 +265,20 @@ int ec_cycle_thread_adopt(struct ec_cycle *c)
 	do {
 		if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
 			return -ETIMEDOUT;
-		/* set: that was the end of one that has timed out before */
+		/* still set: the completion was that of an earlier call that has timed out */
 	} while (smp_load_acquire(&t->adopt));
 	WRITE_ONCE(ec_cycle_run_status(t)->takeovers, ec_cycle_run_status(t)->takeovers + 1);
 	return 0;
 }
 
 /**
- * ec_cycle_thread_outputs() - outputs as they are sent
+ * ec_cycle_thread_outputs() - copy the outputs that are sent
  * @c: active cycle; nothing happens when the application runs its cycle
  * @image: copy of a part of the image
  * @offset: where in the image that part begins, bytes
  * @size: its bytes
  *
- * The cycle may go on meanwhile: outputs may be of several cycles.
+ * The cycle may continue meanwhile: outputs may be of several cycles.
  *
  * Context: Process, lock of the configuration held or after ec_show_begin().
  */

@@ -2,7 +2,7 @@
 /*
  * The cycle in the interrupt of its timer, for devices that need no thread. The thread of the
  * cycle sleeps meanwhile. At any time one of both has the cycle: the thread gives it to the timer,
- * and an interrupt that cannot go on gives it back, since only a thread may sleep.
+ * and an interrupt that cannot continue gives it back, since only a thread may sleep.
  */
 #include <linux/kthread.h>
 #include <linux/panic_notifier.h>
@@ -11,13 +11,13 @@
 #include "../kernel/compat.h"
 #include "cycle_timer.h"
 
-#define LONG_CYCLES	1000	/* in the thread, after those that left it no time */
+#define LONG_CYCLES	1000	/* in the thread, after an interrupt that took too long */
 #define LONG_NS		NSEC_PER_MSEC	/* more than that, or half of the period, is too long */
 #define TIGHT_CYCLES	4	/* that many in a row may end in the second half of their period */
 
 /*
- * Enters the links where the cycle may run in an interrupt of this CPU, and says so by
- * EC_CYCLE_PLACE_INTERRUPT. All other places are in the thread.
+ * Enter the links if the cycle may run in an interrupt of this CPU, and return
+ * EC_CYCLE_PLACE_INTERRUPT. With all other places the cycle runs in the thread.
  */
 static u32 cycle_timer_enter(const struct ec_cycle_thread *t)
 {
@@ -49,14 +49,14 @@ static void note_place(struct ec_cycle *c, u32 place)
 }
 
 /*
- * Does the interrupt leave time to the threads of its CPU? If it and what else comes before
- * them take all of it, each cycle begins later than the one before.
+ * Does the interrupt leave time to the threads of its CPU? If it and other interrupts take all
+ * of the time, each cycle begins later than the previous one.
  */
 static bool leaves_time(struct ec_cycle_thread *t, u64 due)
 {
 	u32 half = t->cycle->setup.kernel.period_ns / 2;
 
-	/* by when it was due: one that came after its period has left out others */
+	/* against its due time: a cycle that began after its period has skipped others */
 	t->tight = t->end_ns > due + half ? t->tight + 1 : 0;
 	return ec_cycle_run_status(t)->work_ns <= min_t(u32, half, LONG_NS) &&
 	       t->tight < TIGHT_CYCLES;
@@ -78,7 +78,7 @@ static enum hrtimer_restart tick(struct hrtimer *timer)
 	u64 due = t->next_ns;
 	u32 place;
 
-	/* where a panic lets timers go on, outputs would never end */
+	/* if timers continue after a panic, outputs would never end */
 	if (unlikely(READ_ONCE(t->stopped)))
 		return HRTIMER_NORESTART;
 	place = cycle_timer_enter(t);
@@ -138,7 +138,7 @@ static void wake_polled(struct ec_cycle_thread *t)
 	ec_cycle_run_wake(t->cycle, false);
 }
 
-/* Until the interrupt gives the cycle back, or the thread shall end. */
+/* Sleep until the interrupt gives the cycle back, or the thread has to end. */
 static void wait_for_cycle(struct ec_cycle_thread *t)
 {
 	while (1) {

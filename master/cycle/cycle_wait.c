@@ -17,7 +17,7 @@ static const struct ec_cycle *owned_by(const struct ec_cycles *cycles, const voi
 }
 
 /**
- * ec_cycle_thread_poll() - are there new inputs for the application?
+ * ec_cycle_thread_poll() - has the cycle new inputs for the application?
  * @cycles: of the master
  * @owner: open file that asks
  *

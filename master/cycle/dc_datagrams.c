@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Clocks in the cycle: the time to the reference clock, from there to all
- * slaves, and the differences that are left. They go in front of the process
- * data of the first frame, so that their distance to the send is always the
- * same. Nothing here allocates, prints or waits.
+ * Clock datagrams of the cycle: the time to the reference clock, from there to all
+ * slaves, and the differences that are left. They precede the process data in the
+ * first frame, so that their delay after the send is constant. Nothing here
+ * allocates, prints or waits.
  */
 #include "../clock/dc.h"
 #include "../link/access.h"
@@ -20,7 +20,7 @@
 #define ONE_MORE_NS	((8 + EC_DGRAM_OVERHEAD) * 80u)	/* on the wire */
 #define BOOST		11	/* of them in a send: one frame takes 15 datagrams */
 
-/* When the reference follows, it gets half of what is more than one. */
+/* Writes of the time to the reference clock: one, and half of the additional datagrams. */
 static unsigned int refs(u32 dc)
 {
 	return dc & SYNC_REF ? (dc >> SHIFT) / 2 + 1 : 0;
@@ -40,7 +40,7 @@ static u16 time_bytes(u32 dc)
 	return dc & WIDE ? 8 : 4;
 }
 
-/* Comparisons a send may have beyond one: half of what the cycle leaves. */
+/* Drift compensation datagrams that a send may have beyond one: in half of the free wire time. */
 static u32 most(const struct ec_dc_datagrams *k)
 {
 	u64 used = k->clocked_ns + ec_layout_need_ns();
@@ -49,7 +49,7 @@ static u32 most(const struct ec_dc_datagrams *k)
 	return budget > used ? min_t(u64, BOOST, (budget - used) / (2 * ONE_MORE_NS)) : 0;
 }
 
-/* Comparisons of this send beyond one. */
+/* Drift compensation datagrams of this send beyond one. */
 static u32 boost(const struct ec_dc_datagrams *k)
 {
 	u32 left = READ_ONCE(k->dc->mode) == EC_DC_READ ? 0 : READ_ONCE(k->dc->extra_dgrams);
@@ -61,13 +61,13 @@ static u32 boost(const struct ec_dc_datagrams *k)
 }
 
 /**
- * ec_dc_datagrams_reserve_ns() - wire time of more comparisons that are to come
+ * ec_dc_datagrams_reserve_ns() - wire time of drift compensation datagrams to come
  * @k: of the active cycle
  *
- * Known as long as the clocks are being set, so that acyclic frames are not made
- * longer than what is left then.
+ * Not 0 while the clocks are being set, so that acyclic frames are not made longer
+ * than the wire time that is free then.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: ns.
  */
 u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k)
@@ -82,9 +82,9 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k)
  * @k: of the active cycle
  * @flags: EC_SEND_FLAG_*, at least one of EC_CYC_CLOCKS
  *
- * Datagrams that the application wants and the master does not send count as not returned.
+ * Datagrams that the application requests and the master omits count as not received.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: those of @flags that make datagrams, how wide they are, and in the upper
  * half how many more times the time goes to the slaves; 0: none.
  */
@@ -96,14 +96,14 @@ u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags)
 		WRITE_ONCE(k->dc->wanted, true);
 	if (READ_ONCE(k->dc->mode) == EC_DC_IDLE)
 		return 0;
-	/* a clock that moves cannot be approached by others: first they become near each other */
+	/* no change of the reference clock before the other clocks are synchronized to it */
 	if (k->hold || (READ_ONCE(k->dc->mode) == EC_DC_READ && ec_dc_busy(k->dc)))
 		flags &= ~SYNC_REF;
 	if (!flags)
 		return 0;
 	if (flags & SYNC_SLAVES)
 		flags |= boost(k) << SHIFT;
-	/* slaves in front of the reference have a negative delay, of 32 bits */
+	/* slaves upstream of the reference clock have a negative delay, of 32 bits */
 	if (READ_ONCE(k->dc->ref_wide) && !READ_ONCE(k->dc->clocks_upstream))
 		flags |= WIDE;
 	return flags;
@@ -128,8 +128,8 @@ static u64 predicted(const struct ec_dc_datagrams *k, u64 now)
 #define RATE_NS	(100 * NSEC_PER_MSEC)
 
 /*
- * The rate of the reference over some time; a jump is none. Each has the jitter of two sends, and
- * the mean may have to do for long.
+ * The rate of the reference clock over some time, without jumps. Each value has the jitter of two
+ * sends, so a mean is kept, which a long holdover depends on.
  */
 static void learn_rate(struct ec_dc_datagrams *k)
 {
@@ -166,9 +166,10 @@ static void take_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 se
 }
 
 /*
- * Slaves that take the time are counted, too, so when the reference clock does not answer,
- * what was sent comes back with a working counter that looks good. An answer is another
- * time, or the same with the working counter as ever; once it was silent, only another.
+ * Has the reference clock replied? Slaves that take the time also increment the working counter,
+ * so without a reply of the reference clock the sent time returns with a working counter above 0.
+ * A reply has another time, or the same time with the usual working counter. After a missing
+ * reply only another time counts.
  */
 static bool answered(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 		     const u8 *data, u16 len)
@@ -198,13 +199,13 @@ static bool answered(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
  *
  * Registers 0x0910, 0x092C.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 now)
 {
 	u16 ref = READ_ONCE(k->dc->ref_station);
-	/* the slaves in front must not get a time that is unknown */
+	/* slaves upstream of the reference clock must not get an unknown time */
 	bool quiet = READ_ONCE(k->dc->mode) == EC_DC_READ ||
 		     (k->dc->clocks_upstream && !k->time);
 	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
@@ -219,7 +220,7 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 	/* clock frames of the worker carry it as well */
 	if (k->silent)
 		ec_dc_clock_predict(k->dc, k->sent, now);
-	/* some ns more, else an answer exactly as predicted would look like silence */
+	/* some ns more, else a reply that equals the prediction would count as missing */
 	k->sent += (k->silent ?: !k->wkc) % 4;
 	put_unaligned_le64(k->sent, t);
 	for (i = 0; i < syncs(dc); i++) {
@@ -248,7 +249,7 @@ static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
  * @sent_ns: when it was sent (ktime)
  * @data: data of the first datagram, matched against what was sent
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: data of the first datagram of process data.
  */
 const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_flight *f, u64 sent_ns,
@@ -288,7 +289,7 @@ const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_fli
  * @k: of the active cycle
  * @st: its status page
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_dc_datagrams_judge(struct ec_dc_datagrams *k, struct ec_status *st)
 {

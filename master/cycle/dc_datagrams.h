@@ -14,7 +14,7 @@ struct ec_frame_buf;
 #define EC_CYC_CLOCKS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
 			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME)
 
-/** struct ec_dc_datagrams - clock datagrams of an active cycle; the cyclic caller's */
+/** struct ec_dc_datagrams - clock datagrams of an active cycle; of the cycle owner */
 struct ec_dc_datagrams {
 	/** @dc: distributed clocks of the master; immutable, as are the next two */
 	struct ec_dc *dc;
@@ -22,7 +22,7 @@ struct ec_dc_datagrams {
 	const struct ec_access *access;
 	/** @clocked_ns: wire time of the cycle with one of each clock datagram */
 	u32 clocked_ns;
-	/** @asked: those the application wanted since the last receive, EC_SEND_FLAG_* */
+	/** @asked: those that the application requested since the last receive, EC_SEND_FLAG_* */
 	u32 asked;
 	/** @back: which of them were received */
 	u32 back;
@@ -30,25 +30,25 @@ struct ec_dc_datagrams {
 	u64 sent;
 	/** @wkc: working counter of the last reply of the reference clock */
 	u16 wkc;
-	/** @silent: sends since then that it has not answered, as far as is known */
+	/** @silent: sends without a reply of the reference clock since then, as far as is known */
 	u32 silent;
 	/** @time: last time of the reference clock, ns */
 	u64 time;
 	/** @time_ns: when the frame that brought it was sent (ktime) */
 	u64 time_ns;
-	/** @time64: whole time of the reference clock when it was last asked for, ns */
+	/** @time64: whole time of the reference clock when it was last read, ns */
 	u64 time64;
-	/** @then: the same some time ago, to learn the rate of that clock */
+	/** @then: an earlier @time, from which the rate of that clock is calculated */
 	u64 then;
-	/** @then_ns: when that was (ktime) */
+	/** @then_ns: @time_ns of it (ktime) */
 	u64 then_ns;
 	/** @ppb: how much faster than ktime the reference clock runs, 1e-9 */
 	s32 ppb;
 	/** @diff: last value of register 0x092C, of all slaves */
 	u32 diff;
-	/** @hold: the time for the reference clock is wrong: it is not sent */
+	/** @hold: the application time is wrong: it is not sent to the reference clock */
 	bool hold;
-	/** @lead: that time less ktime, ns */
+	/** @lead: application time less ktime, ns */
 	u64 lead;
 };
 

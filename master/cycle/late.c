@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Histogram of the distance of each send from its schedule: one count, one sum,
- * one least and one most a cycle, in the status page. Only the cyclic caller
- * writes there; a caller that resets the figures only sets a flag.
+ * Histogram of send deviations: each cycle updates a count, a sum, a minimum and
+ * a maximum in the status page. Only the cycle owner writes there; a caller that
+ * resets the figures only sets a flag.
  *
- * The schedule of a cycle the kernel runs is its timer. An application sets
- * its interval but not when it begins, so its schedule is a grid of that
- * interval which follows the sends, by no more than 1/1024 of the interval and a
- * microsecond each: that is enough for clocks that differ and for an interval
- * that was rounded, while a late send stays late against it.
+ * The schedule of a kernel cycle is its timer. An application configures its
+ * interval, but not its begin. So its schedule is a grid of that interval, which
+ * each send shifts by at most 1/1024 of the interval and a microsecond. That is
+ * enough for clocks that differ and for a rounded interval, while a late send
+ * still deviates.
  */
 #include <linux/bitops.h>
 #include <linux/ktime.h>
@@ -18,8 +18,8 @@
 #include "../link/access.h"
 #include "late.h"
 
-#define MEASURE_SENDS	64	/* to measure the interval that is not set, then to check it */
-#define GAPS_MIN	4	/* gaps after which a new median is worth it */
+#define MEASURE_SENDS	64	/* to measure an interval that is not set, then to check it */
+#define GAPS_MIN	4	/* gaps before the first median */
 #define FAR_GAPS	4	/* in a row: the interval has changed */
 #define FAR_SHIFT	2	/* by more than a quarter of it each */
 
@@ -91,9 +91,9 @@ static __always_inline void late_add(struct ec_late *l, u32 late)
 /**
  * ec_late_count() - count one send
  * @l: of the active cycle
- * @ns: distance from its schedule; negative counts as 0
+ * @ns: its deviation; negative counts as 0
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_late_count(struct ec_late *l, s64 ns)
 {
@@ -114,7 +114,7 @@ static u32 late_median(const struct ec_schedule *sc)
 	return sorted[n / 2];
 }
 
-/* How far the schedule can follow each send, ns. */
+/* How much one send may shift the schedule, ns. */
 static u32 step_ns(const struct ec_schedule *sc)
 {
 	return (sc->interval_ns >> 10) + NSEC_PER_USEC;
@@ -127,8 +127,8 @@ static void set_interval_us(struct ec_late *l, u32 ns)
 }
 
 /*
- * The interval, when the application has not set it: for the first sends a mean that
- * follows quickly. The frames between two sends need to know it soon.
+ * The interval, when the application has not configured it. For the first sends it is a
+ * mean that changes quickly, since acyclic frames depend on it.
  */
 static noinline void late_measure(struct ec_late *l, struct ec_schedule *sc, u64 ns)
 {
@@ -146,7 +146,7 @@ static noinline void late_measure(struct ec_late *l, struct ec_schedule *sc, u64
 		set_interval_us(l, late_median(sc));
 }
 
-/* A mean that the schedule cannot follow, twice in a row to the same side. */
+/* A new interval, if the mean is beyond what sends may shift, twice in a row to the same side. */
 static void check_mean(struct ec_late *l, struct ec_schedule *sc, u64 now)
 {
 	u64 mean = min_t(u64, div_u64(now - sc->block_ns, MEASURE_SENDS), NSEC_PER_SEC);
@@ -184,7 +184,7 @@ static noinline void late_check(struct ec_late *l, struct ec_schedule *sc, u64 n
 	}
 }
 
-/* Without a set interval: measure it, and then see whether it is still the same. */
+/* An interval that is not configured: measure it, then check that it is still the same. */
 static void late_learn(struct ec_late *l, struct ec_schedule *sc, u64 now)
 {
 	u64 ns = now - ec_read64(&l->access->last_send_ns);
@@ -208,7 +208,7 @@ static void late_begin(struct ec_schedule *sc, u64 now)
 	sc->mean_side = 0;
 }
 
-/* A whole interval late or more: what was due in between is left out. */
+/* A whole interval late or more: the sends in between are skipped. */
 static noinline s64 late_skip(struct ec_late *l, s64 off)
 {
 	struct ec_schedule *sc = &l->schedule;
@@ -219,7 +219,7 @@ static noinline s64 late_skip(struct ec_late *l, s64 off)
 	return sc->last_ns - sc->due_ns;
 }
 
-/* More than half an interval early: it was due before, perhaps left out. */
+/* More than half an interval early: it was due before, perhaps skipped. */
 static noinline s64 go_back(struct ec_schedule *sc, s64 off)
 {
 	sc->due_ns -= div_u64(sc->interval_ns / 2 - off, sc->interval_ns) * sc->interval_ns;
@@ -229,12 +229,12 @@ static noinline s64 go_back(struct ec_schedule *sc, s64 off)
 /**
  * ec_late_send() - an application that runs the cycle sends
  * @l: of the active cycle
- * @now: time of the send (ktime, ns); @last_send_ns is still that of the one before
+ * @now: time of the send (ktime, ns); @last_send_ns is still that of the previous one
  *
- * The first send only begins the schedule; without a set interval so do the
- * first %MEASURE_SENDS, also of an interval that differs from the one before.
+ * The first send only begins the schedule. If the interval is measured, so do
+ * the first %MEASURE_SENDS, and those after a change of the interval.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_late_send(struct ec_late *l, u64 now)
 {
@@ -271,7 +271,7 @@ void ec_late_send(struct ec_late *l, u64 now)
  * @l: of the active cycle
  * @ns: from its begin until the callers are woken
  *
- * Context: Who runs the cycle, also in hard interrupt. RT-safe.
+ * Context: The cycle owner, also in hard interrupt. RT-safe.
  */
 void ec_late_work(struct ec_late *l, s64 ns)
 {

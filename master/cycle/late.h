@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* How far each send of a cycle is from its schedule. */
+/* Send deviations of a cycle: how far each send is from its schedule. */
 #ifndef EC_LATE_H
 #define EC_LATE_H
 
@@ -11,16 +11,16 @@ struct ec_access;
 #define EC_SCHEDULE_GAPS	15
 
 /**
- * struct ec_schedule - when the application is expected to send; the cyclic
- *	caller's
+ * struct ec_schedule - when the application is expected to send; of the cycle
+ *	owner
  * @due_ns: when the last send was due (ktime)
  * @last_ns: when it was
- * @interval_ns: distance of two sends, set or measured
+ * @interval_ns: time between two sends, configured or measured
  * @sends: sends so far, up to the end of the measurement
  * @gaps: the last times between two sends while it is measured, ns
  * @n_gaps: such times so far
  * @block_ns: begin of the sends whose mean is checked next (ktime)
- * @before_ns: begin of those before, 0: none
+ * @before_ns: begin of the sends before, 0: none
  * @n_block: sends since @block_ns
  * @far: gaps in a row that are far from @interval_ns, to the same side
  * @far_side: 1: longer, -1: shorter
@@ -41,13 +41,13 @@ struct ec_schedule {
 	u32 n_gaps;
 };
 
-/** struct ec_late - the figures of a cycle while it is active; the cyclic caller's */
+/** struct ec_late - the figures of a cycle while it is active; of the cycle owner */
 struct ec_late {
 	/** @status: page with the figures; immutable, as is the next one */
 	struct ec_status *status;
 	/** @access: interval and last send of the cycle */
 	struct ec_access *access;
-	/** @reset: the cyclic caller sets the figures to zero; set by any caller, cleared by it */
+	/** @reset: the cycle owner sets the figures to zero and clears it; set by any caller */
 	bool reset;
 	/** @schedule: when an application that runs the cycle is expected to send */
 	struct ec_schedule schedule;

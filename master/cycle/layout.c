@@ -77,9 +77,9 @@ static int add_area(struct ec_layout *l, u16 *count, u32 offset, u16 pos, u16 le
 
 /* which part of the stretch's process data */
 enum part {
-	SENT,	/* outputs, and inputs that keep their last value on the way */
+	SENT,	/* outputs, and inputs with their last value */
 	PLAIN,	/* inputs that share their addresses with no outputs */
-	SHARED,	/* inputs that came in the place of outputs */
+	SHARED,	/* inputs that have replaced outputs */
 	CUT,	/* inputs of which this datagram has only a part */
 };
 
@@ -95,7 +95,7 @@ static bool belongs(const struct ec_cyc_dgram *g, const struct ec_config_fmmu *f
 	return part == (!whole ? CUT : f->shared ? SHARED : PLAIN);
 }
 
-/* An input area of several datagrams: it is taken when all of them are back. */
+/* An input area of several datagrams: it is taken when all of them are received. */
 static int add_cut(struct ec_layout *l, u32 offset, u32 len)
 {
 	struct ec_cyc_cut *k = l->cuts;
@@ -123,7 +123,7 @@ static bool follows(const struct ec_cyc_area *a, const struct ec_cyc_area *b)
 				 pos == (u32)a->count * a->pos_stride);
 }
 
-/* The last @count areas, as few as it takes. */
+/* Merge the last @count areas where values have equal distances. */
 static void fold_areas(struct ec_layout *l, u16 *count)
 {
 	struct ec_cyc_area *a = l->areas + l->n_areas - *count, *last = a;
@@ -185,7 +185,7 @@ static u32 area_bytes(const struct ec_layout *l, const struct ec_cyc_dgram *g)
 	return n;
 }
 
-/* A single area covers it, so nothing of it lies elsewhere, and it brings inputs. */
+/* Does a single area of the image cover the datagram, with inputs? */
 static bool is_solid(const struct ec_layout *l, const struct ec_cyc_dgram *g)
 {
 	return !g->holes && g->n_copies == 1 && l->areas[g->first_copy].count == 1 &&
@@ -230,7 +230,7 @@ static int add_stretch(struct adding *o, const struct ec_stretch *st)
 	return ret;
 }
 
-/* The first datagram of a domain that wants frames of its own, or comes behind one. */
+/* The first datagram of a domain with frames of its own, or of the domain after one. */
 static void begin_frame(struct ec_layout *l, const struct ec_wanted *w, const struct ec_domain *d,
 			unsigned int first)
 {

@@ -15,17 +15,17 @@ struct ec_wanted;
  * @cmd: LRD, LWR or LRW
  * @new_frame: shares no frame with the datagrams before
  * @holes: @n_copies areas do not cover it: clear it first
- * @solid: all of it lies in the image as it lies in the datagram
+ * @solid: one piece of the image has the same bytes as the whole datagram
  * @wrote: low half of the number of the last send before its inputs were last written
  * @before: the same without what incomplete replies of that receive have written
  * @logical: logical address
  * @len: bytes
- * @expected: working counter when every slave takes part
- * @first_copy: first of what is copied into it, in struct ec_layout.areas
+ * @expected: working counter if every slave processes it
+ * @first_copy: first area that is copied into it, in struct ec_layout.areas
  * @n_copies: how many
  * @first_input: first of its inputs there
  * @n_plain: inputs that were sent with their last value
- * @n_whole: these, and inputs that come in the place of outputs
+ * @n_whole: these, and inputs that replace outputs in the datagram
  * @n_inputs: these, and inputs of which other datagrams have a part
  */
 struct ec_cyc_dgram {
@@ -79,7 +79,7 @@ struct ec_cyc_area {
  * @offset: byte in the image
  * @len: bytes
  * @parts: datagrams that have a part of them
- * @have: of them back
+ * @have: parts received
  * @send: number of the send they belong to
  */
 struct ec_cyc_cut {
@@ -110,11 +110,11 @@ struct ec_layout {
 	struct ec_cyc_area *areas;
 	/** @n_areas: entries in @areas */
 	unsigned int n_areas;
-	/** @cuts: inputs of several datagrams; their counts are the cyclic caller's */
+	/** @cuts: inputs of several datagrams; their counts are of the cycle owner */
 	struct ec_cyc_cut *cuts;
 	/** @n_cuts: entries in @cuts */
 	unsigned int n_cuts;
-	/** @stage: an image in which their parts are collected, or NULL; the cyclic caller's */
+	/** @stage: an image in which their parts are collected, or NULL; of the cycle owner */
 	u8 *stage;
 	/** @plain: frames of a cycle that sends all domains */
 	struct ec_cyc_wire plain;

@@ -2,11 +2,10 @@
 /*
  * Where the FMMUs of a domain lie in its logical addresses.
  *
- * Without options they follow each other as in the image. Where inputs and
- * outputs share addresses one rule must hold: a slave puts its inputs over what
- * the datagram carried there, so every slave whose outputs lie at these
- * addresses must have seen the frame before, or be the same slave. LRD and LWR
- * do not touch each other's data, there everything may share.
+ * Without options they follow each other as in the image. Where inputs and outputs
+ * share addresses, a slave overwrites outputs in the datagram by its inputs. So each
+ * slave whose outputs are at these addresses must be upstream, or be the same slave.
+ * LRD and LWR do not change each other's data: there all FMMUs may share addresses.
  */
 #include <linux/slab.h>
 #include <linux/sort.h>
@@ -21,7 +20,7 @@
 enum way {
 	APART,	/* one after the other */
 	OWN,	/* inputs share with outputs of the same slave only */
-	RING,	/* inputs share with outputs of slaves before, too */
+	RING,	/* inputs share with outputs of slaves upstream as well */
 	FREE,	/* inputs share with outputs of any slave: LRD and LWR */
 };
 
@@ -56,7 +55,7 @@ static enum way way_of(const struct place *p, const struct ec_config *c)
 	return c->overlap ? OWN : APART;
 }
 
-/* What has no known place comes last; it shares with no other anyway. */
+/* Configurations without a known place come last: they share with no other. */
 static int by_ring(const void *a, const void *b)
 {
 	const struct ec_domain_fmmu *x = a, *y = b;
@@ -99,7 +98,7 @@ static bool logical_is_first(const struct place *p, const struct ec_domain_fmmu 
 	return f == ref->fmmu;
 }
 
-/* As registered, but the FMMUs of a slave that share stand together. */
+/* In the order of registration, but FMMUs of a slave that share addresses are adjacent. */
 static void arrange(struct place *p)
 {
 	unsigned int i;
@@ -124,7 +123,7 @@ static void logical_put(struct place *p, struct ec_config_fmmu *f)
 	*end += f->size;
 }
 
-/* FMMUs @i to @k - 1 of one configuration, behind what is there. */
+/* FMMUs @i to @k - 1 of one configuration, behind those put before. */
 static void put_unit(struct place *p, unsigned int i, unsigned int k, enum way way)
 {
 	if (way == OWN || way == APART)
@@ -160,7 +159,7 @@ static int close_stretch(struct place *p, u32 next, unsigned int first)
 	return 0;
 }
 
-/* More than a datagram holds: as much as it does, several times. */
+/* An FMMU that is larger than a datagram: several datagrams, all full but the last. */
 static int put_large(struct place *p, unsigned int i)
 {
 	u32 end;

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The kernel's cycle follows the reference clock: its frame shall pass that
- * clock at a set time after the grid on which the SYNC signals lie. What the
- * clock said when the frame passed it, less the grid, is the error the controller
- * (wire/dc_lock.c) gets; so the usual lateness of thread and device is made up
- * for, too, and their jitter is averaged.
+ * The kernel cycle is synchronized to the reference clock: its frame has to pass
+ * that clock at a configured time after the grid of the SYNC signals. The controller
+ * (wire/dc_lock.c) gets the time of the clock when the frame passed it, less the
+ * grid, as its error. So it also compensates the usual delay of thread and device,
+ * and averages their jitter.
  */
 #include <linux/ktime.h>
 #include "cycle.h"
 #include "pll.h"
 
 /**
- * ec_pll_init() - begin anew
+ * ec_pll_init() - reset the time of a cycle
  * @l: time of the cycle
  * @c: cycle with its @kernel
  *
@@ -53,7 +53,7 @@ static bool origin(const struct ec_pll *l, u64 sent_ns, u64 *time)
 	return false;
 }
 
-/* All times of the cycle were so many ns off, whole periods. */
+/* Correct all times of the cycle by whole periods, ns. */
 static void shift(struct ec_pll *l, s64 ns)
 {
 	u32 i;
@@ -63,7 +63,7 @@ static void shift(struct ec_pll *l, s64 ns)
 		l->past[i].time += ns;
 }
 
-/* What the reference clock says is new; how late that cycle was by it. */
+/* The phase error of the last cycle with a reply of the reference clock; false: no new reply. */
 static bool measured(struct ec_pll *l, const struct ec_cycle *c, s32 *error)
 {
 	u64 time = 0, then;
@@ -92,15 +92,15 @@ static void pll_publish(const struct ec_pll *l, struct ec_status_cycle *st)
 }
 
 /**
- * ec_pll_step() - time of a cycle, and when the next one shall be
+ * ec_pll_step() - time of a cycle, and the correction for the next one
  * @l: time of the cycle
- * @c: active cycle; what has come back was taken
+ * @c: active cycle, after its receive
  * @due: schedule of this cycle (ktime)
- * @epoch_ns: what makes ktime an application time at first
+ * @epoch_ns: initial application time less ktime, ns
  *
  * Sets the application time of the clocks. @l->time is that of this cycle.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: what to add to the period until the next cycle, ns; at most 1/100 of
  * it.
  */
@@ -137,7 +137,7 @@ void ec_pll_log(struct ec_cycle *c)
 	u32 lock = READ_ONCE(st->lock);
 
 	lockdep_assert_held(c->wanted->lock);
-	/* while clocks are measured no frame asks the reference */
+	/* while clocks are measured no frame reads the reference clock */
 	if (lock == c->watch.lock_logged ||
 	    (lock == EC_CYCLE_LOCK_HOLD && ec_dc_busy(c->dc)))
 		return;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* A cycle run by the kernel that follows the reference clock. */
+/* A kernel cycle that is synchronized to the reference clock. */
 #ifndef EC_PLL_H
 #define EC_PLL_H
 
@@ -8,11 +8,11 @@
 
 struct ec_cycle;
 
-#define EC_PLL_PAST	8	/* a frame may be that many cycles on its way */
+#define EC_PLL_PAST	8	/* a frame may be in flight for that many cycles */
 
 /**
  * struct ec_pll - time of a cycle; the thread's own
- * @follow: the cycle follows the reference clock, else only its own timer
+ * @follow: the cycle is synchronized to the reference clock, not only to its own timer
  * @phase: begin of a cycle after the grid of the SYNC signals, ns
  * @time: application time of the last cycle, ns: a point of that grid
  * @seen: send of the last frame that has brought a time (ktime)

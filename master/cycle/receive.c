@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Receive of the cyclic caller. Nothing here allocates, prints or takes a lock that is
+ * Receive of the cycle owner. Nothing here allocates, prints or takes a lock that is
  * contended while the cycle runs.
  */
 #include <linux/bitops.h>
@@ -32,9 +32,9 @@ static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d,
 }
 
 /*
- * May an incomplete reply give its inputs? One that was sent before they were last written
- * would bring back what a missing slave had before. An incomplete one of the same receive has
- * left that as it was.
+ * Are the inputs of an incomplete reply valid? If its frame was sent before they were last
+ * written, it would restore older inputs of a missing slave. Another incomplete reply in the same
+ * receive has not changed the inputs of that slave.
  */
 static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
 		       const struct ec_cyc_flight *f)
@@ -44,7 +44,7 @@ static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
 	return (u16)(c->send - f->send) < (u16)(c->send - wrote);
 }
 
-/* Inputs of a datagram in which at least one slave has taken part. */
+/* Inputs of a datagram that at least one slave has processed. */
 static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 			const struct ec_cyc_flight *f, const u8 *data, bool complete)
 {
@@ -54,9 +54,9 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	const struct ec_cyc_area *end;
 
 	/*
-	 * A missing slave's part comes back as sent: the last value, if it was sent
+	 * The part of a missing slave returns as sent: the last value, if it was sent
 	 * from the image. Where outputs were sent, or a part may be of another cycle,
-	 * all must have taken part.
+	 * the reply must be complete.
 	 */
 	if (unlikely(!complete) && (direct || !holds_last(c, d, f)))
 		return;
@@ -65,7 +65,7 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	else if (d->wrote != (u16)c->send)
 		d->before = d->wrote;
 	d->wrote = c->send;
-	/* the outputs come back as well: those of the image are not needed now */
+	/* this overwrites outputs of the image, which are not needed now */
 	if (complete && d->solid && direct && c->direct) {
 		memcpy(image + c->layout.areas[d->first_copy].offset, data, d->len);
 		return;
@@ -104,7 +104,7 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 		take_inputs(c, d, f, data, wkc == d->expected);
 }
 
-/* Returns the events that the slaves have shown in the IRQ field. */
+/* Take the data of a reply. Return: ECAT events of the slaves in its IRQ fields. */
 static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
 	struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
@@ -177,7 +177,7 @@ static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i
 		tell_wkc(c, d, i, wkc, state);
 }
 
-/* Complete and of the last send, which the status page says, and no event is to come. */
+/* Is it complete and of the last send, as in the status page, without a pending event? */
 static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 		      const struct ec_status_domain *st, u32 wkc)
 {
@@ -186,7 +186,7 @@ static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 	       READ_ONCE(st->wc_state) == EC_STATUS_WC_COMPLETE && !d->age && !d->rate.more;
 }
 
-/* Domains that were sent or came back since the last receive. */
+/* Judge domains that were sent or received since the last receive. */
 static void receive_judge(struct ec_cycle *c)
 {
 	u64 left = c->sent | c->back;
@@ -214,7 +214,7 @@ static void receive_judge(struct ec_cycle *c)
 }
 
 /**
- * ec_cycle_log_stale() - log domains whose data came back too old, once each
+ * ec_cycle_log_stale() - log domains with stale data, once each
  * @c: active cycle
  *
  * The cycle itself prints nothing.
@@ -241,21 +241,21 @@ void ec_cycle_log_stale(struct ec_cycle *c)
 }
 
 /*
- * Is the frame given up? The machine may have stood still: it was looked for before. Of several
- * copies the last one is awaited until the next receive.
+ * Is the frame lost? Not at the first receive without its reply: the machine may have stood still.
+ * Of several copies the last one is awaited until the next receive.
  */
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
 	if (!f->missed || ec_slot_settle(f->slot))
 		return false;
-	/* once in a receive, and mostly in none */
+	/* read once in a receive, and mostly not at all */
 	if (!*now)
 		*now = ktime_get_ns();
 	return *now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
 	       ec_slot_cancel(f->slot, *now);
 }
 
-/* The copy of a link has not come, and may come late. */
+/* The copy of a link is missing, and may still be received: the slot goes into quarantine. */
 static noinline void put_partial(struct ec_links *l, struct ec_slot *slot)
 {
 	ec_links_count(l, slot->sides & ~slot->back, lost);
@@ -263,14 +263,14 @@ static noinline void put_partial(struct ec_links *l, struct ec_slot *slot)
 }
 
 /**
- * ec_cycle_do_receive() - take what the last sends have brought back
+ * ec_cycle_do_receive() - take the replies to the last sends
  * @c: active cycle; the links of its master are entered
  *
- * Inputs go to the image, working counters to the status page. Frames that
- * are not back within the time limit are lost; one that comes only after the
- * next send has brought data that are a cycle old, and is counted as late.
+ * Inputs go to the image, working counters to the status page. A frame without a
+ * reply within the time limit is lost. A reply received only after the next send
+ * has data that are a cycle old, and counts as late.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0 or -ENODEV.
  */
 int ec_cycle_do_receive(struct ec_cycle *c)

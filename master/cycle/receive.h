@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Receive of the cyclic caller. */
+/* Receive of the cycle owner. */
 #ifndef EC_RECEIVE_H
 #define EC_RECEIVE_H
 
@@ -12,7 +12,7 @@ void ec_cycle_log_stale(struct ec_cycle *c);
  * ec_cycle_receive() - ec_cycle_do_receive(), with the links entered and left
  * @c: active cycle
  *
- * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
+ * Context: The cycle owner. RT-safe; sleeps after a cycle timeout only.
  * Return: 0 or -ENODEV.
  */
 static inline int ec_cycle_receive(struct ec_cycle *c)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Send of the cyclic caller; as in receive.c nothing allocates, prints or waits. */
+/* Send of the cycle owner; as in receive.c nothing allocates, prints or waits. */
 #include <linux/bitops.h>
 #include <linux/ktime.h>
 #include <linux/rcupdate.h>
@@ -8,8 +8,8 @@
 #include "send.h"
 
 /*
- * Room for one more frame. When none has come back for long, the oldest is
- * given up: a frame of now is worth more.
+ * An entry for one more frame. If there is none, the oldest frame in flight is
+ * cancelled, since the new one is more useful.
  */
 static bool make_room(struct ec_cycle *c, u64 now)
 {
@@ -58,7 +58,7 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 			     a->offset_stride, a->len, a->count);
 }
 
-/* Queued datagrams from @g on, as many as fit; returns how many were looked at. */
+/* Queued datagrams from @g on, as many as fit; returns how many were added or not queued. */
 static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
 			 struct send *send)
 {
@@ -145,7 +145,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	return g + count;
 }
 
-/* What a send of all domains and clock datagrams takes at most. */
+/* Wire time of a send of all domains and clock datagrams at most, ns. */
 static u32 wire_ns(const struct ec_cycle *c)
 {
 	if (!ec_dc_begun(c->dc))
@@ -154,11 +154,11 @@ static u32 wire_ns(const struct ec_cycle *c)
 }
 
 /**
- * ec_cycle_app_time() - the application gives its time, or that of the reference clock
+ * ec_cycle_app_time() - take the application time, or the time for the reference clock
  * @c: active cycle
  * @what: its flags, one of APP_TIME and SYNC_REF among them, @app_time and @sync_time
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  */
 void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
@@ -166,11 +166,11 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 }
 
 /**
- * ec_cycle_do_send() - send the queued domains, then what others have left
+ * ec_cycle_do_send() - send the queued domains, then acyclic frames that fit
  * @c: active cycle; the links of its master are entered
  * @what: domains and clock datagrams; its flags are known ones
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: 0 or -ENODEV.
  */
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Send of the cyclic caller. */
+/* Send of the cycle owner. */
 #ifndef EC_SEND_H
 #define EC_SEND_H
 
@@ -9,12 +9,12 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what);
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what);
 
 /**
- * ec_cycle_take_request() - what the application gives with a send, without requests
+ * ec_cycle_take_request() - take the application time of a send, check its domains
  * @c: active cycle
  * @what: its flags are known ones
  *
- * Context: The master's single cyclic caller. RT-safe.
- * Return: 0; -ENOENT a domain is queued that there is not.
+ * Context: The cycle owner. RT-safe.
+ * Return: 0; -ENOENT a domain is queued that does not exist.
  */
 static inline int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
@@ -30,7 +30,7 @@ static inline int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_
  * @c: active cycle
  * @what: as there
  *
- * Context: The master's single cyclic caller. RT-safe; sleeps after a cycle timeout only.
+ * Context: The cycle owner. RT-safe; sleeps after a cycle timeout only.
  * Return: 0 or -ENODEV.
  */
 static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)

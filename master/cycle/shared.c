@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Memory that applications cause. It belongs to their memory cgroup, and all of a
- * master's have EC_MAX_SESSION_BYTES together (struct ec_budget). A mapping may outlive
- * the session that made it.
+ * Memory for applications. It belongs to their memory cgroup, and all applications of a
+ * master have EC_MAX_SESSION_BYTES together (struct ec_budget). A mapping may exist longer
+ * than the session that made it.
  */
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
@@ -75,7 +75,7 @@ int ec_shared_map(struct vm_area_struct *vma, void *memory)
  * @request_size: bytes of all requests, 0: none
  *
  * Context: Process. May sleep.
- * Return: with one reference; NULL without memory.
+ * Return: shared memory with one reference; NULL: no memory.
  */
 struct ec_shared *ec_shared_create(atomic_long_t *mapped, size_t image_size,
 				   size_t request_size)

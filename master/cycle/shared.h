@@ -9,8 +9,8 @@
 #include "ethercat.h"
 
 /**
- * struct ec_shared - memory mapped by the application; outlives the session
- *	as long as it is mapped
+ * struct ec_shared - memory mapped by the application; after the session it stays
+ *	while a mapping exists
  * @kref: session and mappings
  * @image: process image of all domains
  * @image_size: bytes, multiple of the page size

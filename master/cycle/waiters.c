@@ -21,7 +21,7 @@ void ec_waiters_init(struct ec_waiters *w)
 	INIT_LIST_HEAD(&w->sleepers);
 }
 
-/* Is there a place for entry number @more besides those in the queue? */
+/* May @more entries be added to those in the queue? */
 static bool has_place(struct ec_waiters *w, int more)
 {
 	struct wait_queue_entry *e;
@@ -136,7 +136,7 @@ void ec_waiters_rouse(struct ec_waiters *w)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
-	/* one that parts waits for the lock: its task stays */
+	/* a caller that parts waits for the lock: its task stays */
 	list_for_each_entry(s, &w->sleepers, list)
 		wake_up_process(s->task);
 	raw_spin_unlock_irqrestore(&w->lock, flags);

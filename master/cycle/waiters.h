@@ -50,7 +50,7 @@ void ec_waiters_part(struct ec_waiters *w, struct ec_sleeper *s);
 void ec_waiters_rouse(struct ec_waiters *w);
 
 /**
- * ec_waiters_wake_sleepers() - wake those who have joined
+ * ec_waiters_wake_sleepers() - wake callers that have joined
  * @w: callers of a file
  *
  * Context: Any, also hard interrupt; RCU read side. RT-safe: bounded by %EC_MAX_WAITERS.

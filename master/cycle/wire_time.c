@@ -6,7 +6,7 @@
 
 #define MEASURED	1000	/* sends after which the measured interval is right */
 
-/* Does an acyclic frame fit beside a cycle of @interval_ns? If not the log says so. */
+/* Does an acyclic frame fit beside a cycle of @interval_ns? Log it if not. */
 static bool leaves_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
 {
 	u64 budget = div_u64(interval_ns * 9, 10);
@@ -28,11 +28,11 @@ static bool leaves_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
  * @c: cycle with a layout
  * @clocks: the application uses distributed clocks
  *
- * Without them no slave gets to OP. As long as the interval is not set it is not
- * known yet; ec_wire_time_log() looks later.
+ * Without them no slave gets to OP. An interval that is not configured is not
+ * known yet; ec_wire_time_log() checks it later.
  *
  * Context: Process, lock of the configuration held. May sleep.
- * Return: 0; -ENOSPC: they do not, and may make no cycle late.
+ * Return: 0; -ENOSPC: they do not, and may delay no cycle.
  */
 int ec_wire_time_check(struct ec_cycle *c, bool clocks)
 {
@@ -51,7 +51,7 @@ int ec_wire_time_check(struct ec_cycle *c, bool clocks)
 }
 
 /**
- * ec_wire_time_log() - the same in the log, once the interval is measured
+ * ec_wire_time_log() - log it if acyclic frames do not fit, once the interval is measured
  * @c: active cycle
  *
  * Context: The monitor thread, lock of the configuration held. May sleep.
