@@ -20,7 +20,7 @@ static const struct ec_cycle_ops cycle_ops = {
 };
 
 /**
- * session_fits() - is there memory for an activation within the limit?
+ * session_fits() - does the memory of an activation stay within the limit?
  * @s: session
  * @image_size: bytes of all domains
  *
@@ -64,7 +64,7 @@ static int activate_prepare(struct ec_session *s, u32 image_bytes)
 	return ret;
 }
 
-/* The counts of the log and the events begin. */
+/* Begin to count for the log and the events. */
 static void activate_counts(struct ec_session *s)
 {
 	struct ec_status *st = s->cycle.shared->status;
@@ -81,17 +81,17 @@ static void activate_counts(struct ec_session *s)
 	s->cycle.slaves_down = false;
 }
 
-/* The cycle may run from now on, and the kernel's does. */
+/* The cycle may run from now on; a kernel cycle starts. */
 static void activate_cycle(struct ec_session *s)
 {
 	struct ec_sessions *ss = s->sessions;
 	struct ec_cycle *c = &s->cycle;
 
-	/* one that waits for outputs takes the links with its first frame */
+	/* a cycle that waits for outputs begins cyclic access with its first frame */
 	if (!c->thread || !(c->setup.kernel.flags & EC_CYCLE_FLAG_WAIT))
 		ec_access_change(ss->links, EC_ACCESS_CYCLIC);
 	ec_cycle_set_active(ss->cycles, c);
-	/* the grid of SYNC is that of the thread's own time, which it keeps its phase to */
+	/* the thread's own time is the grid of the SYNC signals: its cycle keeps a phase to it */
 	if (c->thread)
 		ec_dc_app_forget(ss->dc);
 	if (ec_clocks_begin_now(s))
@@ -101,7 +101,7 @@ static void activate_cycle(struct ec_session *s)
 	ec_cycle_thread_start(c);
 }
 
-/* Its slaves go to OP. */
+/* Request OP for the slaves of the session. */
 static void activate_slaves(struct ec_session *s)
 {
 	ec_bus_need_workers(s->sessions->bus, s->wanted.n_configs);
@@ -112,7 +112,7 @@ static void activate_slaves(struct ec_session *s)
 }
 
 /**
- * ec_session_activate() - lay out process data, hand the links to the cycle
+ * ec_session_activate() - lay out process data, begin cyclic bus access
  * @s: session
  *
  * Context: Process, session lock held. May sleep.
@@ -139,7 +139,7 @@ int ec_session_activate(struct ec_session *s)
 	ret = activate_prepare(s, bytes);
 	if (ret)
 		return ret;
-	/* from now on workers go by the configurations, which do not change */
+	/* from now on workers use the configurations, which do not change */
 	smp_store_release(&s->wanted.active, true);
 	activate_counts(s);
 	ec_bus_unhold(ss->bus);
@@ -194,7 +194,7 @@ int ec_session_deactivate(struct ec_session *s)
 }
 
 /**
- * ec_session_slaves_down() - take the slaves to PREOP, the cycle goes on
+ * ec_session_slaves_down() - take the slaves to PREOP, the cycle continues
  * @s: session
  *
  * The state changes while process data and SYNC signals still run, so that no

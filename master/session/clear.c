@@ -16,7 +16,7 @@ void ec_session_clear(struct ec_session *s)
 {
 	lockdep_assert_held(s->wanted.lock);
 	ec_ref_clock_lower(s);
-	/* all at once: a worker may need a moment to leave */
+	/* interrupt all of them first: each worker may need a moment to end */
 	ec_for_each_config(c, &s->wanted)
 		if (ec_session_owns(c))
 			ec_stop_interrupt(&c->slave->stop, true);
@@ -38,7 +38,7 @@ void ec_session_clear(struct ec_session *s)
 }
 
 /**
- * ec_session_free() - a session that is not active goes away
+ * ec_session_free() - free a session that is not active
  * @s: session that has left struct ec_sessions
  *
  * Context: Process, session lock held. May sleep.

@@ -65,8 +65,8 @@ bool ec_clocks_begin_now(const struct ec_session *s)
  * @ss: sessions of a master
  *
  * The clocks of an application begin with its activation when a slave has SYNC
- * signals, else with the first clock datagram it sends. They begin anew when slaves
- * have come or gone, and when one that did not answer does.
+ * signals, else with the first clock datagram it sends. They begin again when slaves
+ * were connected or disconnected, and when a slave replies that did not before.
  *
  * Context: The monitor thread, session lock held. May sleep.
  */

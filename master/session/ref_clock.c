@@ -23,11 +23,11 @@ static bool has_outputs(const struct ec_slave *s)
 }
 
 /**
- * ec_ref_clock_raise() - take the reference clock to OP, too
+ * ec_ref_clock_raise() - take the reference clock to OP as well
  * @s: active session
  *
- * After activation and when slaves have come or gone. A slave that is configured
- * or has outputs is left alone.
+ * After activation and when slaves were connected or disconnected. Not a slave that
+ * is configured or has outputs.
  *
  * Context: Process, session lock held. May sleep.
  */
@@ -53,7 +53,7 @@ void ec_ref_clock_raise(struct ec_session *s)
 }
 
 /**
- * ec_ref_clock_lower() - back to PREOP with it
+ * ec_ref_clock_lower() - request PREOP for the reference clock
  * @s: session
  *
  * Context: Process, session lock held. May sleep.

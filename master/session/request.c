@@ -9,7 +9,7 @@
 #include "session.h"
 #include "../bus/slave.h"
 
-#define WATCH_US	10000	/* between looks while anything waits */
+#define WATCH_US	10000	/* between two checks while a request waits */
 
 /* works ---------------------------------------------------------------------*/
 
@@ -60,7 +60,7 @@ static void request_finish(struct ec_request *r)
 	WRITE_ONCE(r->rec->abort_code, res->code);
 	WRITE_ONCE(r->rec->got_vendor_id, res->vendor);
 	WRITE_ONCE(r->rec->got_type, res->type);
-	/* the result before the number that says it is there */
+	/* the result before the number that announces it */
 	smp_store_release(&r->rec->done, r->seq);
 }
 
@@ -102,7 +102,7 @@ static void pick_up(struct ec_request *r, u64 now)
 		memcpy(r->buf, r->data, r->size);
 }
 
-/* @stop ends a transfer; what has not begun ends at once. */
+/* @stop ends a transfer; a request that has not begun ends at once. */
 static void end_cancelled(struct ec_request *r)
 {
 	if (r->phase == EC_REQUEST_IDLE || READ_ONCE(r->rec->cancel) != r->seq)
@@ -120,8 +120,8 @@ static bool expired(const struct ec_request *r, u64 now)
 }
 
 /*
- * New starts, those that are cancelled or have waited too long, and work for the lanes. False
- * when nothing has to be looked after any more.
+ * Pick up new starts, end requests that are cancelled or have waited too long, and queue work for
+ * the others. False: no request waits any more.
  */
 static bool request_look(struct ec_requests *rq)
 {
@@ -182,11 +182,11 @@ static void watch_work(struct work_struct *work)
 	request_put(rq);
 }
 
-/* lanes ---------------------------------------------------------------------*/
+/* request queues ------------------------------------------------------------*/
 
 /*
- * May the slave be asked now? On its way through INIT, which is our own doing,
- * it may soon. One that is to stay in INIT gives an error.
+ * Can the request begin now? While the master configures the slave, it passes INIT:
+ * the request waits. With a slave that is to stay in INIT it fails.
  */
 static bool ready(const struct ec_slave *s, const struct ec_request *r)
 {
@@ -297,7 +297,7 @@ int ec_requests_begin(struct ec_session *s)
 }
 
 /**
- * ec_requests_end() - nothing is started any more
+ * ec_requests_end() - requests cannot be started any more
  * @s: session
  *
  * Transfers in progress are cancelled; this does not wait for them.
@@ -341,7 +341,7 @@ void ec_requests_kick(struct ec_session *s)
 	if (!rq)
 		return;
 	area = (void *)rq->shared->requests;
-	/* ec_requests_notice() need not look at these again; pairs with ec_request_started() */
+	/* ec_requests_notice() need not report these again; pairs with ec_request_started() */
 	WRITE_ONCE(rq->starts, smp_load_acquire(&area->starts));
 	request_queue(rq, rq->sessions->service, &rq->kick);
 }
@@ -352,7 +352,7 @@ void ec_requests_kick(struct ec_session *s)
  *
  * They are counted in mapped memory, also those without %EC_SEND_FLAG_REQUESTS.
  *
- * Context: Who runs the cycle, also in hard interrupt; when there is none, the monitor. RT-safe.
+ * Context: Cycle owner, also in hard interrupt; without a kernel cycle the monitor. RT-safe.
  */
 void ec_requests_notice(struct ec_cycle *c)
 {
@@ -372,7 +372,7 @@ void ec_requests_notice(struct ec_cycle *c)
 }
 
 /**
- * ec_requests_attach() - where what comes unasked from a slave goes
+ * ec_requests_attach() - set where emergencies and VoE messages of a slave go
  * @s: session
  * @c: configuration that has got its slave, or whose session has begun or ended
  *
@@ -390,7 +390,7 @@ void ec_requests_attach(const struct ec_session *s, const struct ec_config *c)
 }
 
 /**
- * ec_requests_record() - where a request of an active session is started
+ * ec_requests_record() - the record of a request of an active session
  * @s: session
  * @index: number from ec_requests_add()
  * @data: result: its data

@@ -3,11 +3,11 @@
  * Requests of the application that run beside its cycle: SDOs, registers, IDNs,
  * VoE messages, files, the object dictionary.
  *
- * Their records lie in memory the application has mapped. It starts one there
- * and says so with its next send, or counts it there for a cycle of the kernel;
- * from then on the kernel works with its own copy. Each configuration has a lane:
- * a worker that does its requests one after the other, so that a slow slave does
- * not hold up the others.
+ * Their records are in memory that the application has mapped. It starts a request
+ * there, and reports the start with its next send; for a kernel cycle it counts the
+ * start there. From then on the kernel works with its own copy. Each configuration
+ * has a request queue: a worker that executes one request after the other, so that
+ * a slow slave does not delay the others.
  */
 #ifndef EC_REQUEST_H
 #define EC_REQUEST_H

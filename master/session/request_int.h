@@ -40,15 +40,15 @@ struct ec_request_result {
 
 /**
  * struct ec_request - the kernel's side of one request
- * @list: in its lane
+ * @list: in its request queue
  * @rec: mapped by the application; read once, when a start is seen
  * @kind: EC_REQUEST_SDO...
- * @cap: room for data
- * @data: that, mapped
+ * @cap: bytes of @data at most
+ * @data: data of the request, mapped
  * @seq: number of the last start seen
  * @phase: how far it is
  * @since_ns: when that start was seen (ktime)
- * @timeout_ms: to begin with it, 0: unlimited
+ * @timeout_ms: limit until the transfer begins, 0: unlimited
  * @index: object, register address, IDN or type of a VoE message
  * @sub: subindex or drive
  * @op: EC_REQUEST_OP_*
@@ -57,7 +57,7 @@ struct ec_request_result {
  * @vendor: VoE: vendor id; FoE: password
  * @size: bytes to transfer; of a read at most
  * @stop: the application has cancelled it, or its session has ended
- * @buf: private copy of the data, as large as these may be; FoE: of the name
+ * @buf: private copy of the data, @cap bytes; FoE: of the name
  * @res: result; of the worker while it is RUNNING
  */
 struct ec_request {
@@ -83,18 +83,18 @@ struct ec_request {
 };
 
 /**
- * struct ec_lane - requests done one after the other
- * @work: does them
- * @rq: all lanes
+ * struct ec_lane - request queue: requests that are executed one after the other
+ * @work: executes them
+ * @rq: all request queues
  * @config: number of the configuration they belong to
- * @requests: of this lane
+ * @requests: of this queue
  * @emerg: ring of emergencies of the configuration
  * @voe: the configuration has VoE handlers
- * @files: lane of its files, or NULL
+ * @files: queue of its files, or NULL
  *
- * First one lane by configuration, with @emerg, @voe and @files. Then one for each VoE
- * handler, so that one that waits for a message does not hold up the others, and one for
- * the files of each configuration, which take long.
+ * First one queue for each configuration, with @emerg, @voe and @files. Then one for each VoE
+ * handler, so that a handler that waits for a message does not delay other requests, and one
+ * for the files of each configuration, which take long.
  */
 struct ec_lane {
 	struct work_struct work;
@@ -113,12 +113,12 @@ struct ec_lane {
  * @shared: mapped memory, with a reference
  * @lock: protects the requests; inside session lock
  * @starts: the area's, as ec_requests_notice() last saw it
- * @kick: looks once
- * @watch: looks again and again while anything waits
+ * @kick: checks the requests once
+ * @watch: checks them periodically while one waits
  * @reqs: requests
  * @bufs: private copies of all data but files, allocated by the application that activates, as its
  *	memory
- * @lanes: see struct ec_lane
+ * @lanes: request queues
  * @n_lanes: entries in @lanes
  */
 struct ec_requests {

@@ -22,7 +22,7 @@ static size_t buf_bytes(const struct ec_request_spec *spec)
  * @s: session, not active
  * @config: configuration in it
  * @kind: EC_REQUEST_*
- * @size: room for data, bytes
+ * @size: bytes of its data at most
  * @index: result: its number
  *
  * Context: Process, session lock held. May sleep.
@@ -98,7 +98,7 @@ static size_t lay_out_rings(struct ec_session *s, struct ec_requests *rq)
  * ec_requests_describe() - write the layout of the mapped memory for the application
  * @s: session with requests
  *
- * An application that takes over gets it anew: the previous one could write there.
+ * It is written again for an application that takes over: the previous one could write there.
  *
  * Context: Process, session lock held. May sleep.
  */
@@ -135,7 +135,7 @@ void ec_requests_describe(const struct ec_session *s)
 }
 
 /**
- * ec_requests_lay_out() - give each request its memory and its lane
+ * ec_requests_lay_out() - give each request its memory and its request queue
  * @s: session with @shared
  * @rq: its requests; their works are initialized
  *
@@ -179,7 +179,7 @@ void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq)
 }
 
 /**
- * ec_requests_lanes() - how many lanes the requests need at most
+ * ec_requests_lanes() - how many request queues are needed at most
  * @s: session
  *
  * Context: Process, session lock held.

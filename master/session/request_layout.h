@@ -12,7 +12,7 @@ struct ec_session;
  * struct ec_request_spec - a request to be made by activation
  * @config: of the slave
  * @kind: EC_REQUEST_*
- * @size: room for data, bytes
+ * @size: bytes of its data at most
  */
 struct ec_request_spec {
 	u32 config;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What the kinds of requests differ in: which starts are possible, and the transfer. */
+/* Differences of the kinds of requests: which starts are valid, and the transfer. */
 #include <linux/ktime.h>
 #include "../mailbox/coe.h"
 #include "../mailbox/foe.h"
@@ -144,7 +144,7 @@ static void run_voe(struct ec_request *r, struct ec_slave *s, struct ec_mbox_lim
 	r->res.type = h.type;
 }
 
-/* the memory of the application; its content is checked by no one */
+/* the memory of the application; its content is not checked */
 static int file_out(void *ctx, u64 at, u8 *buf, size_t n)
 {
 	const struct ec_request *r = ctx;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What the kinds of requests differ in: which starts are possible, and the transfer. */
+/* Differences of the kinds of requests: which starts are valid, and the transfer. */
 #ifndef EC_REQUEST_RUN_H
 #define EC_REQUEST_RUN_H
 

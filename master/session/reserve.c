@@ -10,7 +10,7 @@
 #include "reserve.h"
 #include "session_attach.h"
 
-/* One application at a time; one more may prepare to take a detached session over. */
+/* One application at a time; a candidate may prepare the takeover of a detached session. */
 static bool is_taken(const struct ec_sessions *ss)
 {
 	lockdep_assert_held(&ss->lock);
@@ -18,8 +18,8 @@ static bool is_taken(const struct ec_sessions *ss)
 }
 
 /*
- * Mailboxes shall work from now on, whatever state a tool has requested. A slave that has failed
- * on its way to PREOP is skipped: another attempt would only delay the caller.
+ * Mailboxes have to work from now on, even if a tool has requested another state. A slave that has
+ * failed before PREOP is skipped: another attempt would only delay the caller.
  */
 static void to_preop(struct ec_sessions *ss)
 {
@@ -56,7 +56,7 @@ static int session_begin(struct ec_sessions *ss, struct ec_session *s, int waite
 	return ret;
 }
 
-/* Who reserves the master; a command may have any name, and it goes to terminals. */
+/* The process that reserves the master. Its command may have any name, and goes to terminals. */
 static void note_process(struct ec_session *s)
 {
 	char *p;
@@ -126,12 +126,12 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 		return 0;
 	ret = ec_bus_wait_slaves(ss->bus);
 	if (ret != -EINTR)
-		return 0;	/* one that is slow is no reason to refuse */
+		return 0;	/* a slow slave is no reason to refuse */
 	ec_session_end(ss, owner);
 	return ret;
 }
 
-/* Without the lock, which the scan needs. True: no longer, @end_ns (ktime) or a signal has come. */
+/* Without the lock, which the scan needs. True: the wait is over by @end_ns (ktime) or a signal. */
 static bool wait_scan(struct ec_sessions *ss, u64 end_ns)
 {
 	u64 now = ktime_get_ns(), left = end_ns > now ? end_ns - now : 0;
@@ -158,7 +158,7 @@ static bool hold_list(struct ec_sessions *ss, const void *owner, bool always)
  *
  * The list of slaves is held from now on, until the next activation or the end of the session. A
  * scan that is in progress or due runs first; this waits for it, at most EC_SCAN_WAIT_MS or
- * until a signal. Then the list is held unchanged, and the result of that scan is thrown away.
+ * until a signal. Then the list is held unchanged, and the result of that scan is discarded.
  *
  * Context: Process. May sleep.
  * Return: 0, -EINVAL when it was not active, -EPERM without session.
@@ -224,7 +224,7 @@ void ec_session_app_time(struct ec_sessions *ss, u64 app_time)
 	ec_write64(&ss->next.at_ns, now);
 }
 
-/* What the candidate has set; its first time decides the phase. */
+/* Use what the candidate has set; its first time determines the phase. */
 static void use_next(struct ec_sessions *ss)
 {
 	u64 at_ns = ec_read64(&ss->next.at_ns);
@@ -262,7 +262,7 @@ static void end(struct ec_sessions *ss)
 {
 	struct ec_session *s = ss->session;
 
-	/* a session that was never active may have set time and interval, too */
+	/* also a session that was never active may have set time and interval */
 	if (ec_session_deactivate(s))
 		ec_sessions_forget_times(ss);
 	WRITE_ONCE(ss->session, NULL);
@@ -282,7 +282,7 @@ static void released(struct ec_sessions *ss, pid_t pid)
  * @owner: its open file, other sessions stay; NULL: end all sessions
  *
  * An active session whose cycle the kernel runs is detached instead, when it was
- * configured so; with @owner NULL it ends, too.
+ * configured so; with @owner NULL it ends as well.
  *
  * Context: Process. May sleep.
  */
@@ -324,7 +324,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
  * for it as ec_session_stop().
  *
  * Context: Process. May sleep.
- * Return: 0; -ENOENT nothing is active; -EBUSY its application is there.
+ * Return: 0; -ENOENT no session; -EBUSY it is not detached.
  */
 int ec_session_end_detached(struct ec_sessions *ss)
 {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Whose a session is, and where its process data lie. */
+/* The owner of a session, and the places of its process data. */
 #include <linux/pid_namespace.h>
 #include <linux/rcupdate.h>
 #include "session.h"
@@ -43,7 +43,7 @@ size_t ec_session_process(const struct ec_session *s, char *buf, size_t size)
 	rcu_read_lock();
 	nr = pid_vnr(find_pid_ns(s->owner_pid, &init_pid_ns));
 	rcu_read_unlock();
-	/* it has left its file to a child, or is in another namespace */
+	/* the process has passed its file to a child, or is in another namespace */
 	if (nr)
 		return scnprintf(buf, size, "process %d (%s)", nr, s->owner_comm);
 	return scnprintf(buf, size, "another process (%s)", s->owner_comm);

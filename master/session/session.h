@@ -29,7 +29,7 @@ struct ec_timeout_log {
 	bool open;
 };
 
-/* What stands behind a number of timeouts without a message of their own. */
+/* The text after a number of timeouts that have no message of their own. */
 static inline const char *ec_timeouts_text(const struct ec_timeout_log *l)
 {
 	return l->next_ns ? " more cycle timeout(s) since the last message" :
@@ -37,12 +37,12 @@ static inline const char *ec_timeouts_text(const struct ec_timeout_log *l)
 }
 
 /**
- * struct ec_count_notes - what the events have of counters; under sessions->lock
- * @count: counters at the last look: cycles skipped, frames lost, frames late
+ * struct ec_count_notes - counters as reported by events; under sessions->lock
+ * @count: counters at the last check: cycles skipped, frames lost, frames late
  * @more: since the last event, of each
  * @next_ns: no other event before, of each
  * @timeouts: cycle timeouts, as struct ec_timeout_log @logged
- * @since_ns: last send before the timeout that is noted, 0: none is
+ * @since_ns: last send before the timeout that was reported last, 0: the cycle has resumed
  */
 struct ec_count_notes {
 	u64 count[3];
@@ -62,18 +62,18 @@ struct ec_count_notes {
  * @notes: its counters in the events
  * @configs_seen: changes of the slaves before the status of the configurations was written
  * @configs_ns: when that was (ktime)
- * @cycle: its cycle, and whose it is
+ * @cycle: its cycle, with its owner
  * @ref_config: configuration whose slave is the reference clock, or
  *	EC_UAPI_NONE32
  * @specs: requests to be made by activation; a deactivation sets it and all that follows to zero
  * @n_specs: entries in @specs
- * @request_bytes: room for their data and for emergencies
- * @requests: what works on them while active, or NULL
- * @ending: slaves shall go to PREOP while the application still cycles
+ * @request_bytes: bytes of their data and of emergencies
+ * @requests: executes them while active, or NULL
+ * @ending: the slaves go to PREOP while the application still cycles
  * @raised: reference clock without configuration that was taken to OP, or NULL
- * @preset: what the image begins with, for the time of an activation; NULL: zeros
- * @handles: session in which an application in the kernel has configured what it has taken
- *	over, or NULL: its handles are there
+ * @preset: initial image, for the time of an activation; NULL: zeros
+ * @handles: after a takeover by an application in the kernel: the candidate session that it has
+ *	configured, to which its handles belong; or NULL
  */
 struct ec_session {
 	struct ec_sessions *sessions;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Configurations and the slaves that they mean. */
+/* Configurations and their slaves. */
 #include "../bus/find.h"
 #include "../config/why.h"
 #include "../mailbox/emerg.h"
@@ -10,7 +10,7 @@
  * ec_session_owns() - is the slave of a configuration its own?
  * @c: configuration
  *
- * A session that is to take over another one only looks at its slaves.
+ * A candidate session only reads from its slaves: they belong to the detached session.
  *
  * Context: Process, session lock held.
  * Return: whether it is.
@@ -22,7 +22,7 @@ bool ec_session_owns(const struct ec_config *c)
 }
 
 /**
- * ec_session_detach() - part a configuration from its slave, which goes back to PREOP
+ * ec_session_detach() - detach a configuration from its slave, which goes to PREOP
  * @c: configuration
  *
  * Context: Process, session lock held. May sleep.
@@ -123,7 +123,7 @@ static void note_loss(struct ec_config *c)
 /* Give @slave, with the caller's reference, to @c; false: another configuration has it. */
 static bool give(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
 {
-	/* the monitor must not wait for what its worker waits for */
+	/* interrupt the worker: the monitor must not wait as long as the worker does */
 	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
 	ec_stop_interrupt(&slave->stop, false);
@@ -166,7 +166,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 		return;
 	}
 	ec_session_detach(c);
-	if (slave && s == s->sessions->candidate)	/* only to look at */
+	if (slave && s == s->sessions->candidate)	/* only to read from it */
 		c->slave = slave;
 	else if (slave)
 		give(s, c, slave);
@@ -202,7 +202,7 @@ static struct ec_slave *find_new(const struct ec_session *s, const struct ec_con
 	return NULL;
 }
 
-/* Is there another lost slave like that of @c, so that only the place tells which one came back? */
+/* Has another configuration lost an identical slave, so that only the place decides? */
 static bool has_alike(const struct ec_session *s, const struct ec_config *c)
 {
 	ec_for_each_config(x, &s->wanted)
@@ -212,10 +212,10 @@ static bool has_alike(const struct ec_session *s, const struct ec_config *c)
 }
 
 /*
- * An active session keeps a slave as long as it is there: when one upstream is disconnected its
- * position changes, but its outputs must not be those of another. One that was lost comes back
- * wherever it is now, or a new one at its place is used instead. A slave that was there all the
- * time never gets the outputs of another one.
+ * An active session keeps a slave while it is connected: when another one upstream is disconnected
+ * its position changes, but it must not get outputs of another slave. A lost slave is attached
+ * again at any position, or a new one at its place is used instead. A slave that was connected all
+ * the time never gets the outputs of another one.
  */
 static void reattach(struct ec_session *s)
 {
@@ -248,7 +248,7 @@ static void reattach(struct ec_session *s)
 }
 
 /**
- * ec_session_begin_active() - note what decides from now on which slave is attached
+ * ec_session_begin_active() - prepare the configurations for slaves that get lost
  * @s: session that has just been activated
  *
  * Context: Process, session lock held. May sleep.
@@ -261,7 +261,7 @@ void ec_session_begin_active(struct ec_session *s)
 	lockdep_assert_held(s->wanted.lock);
 	down_read(&bus->topo);
 	ec_for_each_config(c, &s->wanted) {
-		/* one that was there before is not the one that is missing */
+		/* slaves found before now do not replace a missing one */
 		c->lost.list = bus->lists + 1;
 		if (!c->alias || c->alias_at >= bus->n_slaves)
 			continue;
@@ -308,7 +308,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 }
 
 /**
- * ec_session_attach() - after a scan: connect configurations and slaves anew
+ * ec_session_attach() - after a scan: attach slaves to configurations again
  * @ss: sessions of a master
  *
  * Context: Process. May sleep.
@@ -349,7 +349,7 @@ static void session_attach_try_again(const struct ec_session *session, struct ec
 }
 
 /**
- * ec_session_again() - slaves that failed begin anew
+ * ec_session_again() - try to configure slaves again that have failed
  * @work: of struct ec_sessions
  *
  * Context: The service queue. May sleep.
@@ -367,7 +367,7 @@ void ec_session_again(struct work_struct *work)
 }
 
 /**
- * ec_session_try_again() - let slaves that failed begin anew
+ * ec_session_try_again() - queue ec_session_again()
  * @ss: sessions of a master
  *
  * It does not wait for the lock of the sessions: its holder may wait for a frame that the

@@ -61,12 +61,12 @@ static void note_timeouts(struct ec_session *s, u64 now)
 }
 
 /**
- * ec_session_note_counts() - counters that have grown are events, at most one a second of each
+ * ec_session_note_counts() - report counters that have grown as events, once a second each
  * @s: active session
- * @first: only from now on they count
+ * @first: begin to count: no events for earlier counts
  * @all: also within the second
  *
- * So the cycle itself only counts.
+ * The cycle itself only counts.
  *
  * Context: Process, session lock held.
  */
@@ -155,18 +155,18 @@ void ec_session_fill_status(struct ec_session *s)
 }
 
 /**
- * ec_session_status() - bring the mapped status up to date; monitor
+ * ec_session_status() - update the mapped status
  * @ss: sessions of a master
- * @scanned: the slaves are those of the last scan: clocks may be set, too
+ * @scanned: the slaves are those of the last scan: clocks may be set as well
  *
- * Context: Process. May sleep.
+ * Context: The monitor thread. May sleep.
  */
 void ec_session_status(struct ec_sessions *ss, bool scanned)
 {
 	struct ec_session *s;
 	u64 now;
 
-	/* held by an activation: next time then */
+	/* an activation has the lock: next time */
 	if (!ec_sessions_trylock(ss))
 		return;
 	if (scanned)

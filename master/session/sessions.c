@@ -6,7 +6,7 @@
 #define TRIES	20
 
 /**
- * ec_sessions_init() - no application uses the master
+ * ec_sessions_init() - prepare the sessions of a master, without an application
  * @ss: sessions of a master, zeroed but for the pointers to lower layers
  * @again: work that lets slaves that failed begin again, of @ss->again
  *
@@ -26,7 +26,7 @@ int ec_sessions_init(struct ec_sessions *ss, work_func_t again)
 
 /**
  * ec_sessions_exit() - end the workers
- * @ss: sessions of a master; none is there
+ * @ss: sessions of a master; there are none
  *
  * Context: Process. May sleep.
  */
@@ -40,10 +40,10 @@ void ec_sessions_exit(struct ec_sessions *ss)
 }
 
 /**
- * ec_sessions_lock() - take the session lock to change what readers look at
+ * ec_sessions_lock() - take the session lock to change what readers show
  * @ss: sessions of a master
  *
- * A caller that changes nothing of that takes the mutex alone.
+ * A caller that changes none of it takes the mutex alone.
  *
  * Context: Process. May sleep.
  */
@@ -123,7 +123,7 @@ bool ec_sessions_trylock(struct ec_sessions *ss)
 }
 
 /**
- * ec_sessions_forget_times() - application time and interval are those of one application
+ * ec_sessions_forget_times() - forget time and interval of an application
  * @ss: sessions of a master
  *
  * Context: Process, session lock held. May sleep.

@@ -14,11 +14,11 @@ struct ec_cycles;
 struct ec_session;
 
 /**
- * struct ec_next - what a candidate has set, for the time when the master is its own
+ * struct ec_next - settings of a candidate that become valid when it gets the master
  * @interval_us: of its cycle, 0: not set
  * @phase: its first application time other than 0
- * @time: its last one
- * @at_ns: when it was that time (ktime), 0: no time
+ * @time: its last application time
+ * @at_ns: when it has set @time (ktime), 0: never
  */
 struct ec_next {
 	u32 interval_us;
@@ -39,23 +39,23 @@ struct ec_sessions {
 	struct ec_dc *dc;
 	/** @cycles: cycles, one for each session */
 	struct ec_cycles *cycles;
-	/** @lanes: workers of requests; they wait for slaves; immutable */
+	/** @lanes: workers of request queues; they wait for slaves; immutable */
 	struct workqueue_struct *lanes;
 	/**
-	 * @service: what others wait for, never many at once: clocks, looks at requests,
-	 * calls of an application in the kernel; immutable
+	 * @service: short works, never many at once: clocks, checks of requests, calls of an
+	 * application in the kernel; immutable
 	 */
 	struct workqueue_struct *service;
 	/** @again: tries slaves again that have failed */
 	struct work_struct again;
 	/**
 	 * @lock: protects @session, @candidate and everything they own except the part of the
-	 * cyclic caller
+	 * cycle owner
 	 */
 	struct mutex lock;
 	/** @session: of the application that has reserved the master, or NULL */
 	struct ec_session *session;
-	/** @candidate: of another one that is to take over @session, which is detached */
+	/** @candidate: of an application that is to take over @session, which is detached */
 	struct ec_session *candidate;
 	/**
 	 * @paused: no application may reserve the master, in words: the master "sleeps with the
@@ -65,8 +65,8 @@ struct ec_sessions {
 	/** @next: of @candidate; its times have no lock */
 	struct ec_next next;
 	/**
-	 * @memory: bytes of all sessions, and of what they have mapped, which may outlive
-	 * them
+	 * @memory: bytes of all sessions, and of what they have mapped, which may exist longer
+	 * than they do
 	 */
 	atomic_long_t memory;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * An application takes over the detached session of another one. What it has configured must be
- * the same: all that reaches a slave or decides where something lies in the mapped memory. The
+ * the same: all that is sent to a slave, and all that determines places in the mapped memory. The
  * two are compared, not hashes of them, so that the first difference can be reported.
  */
 #include "../cycle/cycle_sched.h"
@@ -197,8 +197,8 @@ static bool session_differs(const struct ec_session *a, const struct ec_session 
 }
 
 /*
- * How many cycles may be late is not compared: no slave gets it, and nothing is laid out by it.
- * From now on the value of the new application is used.
+ * The number of cycles that acyclic frames may delay is not compared: no slave gets it, and the
+ * layout does not depend on it. The value of the new application is used from now on.
  */
 static void adopt_late(struct ec_session *s, u32 per_s)
 {
@@ -207,13 +207,13 @@ static void adopt_late(struct ec_session *s, u32 per_s)
 }
 
 /**
- * ec_session_take_over() - the candidate's application gets the detached session
+ * ec_session_take_over() - give the detached session to the application of the candidate
  * @ss: sessions of a master with a detached session and a candidate
  * @why: result: the first difference of the two
- * @size: room there
+ * @size: of @why
  * @keep: the candidate's configuration stays until the session ends
  *
- * The cycle goes on, with the priority that the candidate's process may use; without @keep the
+ * The cycle continues, with the priority that the candidate's process may use; without @keep the
  * candidate's configuration is freed.
  *
  * Context: Process, session lock held. Sleeps until the next cycle has begun.
@@ -247,7 +247,7 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 	s->owner_pid = candidate->owner_pid;
 	memcpy(s->owner_comm, candidate->owner_comm, sizeof(s->owner_comm));
 	ec_event(ss->base, EC_EVENT_TAKEN_OVER, s->owner_pid);
-	/* the application before has no handles any more */
+	/* the previous application has no handles any more */
 	if (s->handles)
 		ec_session_free(s->handles);
 	s->handles = keep ? candidate : NULL;

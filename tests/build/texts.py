@@ -93,7 +93,7 @@ COMMENTS = {
     "master/cycle": 0,
     "master/link": 0,
     "master/mailbox": 0,
-    "master/session": 51,
+    "master/session": 0,
     "tool": 0,
     "tool/sim": 0,
 }
