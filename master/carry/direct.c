@@ -16,7 +16,7 @@ static bool next_class(struct ec_carry *c, enum ec_post_class *class)
 	unsigned int i;
 
 	raw_spin_lock_irqsave(&c->lock, flags);
-	ec_post_due(c, ktime_get_ns());
+	ec_post_due(c);
 	for (i = 0; i < ARRAY_SIZE(order); i++)
 		if (ec_flight_first(c, order[i]))
 			break;

@@ -72,16 +72,20 @@ static void make_ready(struct ec_carry *c, struct ec_post *post)
 /**
  * ec_post_due() - move posts that are due to the lists of posts to be sent
  * @c: posts of the master
- * @now_ns: time (ktime)
  *
  * Context: Any, with the lock of the posts held. RT-safe.
  */
-void ec_post_due(struct ec_carry *c, u64 now_ns)
+void ec_post_due(struct ec_carry *c)
 {
 	struct ec_post *post, *next;
+	u64 now_ns;
 
 	lockdep_assert_held(&c->lock);
-	if (likely(now_ns < c->due_ns))
+	/* mostly none: no look at the clock */
+	if (likely(c->due_ns == U64_MAX))
+		return;
+	now_ns = ktime_get_ns();
+	if (now_ns < c->due_ns)
 		return;
 	c->due_ns = U64_MAX;
 	list_for_each_entry_safe(post, next, &c->later, list) {

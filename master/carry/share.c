@@ -58,7 +58,7 @@ static bool next_post(struct ec_carry *c, enum ec_post_class *class, unsigned in
 	if (c->share.frames >= most)
 		return false;
 	raw_spin_lock_irqsave(&c->lock, flags);
-	ec_post_due(c, ktime_get_ns());
+	ec_post_due(c);
 	normal = ec_flight_first(c, EC_POST_NORMAL);
 	urgent = ec_flight_first(c, EC_POST_URGENT);
 	clock = c->share.clock_credit >= 1000 ? ec_flight_first(c, EC_POST_CLOCK) : NULL;

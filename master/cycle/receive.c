@@ -187,13 +187,13 @@ static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 }
 
 /* Judge domains that were sent or received since the last receive. */
-static void receive_judge(struct ec_cycle *c)
+static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 {
 	u64 left = c->sent | c->back;
 
 	for (; left; left &= left - 1) {
 		unsigned int i = __ffs64(left);
-		struct ec_status_domain *st = &c->shared->status->domains[i];
+		struct ec_status_domain *st = &page->domains[i];
 		struct ec_cyc_domain *d = &c->domains[i];
 		u32 wkc = c->back & BIT_ULL(i) ? d->wkc : 0;
 		u32 state;
@@ -310,7 +310,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	rcu_read_unlock();
 	c->n_flight = left;
 	ec_links_events(l, irq);
-	receive_judge(c);
+	receive_judge(c, st);
 	flags = ec_status_begin(st);
 	WRITE_ONCE(st->dc_ref, READ_ONCE(c->dc->ref_station) != 0);
 	if (c->clock.asked | c->clock.back)

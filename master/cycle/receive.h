@@ -17,11 +17,10 @@ void ec_cycle_log_stale(struct ec_cycle *c);
  */
 static inline int ec_cycle_receive(struct ec_cycle *c)
 {
-	int ret;
+	int ret = ec_links_enter(c->links);
 
-	if (!ec_links_attached(c->links))
-		return -ENODEV;
-	ec_links_enter(c->links);
+	if (ret)
+		return ret;
 	ret = ec_cycle_do_receive(c);
 	ec_links_leave(c->links);
 	return ret;

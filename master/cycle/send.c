@@ -112,6 +112,7 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 /* One frame from datagram @g on; returns the first datagram of the next. */
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
+	struct ec_links *l = c->links;
 	struct ec_slot *slot = NULL;
 	struct ec_tx tx;
 	unsigned int count;
@@ -119,21 +120,21 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	int ret;
 
 	if (make_room(c, send->now))
-		slot = ec_slot_get(&c->links->slots, true, send->now);
+		slot = ec_slot_get(&l->slots, true, send->now);
 	if (!slot) {
-		ec_links_count(c->links, c->links->sides, tx_errors);
+		ec_links_count(l, l->sides, tx_errors);
 		send->dc = 0;
 		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
-	frame = ec_links_tx_get(c->links, c->links->sides, &tx) ?: slot->frame;
+	frame = ec_links_tx_get(l, l->sides, &tx) ?: slot->frame;
 	count = fill(c, slot, frame, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_links_transmit(c->links, slot, frame, &tx, send->now);
+	ret = ec_links_transmit(l, slot, frame, &tx, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		ec_links_count(c->links, c->links->sides, tx_errors);
+		ec_links_count(l, l->sides, tx_errors);
 	if (!ret) {
 		note_flight(c, slot, g, count, send);
 	} else {
@@ -176,15 +177,17 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
 	struct send send = { .what = what, .now = ktime_get_ns() };
+	struct ec_carry *carry = c->carry;
+	struct ec_links *l = c->links;
 	unsigned int g = 0;
 
-	if (!ec_links_attached(c->links))
+	if (!ec_links_attached(l))
 		return -ENODEV;
 	if (!c->thread)
 		ec_late_send(&c->late, send.now);
-	ec_write64(&c->links->access.last_send_ns, send.now);
-	if (unlikely(READ_ONCE(c->links->access.stopped)))
-		WRITE_ONCE(c->links->access.stopped, false);
+	ec_write64(&l->access.last_send_ns, send.now);
+	if (unlikely(READ_ONCE(l->access.stopped)))
+		WRITE_ONCE(l->access.stopped, false);
 	if (c->copying)
 		ec_copy_run(c->copying, c->shared->status, c->domains);
 	c->send++;
@@ -203,11 +206,11 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	}
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
-	WRITE_ONCE(c->links->access.wire_ns, max(send.wire.ns, wire_ns(c)));
-	ec_share_begin(&c->carry->share, ec_access_interval_us(&c->links->access));
-	if (unlikely(ec_carry_has_left(c->carry)))
-		ec_share_send_left(c->carry, send.wire.ns);
-	ec_links_flush(c->links);
+	WRITE_ONCE(l->access.wire_ns, max(send.wire.ns, wire_ns(c)));
+	ec_share_begin(&carry->share, ec_access_interval_us(&l->access));
+	if (unlikely(ec_carry_has_left(carry)))
+		ec_share_send_left(carry, send.wire.ns);
+	ec_links_flush(l);
 	rcu_read_unlock();
 	ec_write64(&c->sends, c->sends + 1);
 	return 0;

@@ -35,11 +35,10 @@ static inline int ec_cycle_take_request(struct ec_cycle *c, const struct ec_ioc_
  */
 static inline int ec_cycle_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	int ret;
+	int ret = ec_links_enter(c->links);
 
-	if (!ec_links_attached(c->links))
-		return -ENODEV;
-	ec_links_enter(c->links);
+	if (ret)
+		return ret;
 	ret = ec_cycle_do_send(c, what);
 	ec_links_leave(c->links);
 	return ret;

@@ -118,13 +118,19 @@ void ec_access_reopen(struct ec_links *l)
  * @l: links
  *
  * Context: Cycle owner. May sleep.
+ * Return: 0; -ENODEV without device: nothing is entered.
  */
-void ec_access_reenter(struct ec_links *l)
+int ec_access_reenter(struct ec_links *l)
 {
 	do {
+		if (!ec_links_attached(l)) {
+			ec_access_leave(&l->access);
+			return -ENODEV;
+		}
 		ec_access_leave(&l->access);
 		ec_access_change(l, EC_ACCESS_CYCLIC);
 	} while (!ec_access_enters(&l->access));
+	return 0;
 }
 
 /**

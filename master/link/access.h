@@ -59,7 +59,7 @@ void ec_access_shut(struct ec_links *l);
 void ec_access_reopen(struct ec_links *l);
 
 /* for the cycle owner */
-void ec_access_reenter(struct ec_links *l);
+int ec_access_reenter(struct ec_links *l);
 int ec_access_try_enter(struct ec_links *l);
 
 /* free wire time beside a cycle */

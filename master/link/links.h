@@ -140,11 +140,11 @@ static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsign
  * After a cycle timeout it makes the access cyclic again. ec_links_leave() must follow.
  *
  * Context: Cycle owner. Sleeps after a cycle timeout only.
+ * Return: 0; -ENODEV as ec_access_reenter(): then it must not follow.
  */
-static inline void ec_links_enter(struct ec_links *l)
+static inline int ec_links_enter(struct ec_links *l)
 {
-	if (unlikely(!ec_access_enters(&l->access)))
-		ec_access_reenter(l);
+	return likely(ec_access_enters(&l->access)) ? 0 : ec_access_reenter(l);
 }
 
 static inline void ec_links_leave(struct ec_links *l)

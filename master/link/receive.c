@@ -43,12 +43,9 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 		/* a cancelled frame; otherwise a second copy of a reply */
 		return atomic_read(&slot->state) == EC_SLOT_QUARANTINE ? EC_MATCH_LATE :
 									 EC_MATCH_UNMATCHED;
-	if (!ec_slot_awaits(slot, side)) {
-		ec_slot_release(slot, EC_SLOT_SENT);
-		return EC_MATCH_UNMATCHED;
-	}
 	/* the iterator only reads; it has no const form */
-	if (len < slot->eth_len - EC_ETH_HDR || !same(slot, (u8 *)data, len)) {
+	if (!ec_slot_awaits(slot, side) || len < slot->eth_len - EC_ETH_HDR ||
+	    !same(slot, (u8 *)data, len)) {
 		ec_slot_release(slot, EC_SLOT_SENT);
 		return EC_MATCH_UNMATCHED;
 	}

@@ -161,7 +161,7 @@ static void cycle_sends_what_others_queue(void)
 	if (caller_begins(&c, b)) {
 		CHECK(alone_wait(queued, &b->carry, 10));
 		CHECK_EQ(b->d.sent, 0);
-		ec_links_enter(&b->links);
+		CHECK_EQ(ec_links_enter(&b->links), 0);
 		ec_write64(&b->links.access.last_send_ns, ktime_get_ns());
 		ec_share_begin(&b->carry.share, ec_access_interval_us(&b->links.access));
 		rcu_read_lock();
