@@ -4,7 +4,6 @@
 #include "carry.h"
 
 #define URGENT_MORE	2	/* frames of the monitor beside those that have a place */
-#define STARVED_NS	NSEC_PER_SEC	/* the thread has not run for so long: reported */
 
 /**
  * ec_carry_expect() - expect the thread of the posts to run
@@ -15,7 +14,7 @@
  */
 void ec_carry_expect(struct ec_carry *c, u64 after_ns)
 {
-	hrtimer_start(&c->starved, ns_to_ktime(after_ns + STARVED_NS), HRTIMER_MODE_REL_HARD);
+	hrtimer_start(&c->starved, ns_to_ktime(after_ns + EC_STARVED_NS), HRTIMER_MODE_REL_HARD);
 }
 
 /**
@@ -27,11 +26,13 @@ void ec_carry_expect(struct ec_carry *c, u64 after_ns)
 void ec_carry_kick(struct ec_carry *c)
 {
 	struct task_struct *t = READ_ONCE(c->thread);
+	bool kicked = READ_ONCE(c->kicked);
 
 	WRITE_ONCE(c->kicked, true);
 	if (!t)
 		return;
-	if (READ_ONCE(c->rests))
+	/* a second runs since the first kick */
+	if (!kicked && READ_ONCE(c->rests))
 		ec_carry_expect(c, 0);
 	wake_up_process(t);
 }

@@ -15,6 +15,8 @@
 #include "post.h"
 #include "share.h"
 
+#define EC_STARVED_NS	((u64)NSEC_PER_SEC)	/* the thread has not run for so long: reported */
+
 struct ec_carry;
 struct task_struct;
 
@@ -85,6 +87,8 @@ struct ec_carry {
 
 	/** @thread: finds lost frames; with direct access sends posts that no caller sends */
 	struct task_struct *thread;
+	/** @looked_ns: when @thread looked last (ktime) */
+	aligned_u64 looked_ns;
 	/** @kicked: @thread has something to do */
 	bool kicked;
 	/** @watched: @thread checks each millisecond, since a caller has waited that long */

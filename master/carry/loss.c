@@ -280,11 +280,18 @@ static u64 idle_until(struct ec_carry *c, u64 looked)
 /* The thread has not run, for example because of a loop of higher priority on its CPU. */
 static enum hrtimer_restart starved(struct hrtimer *t)
 {
-	struct ec_base *b = container_of(t, struct ec_carry, starved)->links->base;
+	struct ec_carry *c = container_of(t, struct ec_carry, starved);
+	struct ec_base *b = c->links->base;
+	u64 now = ktime_get_ns(), since = now - ec_read64(&c->looked_ns);
 
 	/* the whole machine stood still, like a paused guest: one more second */
-	if (ktime_get_ns() - ktime_to_ns(hrtimer_get_expires(t)) > NSEC_PER_SEC / 10) {
-		hrtimer_forward_now(t, ns_to_ktime(NSEC_PER_SEC));
+	if (now - ktime_to_ns(hrtimer_get_expires(t)) > NSEC_PER_SEC / 10)
+		since = 0;
+	/* it has nothing to do: it went to rest just as the timer was started */
+	if (READ_ONCE(c->rests) && !READ_ONCE(c->kicked))
+		return HRTIMER_NORESTART;
+	if (since < EC_STARVED_NS) {
+		hrtimer_forward_now(t, ns_to_ktime(EC_STARVED_NS - since));
 		return HRTIMER_RESTART;
 	}
 	/* the timer was started on the CPU of the thread, or where it was kicked */
@@ -307,7 +314,6 @@ static void sleep_until(struct ec_carry *c, u64 until)
 			ec_carry_expect(c, at - now);
 			schedule_hrtimeout(&limit, HRTIMER_MODE_ABS);
 		}
-		hrtimer_try_to_cancel(&c->starved);
 	}
 	__set_current_state(TASK_RUNNING);
 }
@@ -315,6 +321,9 @@ static void sleep_until(struct ec_carry *c, u64 until)
 /* Sleep until a time (ktime), or a kick. With U64_MAX not if there are posts by now. */
 static void rest(struct ec_carry *c, u64 until)
 {
+	/* a kick that finds it at rest starts the timer again */
+	if (until == U64_MAX)
+		hrtimer_try_to_cancel(&c->starved);
 	WRITE_ONCE(c->rests, until == U64_MAX);
 	smp_mb();	/* @rests before the posts; pairs with ec_post_send() */
 	if (until != U64_MAX || !ec_carry_is_busy(c))
@@ -336,6 +345,7 @@ static int run(void *data)
 			usleep_range(RETRY_NS / 1000, RETRY_NS / 500);
 		if (ktime_get_ns() - looked >= LOOK_NS) {
 			looked = ktime_get_ns();
+			ec_write64(&c->looked_ns, looked);
 			if (ec_carry_is_busy(c))
 				look_at_all(c);
 			else

@@ -26,12 +26,16 @@ static void post_thread_rests(struct kunit *test)
 	KUNIT_EXPECT_LT(test, beside, 100ul);
 }
 
-/* the thread of the posts has work, and gets no CPU */
+/* the thread of the posts has work, more of it all the time, and gets no CPU */
 static void keep_cpu(struct bus *b, unsigned int ms)
 {
+	unsigned int i;
+
 	preempt_disable();
-	bus_post_kick(b);
-	mdelay(ms);
+	for (i = 0; i < ms; i += 20) {
+		bus_post_kick(b);
+		mdelay(20);
+	}
 	preempt_enable();
 }
 
@@ -67,6 +71,26 @@ static void post_thread_starved_reported(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, lines(b), l0 + 1);
 }
 
+/* Whatever started the timer while the thread went to rest, at rest it is not starved. */
+static void post_thread_at_rest_not_reported(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
+	u32 i;
+	u64 l0;
+
+	bus_idle(b);
+	msleep(11000);
+	l0 = lines(b);
+	ec_carry_expect(bus_carry(b), 0);
+	msleep(5000);
+	KUNIT_EXPECT_EQ(test, lines(b), l0);
+	for (i = 0; i < 3000; i++) {
+		bus_post_kick(b);
+		usleep_range(1000, 1001);
+	}
+	KUNIT_EXPECT_EQ(test, lines(b), l0);
+}
+
 /* A guest that is paused stands still with all that is in it: none of its threads is starved. */
 static void post_thread_of_paused_machine_not_reported(struct kunit *test)
 {
@@ -90,6 +114,7 @@ static void post_thread_of_paused_machine_not_reported(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(post_thread_rests),
 	KUNIT_CASE(post_thread_starved_reported),
+	KUNIT_CASE(post_thread_at_rest_not_reported),
 	KUNIT_CASE(post_thread_of_paused_machine_not_reported),
 	{}
 };
