@@ -114,6 +114,63 @@ kernel_memory() {
 
 log_has() { dmesg | grep -q "$1"; }
 
+# posts TEXT: the line of rtcheck about the cycle and the thread of the posts
+posts() { ethercat rtcheck | grep -E "^[a-z]+ +posts .*$1"; }
+
+@test "rtcheck names the loser: the cycle of an application, or the thread that finds lost frames" {
+	local thread=EtherCAT0-post post
+
+	post=$(pgrep -x $thread)
+	posts "no cycle runs; one with SCHED_FIFO 2 or more preempts $thread .SCHED_FIFO 1.$"
+	background "$BATS_TEST_TMPDIR/out" 600
+	chrt -a -o -p 0 $app
+	posts "the cycle .cyclic, thread [0-9]+, SCHED_OTHER. loses: $thread .SCHED_FIFO 1. preempts it"
+	chrt -a -f -p 1 $app
+	posts "$thread .SCHED_FIFO 1. loses if the cycle spins.*.cyclic, thread [0-9]+, SCHED_FIFO 1."
+	chrt -a -f -p 2 $app
+	posts "the cycle .cyclic, thread [0-9]+, SCHED_FIFO 2. preempts $thread .SCHED_FIFO 1.$"
+	taskset -p 2 "$post"
+	taskset -a -p 1 $app
+	posts "share no CPU$"
+	taskset -p 3 "$post"
+	# as with fifo_posts=N
+	chrt -o -p 0 "$post"
+	posts "$thread .SCHED_OTHER. loses: the cycle .cyclic, thread [0-9]+, SCHED_FIFO 2. preempts it"
+	chrt -f -p 1 "$post"
+	kill -TERM $app
+	wait $app
+	wait_for 120 idle
+}
+
+runs_as() { [ "$(cat "/proc/$1/comm")" = "$2" ]; }
+revision() { ethercat upload -p2 -t uint32 0x1018 1 | grep 0x00000002; }
+
+@test "the thread that finds lost frames reports that it gets no CPU, and goes on when it does" {
+	local post spinner line='EtherCAT0-post has not run for a second'
+
+	post=$(pgrep -x EtherCAT0-post)
+	wait_for 120 all_slaves_are PREOP "$(slaves)"
+	dmesg -C
+	revision
+	sleep 3
+	[ -z "$(dmesg | grep "$line")" ]
+	taskset -p 2 "$post"
+	# below the threads of interrupts; for 60 s at most
+	taskset 2 chrt -f 2 prlimit --rttime=60000000 sh -c 'while :; do :; done' &
+	spinner=$!
+	wait_for 60 runs_as $spinner sh
+	# the thread has work: lost frames of this would be its own
+	revision
+	wait_for 30 log_has "$line: a thread of higher priority keeps its CPU, perhaps [01]; lost"
+	kill -KILL $spinner
+	wait $spinner || true
+	dmesg -C
+	revision
+	sleep 3
+	[ -z "$(dmesg | grep "$line")" ]
+	taskset -p 3 "$post"
+}
+
 @test "modules unload and load again" {
 	rmmod ec_sim
 	rmmod ec_master
