@@ -15,6 +15,7 @@
  * @cmd: enum ec_cmd
  * @repeat: may be sent again when its frame is lost (reads without side
  *	effect, writes that may be executed twice)
+ * @keep: the reply leaves @data unchanged; only such datagrams in flight may share @data
  * @adp: low half of the address
  * @ado: high half of the address
  * @len: data bytes
@@ -30,7 +31,8 @@
  */
 struct ec_dg {
 	u8 cmd;
-	bool repeat;
+	bool repeat : 1;
+	bool keep : 1;
 	u16 adp;
 	u16 ado;
 	u16 len;
@@ -79,7 +81,7 @@ static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 sid
 
 	if (dg->err || (wkc && !dg->wkc)) {
 		dg->back = d->adp;
-		if (ec_cmd_reads(d->cmd))
+		if (ec_cmd_reads(d->cmd) && !dg->keep)
 			memcpy(dg->data, d->data, d->len);
 	}
 	dg->side_wkc[side] = wkc;

@@ -157,8 +157,10 @@ static unsigned int add_frame(struct ec_dc_job *j, unsigned int n, unsigned int 
 	unsigned int syncs = min(max(1u, bytes_left / (u32)(bytes + EC_DGRAM_OVERHEAD)), most);
 	unsigned int end = n + syncs;
 
-	for (; n < end; n++)
+	for (; n < end; n++) {
 		j->dg[n] = EC_DG(EC_CMD_FRMW, ref, EC_REG_DC_SYSTIME, bytes, j->time);
+		j->dg[n].keep = true;
+	}
 	/* of equal length, so that their distance is equal */
 	pad = syncs * (bytes + EC_DGRAM_OVERHEAD) + EC_DGRAM_OVERHEAD;
 	pad = min_t(u16, bytes_left - min(bytes_left, pad), EC_DGRAM_DATA_MAX);

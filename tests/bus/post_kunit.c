@@ -417,6 +417,22 @@ static void post_beside_link_that_is_down(struct kunit *test)
 	rig_expect(r, BIT(0), 3, 0);
 }
 
+/* Datagrams that keep their data may have the same: none writes to what another one sends. */
+static void post_keeps_data(struct kunit *test)
+{
+	struct rig *r = rig_new(test);
+	const u8 sent[] = { 0xaa, 0xbb };
+
+	memcpy(r->data[0][0], sent, sizeof(sent));
+	r->dg[0][0].keep = true;
+	rig_send(r, BIT(0));
+	rig_answer(r, 0);
+	give(r);
+	rig_expect(r, BIT(0), 1, 0);
+	KUNIT_EXPECT_EQ(test, r->dg[0][0].wkc, 1);
+	KUNIT_EXPECT_MEMEQ(test, r->data[0][0], sent, sizeof(sent));
+}
+
 /* A caller that sleeps and comes after the end of the posts is told, as no thread would be left. */
 static void post_after_end(struct kunit *test)
 {
@@ -464,6 +480,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(post_on_two_links),
 	KUNIT_CASE(post_one_copy_of_two),
 	KUNIT_CASE(post_beside_link_that_is_down),
+	KUNIT_CASE(post_keeps_data),
 	KUNIT_CASE(post_after_end),
 	{}
 };
