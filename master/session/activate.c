@@ -37,6 +37,17 @@ static int session_fits(const struct ec_session *s, size_t image_size)
 	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
 }
 
+/* The status page as the application first reads it. */
+static void activate_status(struct ec_session *s)
+{
+	struct ec_status *st = s->cycle.shared->status;
+
+	st->config_count = s->wanted.n_configs;
+	st->dc_monitor = ~0u;
+	ec_for_each_domain(d, &s->wanted)
+		st->domains[d->index].expected = d->expected;
+}
+
 /* Memory and layout of the cycle, and the thread that runs it. */
 static int activate_prepare(struct ec_session *s, u32 image_bytes)
 {
@@ -55,8 +66,10 @@ static int activate_prepare(struct ec_session *s, u32 image_bytes)
 	      ec_wire_time_check(c, ec_clocks_used(s));
 	if (!ret && c->setup.kernel.period_ns)
 		ret = ec_cycle_thread_create(c, image_bytes, &cycle_ops);
-	if (!ret)
+	if (!ret) {
+		activate_status(s);
 		return 0;
+	}
 	ec_cycle_free(c);
 	ec_requests_end(s);
 	ec_shared_put(c->shared);
@@ -67,12 +80,6 @@ static int activate_prepare(struct ec_session *s, u32 image_bytes)
 /* Begin to count for the log and the events. */
 static void activate_counts(struct ec_session *s)
 {
-	struct ec_status *st = s->cycle.shared->status;
-
-	st->config_count = s->wanted.n_configs;
-	st->dc_monitor = ~0u;
-	ec_for_each_domain(d, &s->wanted)
-		st->domains[d->index].expected = d->expected;
 	s->timeout_log.logged = atomic_read(&s->sessions->links->access.timeouts);
 	WRITE_ONCE(s->sessions->links->access.stopped, false);
 	s->notes = (struct ec_count_notes){ };
