@@ -55,7 +55,7 @@ static inline void ec_write64(u64 *v, u64 to)
  * Context: The master's single cyclic caller. RT-safe.
  * Return: for ec_status_end().
  */
-static inline unsigned long ec_status_begin(struct ec_status *st)
+static __always_inline unsigned long ec_status_begin(struct ec_status *st)
 {
 	unsigned long flags;
 
@@ -73,7 +73,7 @@ static inline unsigned long ec_status_begin(struct ec_status *st)
  *
  * Context: As ec_status_begin().
  */
-static inline void ec_status_end(struct ec_status *st, unsigned long flags)
+static __always_inline void ec_status_end(struct ec_status *st, unsigned long flags)
 {
 	/* the data before the even number, as in ec_status_copy() */
 	smp_wmb();

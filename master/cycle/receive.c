@@ -290,17 +290,18 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	WRITE_ONCE(l->access.polls, l->access.polls + 1);
 	for (i = 0; i < c->n_flight; i++) {
 		struct ec_cyc_flight *f = &c->flight[i];
+		struct ec_slot *slot = f->slot;
 
-		if (atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE) {
+		if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
 			if (unlikely(f->missed) && f->send != c->send)
-				ec_links_count(l, f->slot->back, late);
+				ec_links_count(l, slot->back, late);
 			irq |= take_frame(c, f);
-			if (likely(f->slot->back == f->slot->sides))
-				ec_slot_release(f->slot, EC_SLOT_FREE);
+			if (likely(slot->back == slot->sides))
+				ec_slot_release(slot, EC_SLOT_FREE);
 			else
-				put_partial(l, f->slot);
+				put_partial(l, slot);
 		} else if (is_lost(c, f, &now)) {
-			ec_links_count(l, f->slot->sides, lost);
+			ec_links_count(l, slot->sides, lost);
 		} else {
 			f->missed = true;
 			if (left++ != i)
