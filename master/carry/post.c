@@ -81,7 +81,7 @@ void ec_post_due(struct ec_carry *c)
 	u64 now_ns;
 
 	lockdep_assert_held(&c->lock);
-	/* mostly none: no look at the clock */
+	/* mostly none: the clock is not read */
 	if (likely(c->due_ns == U64_MAX))
 		return;
 	now_ns = ktime_get_ns();
