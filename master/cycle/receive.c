@@ -241,12 +241,19 @@ void ec_cycle_log_stale(struct ec_cycle *c)
 }
 
 /*
- * Is the frame lost? Not at the first receive without its reply: the machine may have stood still.
- * Of several copies the last one is awaited until the next receive.
+ * Is there a reply to take? Of several copies the last one is awaited until the next receive, which
+ * takes the data of the others.
  */
+static bool has_reply(const struct ec_cyc_flight *f)
+{
+	return atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE ||
+	       (unlikely(f->missed) && ec_slot_settle(f->slot));
+}
+
+/* Is the frame lost? Not at the first receive without its reply: the machine may have stood still. */
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
-	if (!f->missed || ec_slot_settle(f->slot))
+	if (!f->missed)
 		return false;
 	/* read once in a receive, and mostly not at all */
 	if (!*now)
@@ -292,7 +299,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		struct ec_cyc_flight *f = &c->flight[i];
 		struct ec_slot *slot = f->slot;
 
-		if (atomic_read_acquire(&slot->state) == EC_SLOT_DONE) {
+		if (has_reply(f)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back, late);
 			irq |= take_frame(c, f);
