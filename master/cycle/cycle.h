@@ -30,6 +30,7 @@ struct ec_waiters;
  * @count: datagrams from @first on; it carries those of domains in @queued
  * @queued: domains of that send, bit n: domain n
  * @missed: a receive has not found its reply
+ * @in_time: mask of the links whose copy was there at a receive before the next send
  * @direct: sent from struct ec_cycle.direct
  * @clocks: clock datagrams before them
  * @riding: riders behind them
@@ -41,6 +42,7 @@ struct ec_cyc_flight {
 	u16 count;
 	u64 queued;
 	bool missed;
+	u8 in_time;
 	bool direct;
 	struct ec_dc_flight clocks;
 	struct ec_riding riding;

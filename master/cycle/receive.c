@@ -301,7 +301,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 
 		if (has_reply(f)) {
 			if (unlikely(f->missed) && f->send != c->send)
-				ec_links_count(l, slot->back, late);
+				ec_links_count(l, slot->back & ~f->in_time, late);
 			irq |= take_frame(c, f);
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);
@@ -311,6 +311,8 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 			ec_links_count(l, slot->sides, lost);
 		} else {
 			f->missed = true;
+			if (f->send == c->send)
+				f->in_time = READ_ONCE(f->slot->back);
 			if (left++ != i)
 				c->flight[left - 1] = *f;
 		}

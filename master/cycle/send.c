@@ -103,6 +103,7 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->count = count;
 	f->queued = send->what->queued;
 	f->missed = false;
+	f->in_time = 0;
 	f->direct = c->direct;
 	f->clocks.dgrams = send->dc;
 	f->clocks.time = c->clock.sent;
