@@ -308,7 +308,8 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 			else
 				put_partial(l, slot);
 		} else if (is_lost(c, f, &now)) {
-			ec_links_count(l, slot->sides, lost);
+			/* a copy may have been received just before */
+			ec_links_count(l, slot->sides & ~slot->back, lost);
 		} else {
 			f->missed = true;
 			if (f->send == c->send)

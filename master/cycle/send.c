@@ -19,7 +19,7 @@ static bool make_room(struct ec_cycle *c, u64 now)
 		return true;
 	oldest = c->flight[0].slot;
 	if (ec_slot_cancel(oldest, now))
-		ec_links_count(c->links, oldest->sides, lost);
+		ec_links_count(c->links, oldest->sides & ~oldest->back, lost);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
 		ec_slot_put(oldest);
 	else
