@@ -75,7 +75,8 @@ void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size
  * @now: time
  *
  * A link that fails does not stop the others: the slot awaits only the copies of links that have
- * sent the frame. ec_links_flush() must follow.
+ * sent the frame. One without transmit buffer counts an error then, since the frame does not wait
+ * for it. ec_links_flush() must follow.
  *
  * Context: The owner of the bus access, in an RCU read section. RT-safe.
  * Return: 0: at least one link has sent it; -ENODEV: no device; -EBUSY: no transmit buffer, not
@@ -84,7 +85,7 @@ void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
 	struct ecdev *dev[EC_MAX_LINKS];
-	u8 *buf[EC_MAX_LINKS], unsent = 0;
+	u8 *buf[EC_MAX_LINKS], unsent = 0, full = 0;
 	unsigned long left = sides;
 	int ret = -ENODEV;
 
@@ -95,8 +96,10 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 		if (buf[i])
 			continue;
 		sides &= ~BIT(i);
-		if (dev[i])
-			ret = -EBUSY;
+		if (!dev[i])
+			continue;
+		full |= BIT(i);
+		ret = -EBUSY;
 	}
 	if (!sides)
 		return ret;
@@ -111,10 +114,15 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 		if (!err)
 			continue;
 		unsent |= BIT(i);
+		if (err == -EBUSY)
+			full |= BIT(i);
 		ret = err;
 	}
 	/* a frame whose reply was received counts as sent */
-	return unsent && ec_slot_disarm(slot, unsent) ? ret : 0;
+	if (unsent && ec_slot_disarm(slot, unsent))
+		return ret;
+	ec_links_count(l, full, tx_errors);
+	return 0;
 }
 
 /**
