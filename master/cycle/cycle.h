@@ -30,7 +30,7 @@ struct ec_waiters;
  * @count: datagrams from @first on; it carries those of domains in @queued
  * @queued: domains of that send, bit n: domain n
  * @missed: a receive has not found its reply
- * @in_time: mask of the links whose copy was there at a receive before the next send
+ * @in_time: mask of the links whose copy a receive before the next send has found
  * @direct: sent from struct ec_cycle.direct
  * @clocks: clock datagrams before them
  * @riding: riders behind them

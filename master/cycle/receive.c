@@ -241,7 +241,7 @@ void ec_cycle_log_stale(struct ec_cycle *c)
 }
 
 /*
- * Is there a reply to take? Of several copies the last one is awaited until the next receive, which
+ * Can the data be taken? Of several copies the last one is awaited until the next receive, which
  * takes the data of the others.
  */
 static bool has_reply(const struct ec_cyc_flight *f)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* A cycle whose frames leave on two links, whose copies a case takes off the wire and gives back. */
+/* A cycle whose frames leave on two links; a case takes the copies off, and gives them back. */
 #include "cyc.h"
 #include "master/boundary/ioctl.h"
 
