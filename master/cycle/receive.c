@@ -250,7 +250,7 @@ static bool has_reply(const struct ec_cyc_flight *f)
 	       (unlikely(f->missed) && ec_slot_settle(f->slot));
 }
 
-/* Is the frame lost? Not at the first receive without its reply: the machine may have stood still. */
+/* Is the frame lost? Not at the first receive without reply: the machine may have stood still. */
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
 	if (!f->missed)
@@ -313,7 +313,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		} else {
 			f->missed = true;
 			if (f->send == c->send)
-				f->in_time = READ_ONCE(f->slot->back);
+				f->in_time = READ_ONCE(slot->back);
 			if (left++ != i)
 				c->flight[left - 1] = *f;
 		}
