@@ -244,10 +244,10 @@ void ec_cycle_log_stale(struct ec_cycle *c)
  * Can the data be taken? Of several copies the last one is awaited until the next receive, which
  * takes the data of the others.
  */
-static bool has_reply(const struct ec_cyc_flight *f)
+static bool has_reply(const struct ec_cyc_flight *f, struct ec_slot *slot)
 {
-	return atomic_read_acquire(&f->slot->state) == EC_SLOT_DONE ||
-	       (unlikely(f->missed) && ec_slot_settle(f->slot));
+	return likely(atomic_read_acquire(&slot->state) == EC_SLOT_DONE) ||
+	       (f->missed && ec_slot_settle(slot));
 }
 
 /* Is the frame lost? Not at the first receive without reply: the machine may have stood still. */
@@ -299,7 +299,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		struct ec_cyc_flight *f = &c->flight[i];
 		struct ec_slot *slot = f->slot;
 
-		if (has_reply(f)) {
+		if (has_reply(f, slot)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
 			irq |= take_frame(c, f);
