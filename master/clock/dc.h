@@ -17,7 +17,7 @@ struct ec_links;
 
 /* choice of the reference clock that is no station address */
 #define EC_DC_ANY	0	/* the first one that has a clock */
-#define EC_DC_NOBODY	0xffff	/* the chosen slave is not there */
+#define EC_DC_NOBODY	0xffff	/* the chosen slave is absent */
 
 /**
  * enum ec_dc_state - clocks of a master in a session; ec_dc_set_state() alone changes it

@@ -30,7 +30,7 @@
 #define PART_BITS	16	/* of a ns */
 #define LEAD_NS		(2 * (u64)NSEC_PER_SEC)	/* without its time: it leads no longer */
 
-/* A larger deviation is no late cycle, and would move SYNC to another cycle. */
+/* A larger deviation is not that of a delayed cycle, and would move SYNC to another cycle. */
 static s64 dc_app_limit(const struct ec_dc *dc)
 {
 	u32 interval_us = ec_access_interval_us(&dc->links->access);
@@ -72,8 +72,9 @@ static void approach(struct ec_dc_app *a, s64 dev, u64 at_ns, s64 lim)
 
 /*
  * The mean of many cycles, and the rate: the reference clock is given this time, so that
- * neither the jitter of the application nor single late cycles move it, and all slaves with
- * it. It is quick at first. A deviation counts as four times the usual one at most.
+ * neither the jitter of the application nor single delayed cycles move it, and all slaves
+ * with it. Initially the mean is of few cycles, so it adapts fast. A deviation counts as
+ * four times the usual one at most.
  */
 static void smooth(struct ec_dc_app *a, s64 dev)
 {
@@ -335,7 +336,7 @@ void ec_dc_app_set(struct ec_dc *dc, u64 base, bool set)
 		a->mean_rate = 0;
 		a->n_mean = min_t(u32, a->n_past, EC_DC_APP_PAST);
 		a->n_past = 0;	/* from now on dc_app_follow() updates @base */
-		/* slaves that connect later start SYNC on the same grid, whatever time comes */
+		/* later application times do not move the SYNC grid of slaves that connect later */
 		if (!dc->has_phase)
 			dc->phase = 0;
 		dc->has_phase = true;

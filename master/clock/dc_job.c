@@ -114,12 +114,12 @@ static unsigned int dc_job_find(const struct ec_dc_job *j, u16 station)
 }
 
 /**
- * ec_dc_can_be() - is there a clock to be the reference?
+ * ec_dc_can_be() - does the bus have a clock that can be the reference?
  * @dc: clocks
  * @choice: station address of the reference clock, or EC_DC_ANY...
  *
  * Context: Process. May sleep.
- * Return: whether there is.
+ * Return: whether it has one.
  */
 bool ec_dc_can_be(struct ec_dc *dc, u16 choice)
 {
@@ -430,7 +430,7 @@ static bool known(struct ec_dc_job *j, u32 scan)
 	for (i = 0; i < j->n; i++)
 		if (j->nodes[i].dc && ec_job_clock(j, i)->measured != scan)
 			return false;
-	/* also of excluded slaves: they may take part again */
+	/* also of excluded slaves: their clocks may be set again */
 	for (i = 0; i < j->n; i++)
 		if (ec_job_clock(j, i)->measured == scan)
 			ec_job_clock(j, i)->delay -= zero;
@@ -471,11 +471,11 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 }
 
 /**
- * ec_dc_has_upstream() - are there clocks upstream of the reference clock?
+ * ec_dc_has_upstream() - does a job have clocks upstream of the reference clock?
  * @j: job
  *
  * Context: Process.
- * Return: whether there are.
+ * Return: whether it has.
  */
 bool ec_dc_has_upstream(const struct ec_dc_job *j)
 {

@@ -181,7 +181,7 @@ static unsigned int per_send(const struct ec_dc_job *j)
  * Drift compensation. Each frame gives a slave one measurement of its rate, with 10 ns
  * of noise over the time since the last frame, and as many steps of 1/4096 towards it as
  * the frame has datagrams; but one step of 1/64 of the phase, however many it has. So
- * at first frames have as many as they may. When the clocks are near, slaves may use
+ * the first frames have as many as they may. When the clocks are near, slaves may use
  * them. Meanwhile the rest of the rates and then the noise are removed: only the first
  * frame of a send, which measures over a whole cycle, still has many (@first); the
  * others have few (@more), or none except each @gap frames. The cycle only reads the time
@@ -192,7 +192,7 @@ static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigne
 {
 	unsigned int i, at, n = 0, per = per_send(j);
 
-	/* if the reference clock does not reply; it is written anew when the frame leaves */
+	/* if the reference clock does not reply; written again when the frame leaves */
 	put_unaligned_le64(ec_dc_clock_now(j->dc), j->time);
 	for (i = 0; i < frames; i++) {
 		at = i % per;

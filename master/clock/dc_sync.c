@@ -39,8 +39,8 @@ static bool dc_sync_canceled(const struct ec_slave *s, u8 state)
  * ec_dc_wait() - wait until the clocks are set
  * @s: slave that wants to use its clock, @lock held
  *
- * Context: Process. May sleep: from the first cycle on at most 5 s for clocks
- * that are set to come near each other, and a minute for them to be set.
+ * Context: Process. May sleep: from the first cycle on at most a minute, and at most
+ * 5 s after the clock of @s was set.
  * Return: 0; -ETIME when they were not set in time; -ENXIO when the one of @s
  * could not be set; -ECANCELED.
  */
@@ -322,7 +322,7 @@ static u8 missing(const struct ec_dc_sync *c, u8 status)
 
 /**
  * ec_dc_sync_check() - check that the started SYNC signals run
- * @s: slave on its way to OP, @lock held
+ * @s: slave in SAFEOP, @lock held
  * @c: its configuration
  *
  * Waits for the first signals and reads register 0x0984; starts them again when they are

@@ -22,7 +22,7 @@ void ec_dc_clock(struct ec_dc *dc, u64 time, u64 at_ns)
  * @time: from its last replies and its rate, ns
  * @at_ns: when it will be that time (ktime)
  *
- * Ignores one that is far from the last time: the clocks were set anew since.
+ * Ignores a time that differs from the last one by 1 ms or more: the clocks were set again.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */

@@ -110,8 +110,8 @@ static unsigned int dc_watch_collect(struct ec_dc *dc, struct batch *b, unsigned
 }
 
 /*
- * A slave has replied: is another attempt worth it? Each attempt slightly disturbs the clocks
- * that are set, as they are measured again, so their number for one slave is limited.
+ * A slave has replied: is another attempt worth it? Each attempt measures all clocks again and
+ * slightly disturbs those that are set, so the attempts for one slave are limited.
  */
 static bool worth_attempt(struct ec_slave *s)
 {

@@ -90,6 +90,7 @@ COMMENTS = {
     "lib/tools": 0,
     "master/boundary": 0,
     "master/carry": 0,
+    "master/clock": 0,
     "master/cycle": 0,
     "master/link": 0,
     "master/mailbox": 0,
