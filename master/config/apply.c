@@ -247,7 +247,7 @@ static int acknowledge(struct ec_slave *s)
 	return to_init(s);
 }
 
-/* It has gone from INIT to @state by our hand. */
+/* The master has brought it from INIT to @state. */
 static void has_left_init(struct ec_slave *s, u8 state)
 {
 	s->ours = true;
@@ -266,7 +266,7 @@ static int leave_init(struct ec_slave *s, u8 state)
 				     "BOOT not possible: no bootstrap mailbox in the SII");
 	s->ours = false;
 	ret = apply_enter(s, state);
-	/* whatever code it has for that: without the event, then */
+	/* any AL status code may be due to the event of SM1: try again without */
 	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
 		s->mbox.strict = true;
 		ret = set_state(s, EC_AL_INIT) ?: apply_enter(s, state);
@@ -278,7 +278,7 @@ static int leave_init(struct ec_slave *s, u8 state)
 	return ret ? apply_failed(s, state, ret) : 0;
 }
 
-/* Is there a SyncManager whose PDOs the application did not name? */
+/* Does it have a SyncManager whose PDOs the application has not configured? */
 static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
 {
 	unsigned int sm;
@@ -475,7 +475,7 @@ static void take_plan(struct ec_slave *s)
 	const struct ec_config *c = setup->config;
 
 	lockdep_assert_held(&s->lock);
-	/* the configuration as it was at activation */
+	/* from activation on the configuration does not change */
 	if (!c || !smp_load_acquire(&c->wanted->active) || setup->active_config == c)
 		return;
 	setup->active_config = c;
@@ -483,8 +483,8 @@ static void take_plan(struct ec_slave *s)
 }
 
 /*
- * Nothing of a configuration is left in the slave, so that it need not go through INIT. That
- * would have emptied its mailbox, too: it is the way for one that cannot be emptied.
+ * Nothing of a configuration is left in the slave, so that it need not go through INIT. INIT
+ * would also have emptied its mailbox: a slave whose mailbox cannot be emptied goes there.
  */
 static int start_clean(struct ec_slave *s)
 {
@@ -585,7 +585,7 @@ void ec_apply(struct ec_slave *s)
 	}
 	if (READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
 	    (apply_is_transient(s, ret) || is_undecided(s, ret))) {
-		/* it has that time once more: a request anew may set it back */
+		/* wait that limit once more: another request may restart the transition */
 		if (ret == -ETIME && READ_ONCE(s->awaited))
 			s->retry_ms = max(s->retry_ms, s->awaited_ms / 2);
 		ec_slave_retry(s, EC_RETRY_MAX_MS);

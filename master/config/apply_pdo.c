@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* PDO assignment and mapping of a slave on its way to SAFEOP. */
+/* PDO assignment and mapping of a slave before SAFEOP. */
 #include <linux/err.h>
 #include "../mailbox/coe.h"
 #include "config.h"

@@ -144,7 +144,7 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
  *
  * Context: The slave's worker. Waits for bus traffic.
  * Return: 0; -EOVERFLOW, -ENOSPC, -EOPNOTSUPP when it cannot serve the configuration, noted
- * as its error; -ENOMEM; -EIO when it did not take part; or as ec_xfer().
+ * as its error; -ENOMEM; -EIO when it did not execute the writes; or as ec_xfer().
  */
 int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 {
@@ -166,10 +166,10 @@ int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 static const u8 zero[MAX_FMMU * EC_FMMU_PAGE];
 
 /**
- * ec_apply_clear_fmmus() - the slave takes part in no process data
+ * ec_apply_clear_fmmus() - reset the FMMUs of a slave
  * @s: slave
  *
- * Without process data no FMMU may be left: the slave would answer, in PREOP too, at
+ * Without process data no FMMU may be left: even in PREOP the slave would respond at
  * logical addresses that the next application gives to another slave.
  *
  * Context: The slave's worker. Waits for bus traffic.

@@ -75,7 +75,7 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 }
 
 /**
- * ec_config_drop() - take back the configuration that was made last
+ * ec_config_drop() - remove the configuration that was added last
  * @c: configuration that could not begin, detached from its slave
  *
  * Context: Process, lock of the session held. May sleep.
@@ -317,7 +317,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 /**
  * ec_config_ip() - IP parameters to be written by EoE
  * @c: configuration
- * @p: parameters; those not in @which stay as they are
+ * @p: parameters; those not in @which stay unchanged
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0, or as ec_startup_add().
@@ -389,7 +389,7 @@ bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f
 	return sm->dir != f->dir || ec_pdo_list_bytes(&sm->pdos) != f->size;
 }
 
-/* The mapping of @sm in @d, made when it is not there yet. */
+/* The mapping of @sm in @d; the first call adds it. */
 static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domain *d)
 {
 	struct ec_config_fmmu *f;
@@ -427,13 +427,13 @@ static struct ec_config_fmmu *map_sm(struct ec_config *c, u8 sm, struct ec_domai
  * @sub: subindex
  * @d: domain
  * @offset: result: byte in the domain
- * @bit: result: bit in that byte; NULL: it has to begin with a byte
+ * @bit: result: bit in that byte; NULL: the entry must be byte-aligned
  *
  * Context: Process, lock of the configuration held. May sleep.
  * Return: 0; -ENOENT when the entry is not mapped; -EINVAL when its SyncManager
  * has no direction; -EOVERFLOW when all FMMUs are used or SyncManager or domain
- * are too large; -EBUSY as ec_config_changed(); -EFAULT it begins within a byte and
- * @bit is NULL; -ENOMEM.
+ * are too large; -EBUSY as ec_config_changed(); -EFAULT the entry is not byte-aligned
+ * and @bit is NULL; -ENOMEM.
  */
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit)

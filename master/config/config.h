@@ -101,10 +101,11 @@ struct ec_config_flag {
  * @reply_ms: limit of its replies to SDOs and IDNs, 0: default
  * @emergencies: how many to keep
  * @emerg_cleared: by an application in the kernel, of the lost ones
- * @lost: the slave that it had while active, in words, when it was there last (ktime), where
- *	the way to it broke, and the ring position of that place at the last search; its
- *	station address and serial number; the first list of slaves (bus->lists) whose new
- *	slaves may be attached instead; it is lost, and only its place can bring a slave back
+ * @lost: the slave that it had while active, in words, when all slaves replied last before
+ *	that (ktime), where the way to it broke, and the ring position of that place at the
+ *	last search; its station address and serial number; the first list of slaves
+ *	(bus->lists) whose new slaves may be attached instead; it is lost, and only its
+ *	place can bring a slave back
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -206,7 +207,7 @@ struct ec_wanted {
 	struct ec_domain *domains[EC_MAX_DOMAINS];
 	/** @n_domains: entries in @domains */
 	unsigned int n_domains;
-	/** @active: activated: the configurations stay as they are, workers go by them */
+	/** @active: activated: the configurations do not change any more, workers use them */
 	bool active;
 	/** @before: the same of the running session that is to be taken over, NULL: none */
 	const struct ec_wanted *before;

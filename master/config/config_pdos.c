@@ -59,7 +59,7 @@ static int inherit_defaults(struct ec_config *c, const struct ec_config *from)
 
 /**
  * ec_config_begin() - give a new configuration the PDOs that it starts with
- * @c: configuration, attached to its slave if that is there
+ * @c: configuration, attached to its slave if that is connected
  *
  * They are those of the session that is to be taken over, or those that the slave has.
  *

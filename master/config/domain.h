@@ -25,7 +25,7 @@ struct ec_domain_fmmu {
  * @offset: of its data in the image, and its logical base address; set by activation
  * @fmmus: what it consists of
  * @n_fmmus: entries in @fmmus
- * @expected: working counter when all slaves take part
+ * @expected: working counter when all slaves process the datagrams
  * @options: EC_DOMAIN_OPT_*
  * @n_dgrams: datagrams, set by activation
  * @dgram_bytes: their bytes, header and working counter included
@@ -35,8 +35,8 @@ struct ec_domain_fmmu {
  * @n_inputs: entries in @inputs
  * @snap: result as of its last ecrt_domain_process()
  * @max_age: sends after which received data are stale, 0: never
- * @division: it takes part in every so many cycles the kernel runs
- * @phase: first time in that cycle, from 0 on
+ * @division: kernel cycles from one exchange of it to the next
+ * @phase: the first of these cycles, from 0 on
  */
 struct ec_domain {
 	struct ec_wanted *wanted;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Startup commands: what a slave gets on its way to a state, beside PDOs and FMMUs. */
+/* Startup commands: written to a slave before a state is requested, beside PDOs and FMMUs. */
 #ifndef EC_STARTUP_H
 #define EC_STARTUP_H
 

@@ -181,16 +181,17 @@ static bool other_revision(const struct ec_config *c, const struct ec_slave *s)
 }
 
 /**
- * ec_config_at() - look for the configuration that a slave has or differs from
+ * ec_config_at() - find the configuration that a slave has or differs from
  * @w: what an application configures
  * @slave: slave
- * @from: configuration to begin with, initially 0; set behind the last one checked
+ * @from: number of the first configuration to check, initially 0; set behind the last one
+ *	checked
  *
- * Looks at some configurations only, as a section of a reader is short.
+ * Checks some configurations only, as a section of a reader is short.
  *
  * Context: After ec_show_begin().
  * Return: the one that is attached; else one without slave that means its place; or NULL:
- * go on until @from is the number of configurations.
+ * call again until @from is the number of configurations.
  */
 const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
 				     unsigned int *from)

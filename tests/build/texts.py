@@ -91,6 +91,7 @@ COMMENTS = {
     "master/boundary": 0,
     "master/carry": 0,
     "master/clock": 0,
+    "master/config": 0,
     "master/cycle": 0,
     "master/link": 0,
     "master/mailbox": 0,
