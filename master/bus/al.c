@@ -99,7 +99,7 @@ int ec_al_ack(struct ec_slave *slave)
 	u16 state = READ_ONCE(slave->al_status) & EC_AL_STATE_MASK;
 	int ret;
 
-	/* with device emulation the acknowledge would come back as an error */
+	/* device emulation copies AL control, so the acknowledge would show as an error */
 	ret = request(slave, slave->emulation ? state : state | EC_AL_ERROR, until);
 	return ret ? ret : poll(slave, EC_AL_ERROR, 0, false, until);
 }
@@ -130,7 +130,7 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	u64 until;
 	int ret;
 
-	/* it may come back with another dictionary */
+	/* in the new state it may have another dictionary */
 	if (from < EC_AL_PREOP || from == EC_AL_BOOT || state < EC_AL_PREOP || state == EC_AL_BOOT)
 		ec_dict_forget(&slave->dict);
 	timeout_ms = limit_ms(slave, from, state, timeout_ms);

@@ -81,7 +81,7 @@ void ec_bus_exit(struct ec_bus *bus)
  */
 void ec_bus_settled(struct ec_bus *bus)
 {
-	/* what the caller has written is there when the count is */
+	/* a waiter that sees the new count sees what the caller has written */
 	atomic_inc_return_release(&bus->settles);
 	if (wq_has_sleeper(&bus->settled))
 		wake_up_all(&bus->settled);
@@ -106,7 +106,7 @@ struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position)
 	return s;
 }
 
-/* No slave on its way to another state, PDOs read, or tried. */
+/* Its worker is idle, and its PDOs were read, or tried; or it was disconnected. */
 static bool slave_settled(struct ec_slave *s)
 {
 	return READ_ONCE(s->stop.gone) ||
@@ -201,7 +201,7 @@ int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms)
 }
 
 /**
- * ec_bus_wait_slaves() - wait until no slave is on its way to another state
+ * ec_bus_wait_slaves() - wait until all slaves have settled: workers idle, PDOs read or tried
  * @bus: bus
  *
  * Context: Process. May sleep, at most 10 s.

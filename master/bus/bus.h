@@ -13,7 +13,7 @@
 #include "known_table.h"
 #include "workers.h"
 
-#define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the list of slaves is used as it is */
+#define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the present list of slaves is used */
 
 struct ec_bus;
 struct ec_links;
@@ -48,7 +48,7 @@ struct ec_bus {
 	void *ext[EC_N_EXT];
 	/**
 	 * @slave_bytes: size of the part of each layer in a slave, struct ec_slave @ext; set
-	 * when these are initialized, 0: the layer is not there
+	 * when these are initialized, 0: the layer is absent
 	 */
 	size_t slave_bytes[EC_N_EXT];
 
@@ -110,11 +110,11 @@ struct ec_bus {
 	unsigned int thrown_away;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */
 	u64 complete_ns;
-	/** @mailboxes_ns: last look at all mailboxes (ktime); the monitor's */
+	/** @mailboxes_ns: last poll of all mailboxes (ktime); the monitor's */
 	u64 mailboxes_ns;
-	/** @some_mailboxes_ns: last look at any */
+	/** @some_mailboxes_ns: last poll of any */
 	u64 some_mailboxes_ns;
-	/** @vain_looks: in a row, at an event that was that of no mailbox */
+	/** @vain_looks: polls in a row that found no message although an event was seen */
 	unsigned int vain_looks;
 	/** @sii_bytes: memory of all EEPROM images */
 	atomic_long_t sii_bytes;

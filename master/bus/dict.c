@@ -154,7 +154,7 @@ static bool lasts(int ret, u32 abort)
  * ec_dict_info() - ask about the object dictionary of a slave, or recall the answer
  * @s: slave
  * @info: request, of ec_sdoinfo_init(), and its answer
- * @limit: when to give up; NULL: as usual
+ * @limit: limits of the exchange; NULL: the usual ones
  *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_coe_info().

@@ -3,7 +3,7 @@
 #include "known.h"
 #include "slave.h"
 
-#define WALK	64	/* slaves to look at without a pause */
+#define WALK	64	/* slaves to check without a pause */
 
 /* Does @a have a value in a field that its kind does not use? */
 static bool has_more(const struct ec_ioc_address *a)
@@ -65,10 +65,10 @@ static bool matches(const struct ec_slave *s, const struct ec_ioc_address *a)
  * ec_find_slave() - look for the slave that an address names
  * @bus: bus
  * @a: address, checked by ec_find_check()
- * @from: ring position to go on with, initially 0; 0 again when the list has changed
+ * @from: ring position to continue from, initially 0; 0 again when the list has changed
  * @slave: result: NULL there is none
  *
- * Looks at some slaves only, as a section of a reader is short.
+ * Checks some slaves only, as a section of a reader is short.
  *
  * Context: Topo held, or after ec_show_begin().
  * Return: 0; -EAGAIN: call again.
@@ -100,7 +100,7 @@ int ec_find_slave(const struct ec_bus *bus, const struct ec_ioc_address *a, unsi
  * @bus: bus
  * @alias: alias, not 0
  *
- * Looks at all slaves: not for a section of a reader.
+ * Checks all slaves: not for a section of a reader.
  *
  * Context: Process, topo held.
  * Return: its ring position; the number of slaves: there is none.
@@ -159,11 +159,11 @@ struct ec_slave *ec_find_slave_at(const struct ec_bus *bus, u16 alias, u16 posit
 /**
  * ec_find_group() - alias and offset by which a slave is known: of the nearest slave upstream
  * @slave: slave of the list
- * @steps: positions that were looked at, initially 0
+ * @steps: positions that were checked, initially 0
  * @alias: result: alias of the slave or of the nearest one before it that has one, 0: none has
  * @distance: result: slaves from that one on; without alias the ring position
  *
- * Looks at some slaves only, as a section of a reader is short.
+ * Checks some slaves only, as a section of a reader is short.
  *
  * Context: Topo held, or after ec_show_begin().
  * Return: 0; -EAGAIN: call again.

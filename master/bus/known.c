@@ -10,7 +10,7 @@ static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 	return &heads[hash_64(key, EC_KNOWN_BITS)];
 }
 
-/* Without memory the number is not known any more when the device comes back. */
+/* Without memory the number is forgotten: the device gets another one when it reconnects. */
 static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int limit)
 {
 	struct ec_lost *l = kzalloc(sizeof(*l), GFP_KERNEL | __GFP_NOWARN);

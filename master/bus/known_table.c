@@ -18,7 +18,7 @@ void ec_known_init(struct ec_known *k)
  * @k: numbers of a bus
  * @l: device
  *
- * Context: Process. Who changes the table of slaves, or ends it.
+ * Context: Process. The caller changes the table of slaves, or frees it.
  */
 void ec_known_drop(struct ec_known *k, struct ec_lost *l)
 {

@@ -13,9 +13,9 @@
 #include "mailboxes.h"
 #include "slave.h"
 
-#define ALL_NS		NSEC_PER_SEC		/* between looks at all mailboxes */
-#define SOME_NS		(60 * NSEC_PER_MSEC)	/* at those of slaves that show no event */
-#define VAIN		5			/* looks at an event, then at most every SOME_NS */
+#define ALL_NS		NSEC_PER_SEC		/* between polls of all mailboxes */
+#define SOME_NS		(60 * NSEC_PER_MSEC)	/* of those of slaves that show no event */
+#define VAIN		5			/* polls without message, then one each SOME_NS */
 #define UNSHOWN		3			/* messages without event, then it is one of them */
 
 /**
@@ -47,7 +47,7 @@ static bool any_in_use(const struct ec_bus *bus)
 	return false;
 }
 
-/* Look at the mailboxes of the candidates; @shown: the event of one was seen. True: one is full. */
+/* Poll the mailboxes of the candidates; @shown: the event of one was seen. True: one is full. */
 static bool mailboxes_look(struct ec_bus *bus, bool all, bool shown)
 {
 	bool found = false;
@@ -90,7 +90,7 @@ out:
 }
 
 /**
- * ec_mailboxes_mask() - the ECAT events that a slave shall show
+ * ec_mailboxes_mask() - the ECAT events that a slave has to show
  * @mailbox: its SM1 is a mailbox
  *
  * Context: Any.
@@ -106,12 +106,12 @@ const u8 *ec_mailboxes_mask(bool mailbox)
 }
 
 /**
- * ec_mailboxes_watch() - which event of a frame of the cycle is worth a look at once
+ * ec_mailboxes_watch() - which event in a cyclic frame is worth an immediate poll
  * @bus: bus, scanned
  * @exchange: callers wait for answers
  *
  * Context: The monitor thread.
- * Return: that of SM1; 0 for @exchange, or when looks found no message.
+ * Return: that of SM1; 0 for @exchange, or when %VAIN polls found no message.
  */
 u16 ec_mailboxes_watch(const struct ec_bus *bus, bool exchange)
 {

@@ -124,7 +124,7 @@ static bool next_unknown(const struct ec_slave *s, const struct ec_names *l, str
 }
 
 /**
- * ec_names_pending() - is there anything to ask the slave for, and may it be asked?
+ * ec_names_pending() - are names of the slave unknown, and can they be read now?
  * @s: slave whose PDOs are known, @lock held
  *
  * Never beside a cycle: nothing there depends on names.

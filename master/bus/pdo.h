@@ -5,7 +5,7 @@
 
 #include <linux/types.h>
 
-/* objects (ETG.1000.6 clause 5.6.7.4): PDOs of a SyncManager; modules that a slave shall have */
+/* objects (ETG.1000.6 clause 5.6.7.4): PDOs of a SyncManager; configured modules */
 #define EC_PDO_ASSIGN		0x1c10
 #define EC_PDO_MODULES		0xf030
 

@@ -142,7 +142,7 @@ static void record(struct ec_bus *bus, bool al)
 /**
  * ec_pending_flush() - record what slaves have reached
  * @bus: bus
- * @all: now; otherwise once none is on its way any more, or after %TOGETHER_MS
+ * @all: now; otherwise once no slave is busy any more, or after %TOGETHER_MS
  *
  * Context: The monitor thread.
  */

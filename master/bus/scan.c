@@ -46,10 +46,10 @@ static int scan_read_all(struct scan *sc, u16 ado, size_t ofs, u16 len)
 }
 
 /**
- * ec_scan_limit() - how many slaves a scan takes on
+ * ec_scan_limit() - how many slaves a scan accepts
  *
- * Whatever a broken or hostile slave does to a frame, it makes the master allocate no
- * more than a part of the memory of the machine.
+ * A broken or hostile slave can change a frame, but the master allocates at most a part
+ * of the memory of the computer.
  *
  * Context: Any.
  * Return: slaves.
@@ -149,7 +149,7 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 		if (READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent))
 			continue;
 		if (s->part)
-			s->retry_ms = 0;	/* go on soon */
+			s->retry_ms = 0;	/* the next part soon */
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	}
 	for (i = 0; i < n; i++) {
@@ -383,7 +383,7 @@ static void note_aliases(struct scan *sc)
 	}
 }
 
-/* The result becomes visible, unless the list is held by now; slaves that are missing are gone. */
+/* Publish the result, unless the list is held by now; slaves missing in it are disconnected. */
 static bool scan_publish(struct scan *sc)
 {
 	struct ec_bus *bus = sc->bus;

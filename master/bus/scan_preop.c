@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * New slaves from INIT to PREOP, all at once: packed writes, packed reads of
- * the AL status. Who is not there in time or shows an error is left to its
- * worker, which has patience and says what is wrong.
+ * the AL status. A slave that is slow or shows an error is left to its worker,
+ * which waits longer and reports the cause.
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
@@ -16,7 +16,7 @@
 #define WAIT_NS		(20 * NSEC_PER_MSEC)
 #define WRITES		4	/* datagrams per slave */
 
-/* one slave on its way */
+/* one slave between INIT and PREOP */
 struct climber {
 	struct ec_slave *slave;
 	unsigned int first;	/* of its datagrams */
@@ -73,7 +73,7 @@ static void scan_preop_start(struct job *j)
 	}
 }
 
-/* Poll the AL status; those that are there or have an error are done. */
+/* Poll the AL status; slaves in PREOP, or with an error, are done. */
 static void scan_preop_look(struct job *j)
 {
 	unsigned int i, left = 0;

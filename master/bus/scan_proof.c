@@ -142,7 +142,7 @@ int ec_scan_proof(struct scan *sc)
 	enum doubt doubt = NONE;
 	int ret;
 
-	/* the list is to be empty, whatever the bus is */
+	/* an empty list needs no check of the bus */
 	if (!sc->n)
 		return 0;
 	ret = check_found(sc, &doubt) ?: check_lost(sc, &doubt);

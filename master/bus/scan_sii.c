@@ -4,7 +4,7 @@
  * read everywhere, packed reads collect the results. A slave that is slow,
  * refuses, misses the command or has come to its end leaves the lockstep.
  *
- * A large EEPROM takes a minute, one full of garbage too. It is read in parts, each by a
+ * A large EEPROM, or one full of garbage, takes a minute. It is read in parts, each by a
  * scan of its own: the other slaves and the monitor do not wait for it.
  */
 #include <linux/delay.h>
@@ -90,7 +90,7 @@ static void scan_sii_fail(struct reader *r, const char *what, const char *remedy
 	s->sii_counted = 0;
 }
 
-/* The slave keeps what was read; the next scan goes on from there. */
+/* The slave keeps what was read; the next scan continues from there. */
 static void interrupt(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
@@ -159,7 +159,7 @@ static void enlarge(struct reader *r, size_t bytes)
 	s->sii_counted = bytes;
 }
 
-/* Room for the next access, and whether there is a next one. */
+/* Enlarge the buffer for the next access, or end the reader after the last one. */
 static void scan_sii_plan(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
@@ -301,8 +301,8 @@ static void scan_sii_sleep_until(u64 ns)
 }
 
 /*
- * When to look first next time: a little sooner, until that was too soon once.
- * @first: the first look found everybody ready.
+ * When to poll first next time: a little sooner, until that was too soon once.
+ * @first: the first poll found all slaves ready.
  */
 static void scan_sii_learn(struct job *j, u64 ready_ns, bool first)
 {
@@ -459,7 +459,7 @@ static void scan_sii_run(struct job *j)
 	u32 word;
 
 	n = waiting(j, &word);
-	/* no fault of a slave: the scan begins anew */
+	/* no fault of a slave: the scan begins again */
 	if (scan_sii_take_over(j, j->rds, n) == -ENOMEM)
 		return;
 	for (; n && scan_sii_go_on(j); n = waiting(j, &word)) {
@@ -502,7 +502,7 @@ void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 		r->need = FIRST_BYTES;
 		r->len = sizeof(r->reg);
 		r->began = slaves[i]->part_bytes;
-		/* go on where the scan before was interrupted */
+		/* continue where the previous scan was interrupted */
 		if (slaves[i]->part)
 			scan_sii_plan(r);
 		else

@@ -147,7 +147,7 @@ static bool owns_station(const struct scan *sc, unsigned int i, const struct ec_
 	       !same_state(sc, front ? sc->n - (sc->bus->n_slaves - s->position) : s->position, s);
 }
 
-/* One that failed in the scan is read anew; one that refused a state is the same. */
+/* A slave that failed in a scan is read again, an attached one that refused a state is not. */
 static bool is_usable(const struct ec_slave *s)
 {
 	u8 error = READ_ONCE(s->error);
@@ -158,8 +158,8 @@ static bool is_usable(const struct ec_slave *s)
 }
 
 /*
- * The known slave that is at @i without an answer: what is in front of it is what was
- * there before, and its address is nowhere else.
+ * The known slave at @i that does not reply: the slaves before it are the same as in the
+ * list, and no slave has its address.
  */
 static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool same_before)
 {
@@ -195,7 +195,7 @@ static void scan_station_take_part(struct ec_slave *s, struct ec_slave *old)
 		swap(s->sii_counted, old->sii_counted);
 }
 
-/* The one that could not be read here before: its cause is logged once, its tries go on. */
+/* If a slave could not be read here before, keep its cause, which is logged once, and its tries. */
 static void take_failure(struct scan *sc, struct ec_slave *s)
 {
 	const struct ec_slave *old = ec_scan_unreadable(sc->bus, s->position);

@@ -461,11 +461,11 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
 }
 
 /**
- * ec_slave_kick() - let the worker look at the slave again
+ * ec_slave_kick() - start the worker of a slave again
  * @slave: slave
  *
- * The requested state stays as it is: a caller that only wants the slave brought there must not
- * write back a state that it has read before.
+ * The requested state does not change: a caller that only wants the slave brought there must
+ * not write back a state that it has read before.
  *
  * Context: Process.
  */

@@ -38,7 +38,7 @@ struct ec_break {
  * Fixed after the scan:
  * @kref: reference count; the master's table holds one
  * @bus: bus
- * @ext: parts of higher layers, zeroed at first; they are as old as the slave itself
+ * @ext: parts of higher layers in the memory of the slave, initially zeroed
  * @stop: ends what callers and its worker wait for
  * @mbox: its mailbox
  * @station: station address
@@ -95,7 +95,7 @@ struct ec_break {
  * @al_code: AL status code that belongs to it
  * @al_reads: how often a worker has read the two: what was asked for before
  *	is older
- * @requested: AL state it shall reach
+ * @requested: AL state that its worker brings it to
  * @limit_ms: time limit of each transition to it, 0: the usual ones
  * @awaited: AL state that was asked for and is not reached so far, 0: none. It is taken when it
  *	comes after its time limit
@@ -115,15 +115,16 @@ struct ec_break {
  * @missed: polls in a row without its reply, while the list is held; the monitor's
  * @retry_ns: when to try again what failed (ktime), 0: never
  * @retry_ms: distance between the last two tries
- * @seen_ns: it was lost or silent, and was there last at that time (ktime); 0: in its state
+ * @seen_ns: when all slaves replied last before it was lost or silent (ktime); 0: it was not,
+ *	or is in its state again
  * @job: brings it to @requested
  * @works: runs of @job that are queued or in progress
  * @unshown: messages that did not show in the IRQ field; the monitor's
  * @lock: one worker or caller at a time changes its state
- * @read_pdos: read the PDOs when it is there
+ * @read_pdos: read the PDOs when it is in @requested
  * @reconfigure: go through INIT and configure again
  * @clean: nothing of a configuration is left in its registers
- * @ours: has gone from INIT to PREOP or BOOT by our hand, not by an earlier master's
+ * @ours: this master has brought it from INIT to PREOP or BOOT, not an earlier one
  */
 struct ec_slave {
 	struct kref kref;
@@ -302,7 +303,7 @@ static inline bool ec_slave_busy(const struct ec_slave *slave)
 }
 
 /**
- * ec_slave_pdos_pending() - shall the PDOs be read over CoE?
+ * ec_slave_pdos_pending() - are the PDOs to be read over CoE?
  * @s: slave
  *
  * Context: Any.

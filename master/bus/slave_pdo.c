@@ -175,7 +175,7 @@ static bool same_entries(const struct ec_pdo *a, const struct ec_pdo *b)
 	return true;
 }
 
-/* Is it the same process data, whatever it is called? */
+/* Is it the same process data, apart from names? */
 bool ec_pdo_list_same(const struct ec_pdo_list *a, const struct ec_pdo_list *b)
 {
 	unsigned int i;

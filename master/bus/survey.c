@@ -6,12 +6,12 @@
 #include "survey.h"
 
 /**
- * ec_survey_is_due() - shall a slave that failed be tried again?
+ * ec_survey_is_due() - is the next attempt for a slave that failed due?
  * @s: slave
  * @now: time (ktime), ns
  *
  * Context: Any. RT-safe.
- * Return: whether it shall.
+ * Return: whether it is.
  */
 bool ec_survey_is_due(const struct ec_slave *s, u64 now)
 {
@@ -36,7 +36,7 @@ bool ec_survey_lasts(const struct ec_survey *survey)
 }
 
 /**
- * ec_survey() - look at all slaves
+ * ec_survey() - sum up the present state of all slaves
  * @bus: bus
  * @survey: result
  *

@@ -5,24 +5,24 @@
 
 #include "bus.h"
 
-/* slaves that have not changed are looked at so often: there may be a change that does not count */
+/* between two surveys without a counted change, as not every change is counted */
 #define EC_SURVEY_NS	NSEC_PER_SEC
 
 /** struct ec_survey - what the monitor has to know of all slaves */
 struct ec_survey {
 	/** @replying: slaves that have to reply */
 	unsigned int replying;
-	/** @state: AL state that these have and shall have; 0: there is none of them */
+	/** @state: AL state requested for the first of these; 0: there is none of them */
 	u8 state;
-	/** @differ: not one state for all, or not all are in the state they shall have */
+	/** @differ: not one state requested for all, or not all are in it */
 	bool differ;
 	/** @silent: one does not reply any more */
 	bool silent;
-	/** @chores: one is busy, shall be tried again, or its PDOs are not read yet */
+	/** @chores: one is busy, its next attempt is due, or its PDOs are not read yet */
 	bool chores;
 	/** @exchange: a caller exchanges messages with one */
 	bool exchange;
-	/** @polled: the mailbox of one has to be looked at often */
+	/** @polled: the mailbox of one has to be polled often */
 	bool polled;
 	/** @failed: one has failed or does not reply, and will be tried again */
 	bool failed;

@@ -15,7 +15,7 @@
  * @all: in @ws->all
  * @idle: in @ws->idle, empty: not there
  * @since: when it became idle (jiffies)
- * @ends: it does not look at the queue any more
+ * @ends: it takes no job any more
  */
 struct worker {
 	struct ec_workers *ws;
@@ -79,7 +79,7 @@ static void run_first(struct ec_workers *ws)
 	spin_lock(&ws->lock);
 }
 
-/* Sleep until a job waits. Return: false: the worker ends without a look at the queue. */
+/* Sleep until a job waits. Return: false: the worker ends without another job. */
 static bool be_idle(struct ec_workers *ws, struct worker *w)
 {
 	lockdep_assert_held(&ws->lock);

@@ -47,7 +47,7 @@ struct ec_workers {
 	struct list_head idle;
 	/** @n: workers */
 	unsigned int n;
-	/** @coming: workers that were woken or created, and have yet to look at @queue */
+	/** @coming: workers that were woken or created, and have yet to check @queue */
 	unsigned int coming;
 	/** @most: workers at once */
 	unsigned int most;

@@ -89,6 +89,7 @@ COMMENTS = {
     "lib/ecrt": 0,
     "lib/tools": 0,
     "master/boundary": 0,
+    "master/bus": 0,
     "master/carry": 0,
     "master/clock": 0,
     "master/config": 0,
