@@ -43,7 +43,7 @@ void ec_events_put(struct ec_events *ev, u32 kind, u16 slave, const u32 *args)
 
 /**
  * ec_events_admit() - may a change of this subject have a record?
- * @r: of the subject, zeroed at first
+ * @r: of the subject, initially zeroed
  * @now: time of the change (ktime)
  *
  * The caller counts changes without one in @r->more; its next record says how many there were.

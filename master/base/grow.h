@@ -9,7 +9,7 @@
 #include <linux/string.h>
 
 /**
- * ec_grow() - room for one more entry
+ * ec_grow() - enlarge an array for one more entry if it is full
  * @array: array that only this function has allocated, or NULL
  * @n: entries in it
  * @size: bytes of an entry
@@ -18,7 +18,7 @@
  * fragmented machine as well. Free it with kvfree().
  *
  * Context: Process. May sleep.
- * Return: the array with room for entry @n; NULL without memory, then @array is
+ * Return: the array, large enough for entry @n; NULL without memory, then @array is
  * unchanged.
  */
 static inline void *ec_grow(void *array, size_t n, size_t size)

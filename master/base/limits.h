@@ -15,7 +15,7 @@
 #define EC_MAX_CONFIGS		4096	/* EC_STATUS_CONFIGS */
 #define EC_MAX_IMAGE		(256 * 1024)	/* bytes of process data per session */
 #define EC_MAX_CYCLE_DGRAMS	512	/* datagrams of one cycle */
-#define EC_MAX_CYCLE_FRAMES	64	/* frames of one cycle; two cycles of them may be on their way */
+#define EC_MAX_CYCLE_FRAMES	64	/* frames of a cycle; those of two may be in flight */
 #define EC_MAX_SM_BYTES		0xf000	/* of one SyncManager: what an ESC has from 0x1000 on */
 #define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
@@ -42,7 +42,7 @@
 #define EC_LATE_PER_S		100	/* cycles that acyclic frames may delay, by default */
 #define EC_SLOTS		256	/* datagram index has 8 bits */
 #define EC_XFER_WINDOW		64	/* frames one ec_xfer() has in flight: 2 ms of wire */
-#define EC_LINK_ACYCLIC		64	/* acyclic frames of a link, of all callers, on their way */
+#define EC_LINK_ACYCLIC		64	/* acyclic frames of a link in flight, of all callers */
 #define EC_LINK_QUEUED		192	/* the same beside a cycle */
 #define EC_POSTS_MAX	8	/* posts that share a frame: each of their callers is woken */
 #define EC_CLOCK_WINDOW	120	/* the same of ec_xfer_clock(): what 60 ms carry */

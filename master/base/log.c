@@ -101,7 +101,7 @@ static bool log_admit(struct ec_log *l, const char *fmt, struct line *line, u64 
 		e->id = line->id;
 		e->level = line->level;
 		e->since = now;
-		/* a flood goes on with one line in each window */
+		/* a flood continues with one line in each window */
 		e->lines = flood ? EC_LOG_CHANGES : 0;
 		e->missed = 0;
 		e->text[0] = '\0';

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* The kernel log: at most some lines in ten seconds, whatever repeats. */
+/* The kernel log: a line that repeats appears at most a few times in ten seconds. */
 #ifndef EC_LOG_H
 #define EC_LOG_H
 

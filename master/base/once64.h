@@ -48,11 +48,11 @@ static inline void ec_write64(u64 *v, u64 to)
  * ec_status_begin() - write 64-bit values of the status page from now on
  * @st: status page of an active session
  *
- * Readers that read such a value in two parts try again until ec_status_end(). None may do
- * so on this CPU, where it would wait for ever: no thread of a higher priority, and no
- * interrupt.
+ * Readers that read such a value in two parts try again until ec_status_end(). On this CPU
+ * such a reader would wait forever: interrupts are off, so that neither an interrupt nor a
+ * thread of a higher priority reads meanwhile.
  *
- * Context: The master's single cyclic caller. RT-safe.
+ * Context: The cycle owner. RT-safe.
  * Return: for ec_status_end().
  */
 static __always_inline unsigned long ec_status_begin(struct ec_status *st)

@@ -69,8 +69,8 @@ void ec_show_end(struct ec_show *show)
  * For what takes longer than some microseconds.
  *
  * Context: After ec_show_begin().
- * Return: 0: what was found is still there, the section goes on; else the section
- * has ended: -EAGAIN begin anew, -ERESTARTSYS a signal.
+ * Return: 0: what was found is still valid, the section continues; else the section
+ * has ended: -EAGAIN begin again, -ERESTARTSYS a signal.
  */
 int ec_show_pause(struct ec_show *show)
 {
@@ -101,7 +101,7 @@ void ec_show_change_announce(struct ec_show *show)
 }
 
 /**
- * ec_show_change_begin() - what readers look at is about to change
+ * ec_show_change_begin() - wait for the readers before a change of session or slaves
  * @show: of the master
  *
  * The caller has the lock of what it changes: session lock, or topo for writing. Waits for

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
- * Read-only commands look at the session and the table of slaves without a lock.
+ * Read-only commands read the session and the table of slaves without a lock.
  *
  * A reader's section cannot be preempted and is short, so a thread of any priority
- * leaves it at once. Who changes what readers look at announces that: readers that
- * come later wait outside, and the few in a section are waited for. So a reader
- * delays a change by the time of one section on another CPU, and nothing else.
+ * leaves it at once. A writer announces its change: later readers wait outside, and
+ * the writer waits for the few in a section. So a reader delays a change by the time
+ * of one section on another CPU, and nothing else.
  */
 #ifndef EC_SHOW_H
 #define EC_SHOW_H

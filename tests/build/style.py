@@ -28,7 +28,7 @@ COLUMNS = 100
 # rule, folder: findings that are left
 LIMITS = {
     ("lines", "tests"): 131,
-    ("lines", "master"): 3,
+    ("lines", "master"): 2,
     ("lines", "Documentation"): 0,
     ("lines", "README.md"): 2,
     ("kernel-doc", "master"): 0,
