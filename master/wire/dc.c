@@ -43,8 +43,8 @@ static s32 stay(const struct ec_dc_node *a)
 
 /*
  * Hang every slave with a clock behind the port of the nearest slave towards the master
- * that has one too; slaves without a clock count as cable. Returns the first
- * of those that have none before them, and the last one in @last.
+ * that also has one; slaves without a clock count as cable. Returns the first of the
+ * clocks that have none towards the master, and the last one in @last.
  */
 static s32 link_up(struct ec_dc_node *nodes, u32 n, s32 *last)
 {
@@ -130,7 +130,7 @@ static s32 place_chain(struct ec_dc_node *nodes, s32 first, u32 start, s32 round
 }
 
 /*
- * Everything behind the ports of @a, which was placed; it goes behind @last, too. The processing
+ * Place everything behind the ports of @a, which was placed, and append it to @last. The processing
  * unit is behind port 0, open or not: with another entry the frame has been behind some ports by
  * then.
  */
@@ -164,7 +164,7 @@ static s32 place_behind(struct ec_dc_node *nodes, struct ec_dc_node *a, s32 last
  * @ref: index of the reference clock
  *
  * Register 0x0928 of a slave is compared with a datagram that has been through
- * all branches before it, so their round trips count too. Cables are taken as
+ * all branches before it, so their round trips count as well. Cables are taken as
  * symmetric.
  *
  * Context: Any. RT-safe: O(@n), no sleep, no allocation.

@@ -19,8 +19,8 @@
  * @recv: receive times at the ports, registers 0x0900-0x090F, all latched by
  *	the same frame
  * @delay: result: when a frame reaches its processing unit, counted from the reference clock,
- *	for register 0x0928; modulo 2^32, so that slaves in front of the
- *	reference have a negative one
+ *	for register 0x0928; modulo 2^32, so that slaves upstream of the
+ *	reference clock have a negative one
  * @hop: result: way from the clock before it, ns
  * @unreliable: result: the receive times of the slave, or of one before it, contradict the
  *	topology; ways that no frame can have taken are missing in @delay and @hop

@@ -18,7 +18,7 @@
 #define LOST_CYCLES	8
 
 /**
- * ec_dc_lock_init() - begin anew
+ * ec_dc_lock_init() - reset the controller
  * @l: controller
  * @period: of the cycle, ns, 1000..1000000000
  *

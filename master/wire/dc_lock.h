@@ -7,7 +7,7 @@
 
 enum ec_dc_lock_state {
 	EC_DC_LOCK_OFF,		/* no error is known yet */
-	EC_DC_LOCK_SEEK,	/* on its way */
+	EC_DC_LOCK_SEEK,	/* adjusts period and phase */
 	EC_DC_LOCK_LOCKED,	/* period and phase are those of the reference */
 	EC_DC_LOCK_HOLD,	/* was locked, no error is known; keeps the rate */
 };

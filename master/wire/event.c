@@ -467,7 +467,7 @@ static void about_session(struct text *t, const struct ec_event *e)
 	}
 }
 
-/* what is there instead of the configured slave */
+/* why a configuration has no slave */
 static void about_config(struct text *t, const struct ec_event *e)
 {
 	const u32 *a = e->arg;

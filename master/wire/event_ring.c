@@ -31,7 +31,7 @@ void ec_event_ring_put(struct ec_event_ring *r, struct ec_event *e)
  * @r: ring
  *
  * Context: Any. RT-safe.
- * Return: the number; so many events were there so far.
+ * Return: the number, which is the count of events so far.
  */
 u64 ec_event_ring_head(const struct ec_event_ring *r)
 {
@@ -92,7 +92,7 @@ bool ec_event_ring_get(const struct ec_event_ring *r, u64 *at, struct ec_event *
 	ec_event_rmb();
 	for (i = 0; i < ARRAY_SIZE(to.word); i++)
 		to.word[i] = ec_event_load(&place->word[i]);
-	/* the data before @head: who writes there has set it to *at + EC_EVENT_PLACES before */
+	/* the data before @head: a writer here has set it to *at + EC_EVENT_PLACES before */
 	ec_event_rmb();
 	oldest = ec_event_ring_oldest(r);
 	if (*at < oldest)

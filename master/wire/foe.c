@@ -130,7 +130,7 @@ static int received(struct ec_foe *f, u32 number, size_t len, size_t room)
 {
 	if (number != f->packet + 1)
 		return EC_STALE;
-	/* messages without room for data would go on for ever */
+	/* with messages that have no data bytes the transfer would not end */
 	if (len > room || !room)
 		return -EBADMSG;
 	f->begun = true;
@@ -216,7 +216,7 @@ const char *ec_foe_error_text(u32 code)
  * @cap: bytes at @name
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: its length; 0 when it is empty or has a character that cannot be printed.
+ * Return: its length; 0 when it is empty or has a character that is not printable.
  */
 size_t ec_foe_name_len(const char *name, size_t cap)
 {

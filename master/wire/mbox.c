@@ -8,7 +8,7 @@
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0, -EMSGSIZE when the header is not complete, -EBADMSG when its
- * length is larger than what is there.
+ * length is larger than the rest of the mailbox.
  */
 int ec_mbox_hdr_decode(struct ec_rbuf *r, struct ec_mbox_hdr *h)
 {

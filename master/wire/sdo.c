@@ -116,7 +116,7 @@ int ec_sdo_put_segment(u8 *tx, size_t cap, u8 service, u8 cmd, const u8 *data, s
  * @field: bytes behind it
  *
  * The unused count of @cmd means something only in a data field of the minimum size; slaves that
- * do not pad send it all the same.
+ * do not pad send it nevertheless.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: bytes, at most @field.
@@ -211,7 +211,7 @@ void ec_sdo_upload_init(struct ec_sdo *s, u16 index, u8 sub, bool complete, u8 *
  * @index: object
  * @sub: subindex; with @complete 0 (with the count) or 1
  * @complete: complete access
- * @data: value; must stay as it is until the end
+ * @data: value; must not change until the end
  * @size: bytes at @data
  * @mbox_size: size of the slave's receive mailbox less EC_MBOX_HDR
  *
@@ -332,7 +332,7 @@ static int upload_segment(struct ec_sdo *s, struct answer *a)
 	size_t field = ec_rbuf_left(&a->r), n = ec_sdo_segment_len(a->cmd, field);
 	bool last = a->cmd & SEG_LAST;
 
-	if (!n && !last)	/* would go on for ever */
+	if (!n && !last)	/* would not end */
 		return sdo_fail(s, field ? -EPROTO : -EMSGSIZE, EC_ABORT_COMMAND, true);
 	s->toggle = !s->toggle;
 	return upload_take(s, ec_rbuf_take(&a->r, n), n, !last);
@@ -410,7 +410,7 @@ int ec_sdo_rx(struct ec_sdo *s, const u8 *rx, size_t len)
 }
 
 /**
- * ec_sdo_cancel() - the transfer is given up
+ * ec_sdo_cancel() - cancel a transfer
  * @s: transfer
  *
  * A slave in the middle of segments gets an abort: @s->send_abort, and ec_sdo_tx() has one more

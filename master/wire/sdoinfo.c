@@ -223,12 +223,12 @@ int ec_od_entry_decode(const u8 *data, size_t len, struct ec_od_entry *e)
  * @plain: bytes of the same description without any optional field
  * @v: result; the values point into @data
  *
- * The unit type has 2 bytes or 4, and a name of any length follows the fields: only what the same
- * description has more than one without them tells the fields from the name.
+ * The unit type has 2 bytes or 4, and a name of any length follows. The length of the
+ * description alone does not show where the name begins: @plain is needed.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0, -EMSGSIZE when it is too short, -EBADMSG when the sizes of the fields, which the
- * description says, do not add up to what it has more.
+ * Return: 0, -EMSGSIZE when it is too short, -EBADMSG when it is not longer than
+ * @plain by the sizes of its optional fields.
  */
 int ec_od_values_decode(const u8 *data, size_t len, size_t plain, struct ec_od_values *v)
 {

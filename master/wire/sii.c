@@ -41,7 +41,7 @@ static void mbox_decode(struct ec_rbuf *r, struct ec_sii_mbox *m)
  * @len: bytes at @img
  * @info: result
  *
- * A wrong checksum is not an error here: the rest is readable all the same.
+ * A wrong checksum is not an error here: the rest is readable nevertheless.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0, -EMSGSIZE for less than EC_SII_FIXED_SIZE bytes.
@@ -165,7 +165,7 @@ static size_t size_limit(const u8 *img)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: total bytes that must be had, more than @have, or 0 when nothing
- * worth reading follows: the end marker is there, or the rest is blank or
+ * worth reading follows: @img has the end marker, or the rest is blank or
  * garbage. ec_sii_used() then returns how much to keep.
  */
 int ec_sii_needed(const u8 *img, size_t have)
@@ -199,7 +199,7 @@ int ec_sii_needed(const u8 *img, size_t have)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: bytes up to and with the end marker; without one, bytes up to the
- * first header that cannot be used, at most @have.
+ * first unusable header, at most @have.
  */
 size_t ec_sii_used(const u8 *img, size_t have)
 {

@@ -98,6 +98,7 @@ COMMENTS = {
     "master/link": 0,
     "master/mailbox": 0,
     "master/session": 0,
+    "master/wire": 0,
     "tool": 0,
     "tool/sim": 0,
 }
