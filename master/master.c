@@ -157,7 +157,7 @@ static int master_check_name(const char *spec, unsigned int index)
 
 /*
  * A name that can never work is refused before the first master is created: it would wait for its
- * device for ever.
+ * device forever.
  */
 static int check_names(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
 {

@@ -22,8 +22,8 @@
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
-#define TRIES		2	/* of the look at all slaves */
-#define STAYS		5	/* looks at an AL event that stays, then it is not watched */
+#define TRIES		2	/* to poll all slaves */
+#define STAYS		5	/* looks that do not clear an AL event, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
 
 static const char lost[] =
@@ -44,14 +44,14 @@ struct watch {
 	u64 scanned_ns;
 	u64 rates_ns;
 	u64 alone_ns;		/* no rider before that time */
-	bool well;		/* all slaves are in the state they shall have */
+	bool well;		/* all slaves are in their requested state */
 	struct ec_survey survey;	/* of all slaves */
 	u32 changes;		/* of them before it */
-	u64 survey_ns;		/* when; 0: anew */
-	bool riding;		/* the rider is on its way; its reply is for the next look */
+	u64 survey_ns;		/* when; 0: due */
+	bool riding;		/* the rider is in flight; its reply is for the next look */
 	u64 ride_ns;		/* since then */
 	u16 irq;		/* events of all slaves */
-	u16 watched;		/* that shall wake it, until the next look */
+	u16 watched;		/* that are to wake it, until the next look */
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
 	u64 event;		/* number of the next one for the kernel log */
@@ -121,7 +121,7 @@ static void note_reply(struct watch *w, struct ec_slave *s, const struct ec_dg *
 
 /*
  * AL status of every slave; used when the broadcast is not one plain state.
- * Returns false when one did not answer although all are there.
+ * Returns false when a scanned slave did not respond at its station address.
  */
 static bool check_slaves(struct watch *w)
 {
@@ -170,13 +170,13 @@ out:
 	return all;
 }
 
-/* All slaves in the state they shall have, none with an error, all of them replied? */
+/* All slaves in their requested state, none with an error, all of them replied? */
 static bool as_wanted(const struct ec_survey *sv, u16 ored, u16 wkc)
 {
 	return !sv->differ && ored == sv->state && wkc >= sv->replying;
 }
 
-/* A claim that is not believed; as long as it is the same it is logged once. */
+/* The count of a reply, 0 above the limit; that is logged once until a count is within it. */
 static unsigned int believable(struct watch *w, unsigned int count)
 {
 	unsigned int limit = ec_scan_limit();
@@ -218,8 +218,8 @@ static void survey(struct watch *w)
 }
 
 /*
- * AL status of all slaves and their number. The first try goes with the cycle if that carries
- * it; only a frame of its own decides that no slave is there.
+ * AL status and number of all slaves. The first try is a rider if the cycle carries it; after
+ * the loss of that frame only a frame of its own shows whether slaves respond.
  */
 static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 {
@@ -309,7 +309,7 @@ static void ask_slaves(struct watch *w)
 	}
 }
 
-/* The rider of the last look has come back: all slaves reply, each in the state it shall have. */
+/* The rider of the last look has returned: all slaves reply, each in its requested state. */
 static bool all_well(struct watch *w)
 {
 	struct ec_master *m = w->m;
@@ -350,7 +350,7 @@ static void ride(struct watch *w)
 	w->riding = true;
 }
 
-/* Are the slaves of the list those that the monitor looks after now? */
+/* Are the slaves of the list those that the monitor polls now? */
 static bool looks_after_list(const struct watch *w)
 {
 	return w->scanned || w->held;
@@ -663,7 +663,7 @@ void ec_monitor_stop(struct ec_master *m)
 }
 
 /**
- * ec_monitor_kick() - let the monitor look at once
+ * ec_monitor_kick() - wake the monitor for its next look
  * @m: master
  *
  * Context: Any.

@@ -31,8 +31,8 @@
 #define MISSING		BIT(8)	/* besides AL states: a slave does not reply */
 
 /*
- * One master on its way down. A worker and not the caller of reboot(2), who may be killed: then
- * its frames would not be waited for.
+ * A master that takes its slaves down. A worker does that, as the caller of reboot(2) may be
+ * killed: a killed caller does not wait for its frames.
  */
 struct descent {
 	struct work_struct work;
@@ -52,7 +52,7 @@ struct stay {
 	u8 state;		/* AL state of it, 0: it does not reply */
 };
 
-/* Nobody brings a slave beyond PREOP from now on. Return: how many are beyond it. */
+/* From now on no slave is brought beyond PREOP. Return: how many are beyond it. */
 static unsigned int request_preop(struct ec_master *m)
 {
 	unsigned int n = 0;
@@ -95,7 +95,7 @@ static unsigned int beyond_preop(struct ec_master *m)
 	return al[0] & EC_AL_BEYOND_PREOP;
 }
 
-/* Return: as beyond_preop(), 0 as soon as it is. */
+/* Wait for beyond_preop() to return 0: up to @ms, while a link is up. Return: its result. */
 static unsigned int wait_down(struct ec_master *m, unsigned int ms)
 {
 	u64 end = ktime_get_ns() + ms * (u64)NSEC_PER_MSEC;
@@ -149,7 +149,7 @@ static u8 state_of(struct ec_slave *s)
 {
 	u8 b[2];
 
-	/* whatever state it has */
+	/* its AL state is not known */
 	if (READ_ONCE(s->silent))
 		return 0;
 	if (!(READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP))
@@ -280,7 +280,7 @@ static bool any_file(void)
  * ec_power_down() - take all slaves of all masters out of SAFEOP and OP, for good
  * @what: word for the log, such as "reboot"; stays
  *
- * Applications go on with their cycles, but no slave gets beyond PREOP any more. Files that are
+ * Applications continue their cycles, but no slave gets beyond PREOP any more. Files that are
  * written to slaves have time to end. May be called again, also at the same time.
  *
  * Context: Process. Sleeps, at most 4 s for all masters, and 30 s more for files.
@@ -459,9 +459,9 @@ static void unhear_reboot(void)
 }
 
 /**
- * ec_power_init() - hear of reboots and suspends
+ * ec_power_init() - register for reboots and suspends
  *
- * Context: Process, when all masters are there.
+ * Context: Process, after all masters were created.
  * Return: 0 or -errno.
  */
 int ec_power_init(void)

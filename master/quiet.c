@@ -2,8 +2,8 @@
 /*
  * While all is well a look of the monitor only finds that: the reply of the rider is as before,
  * no slave has changed and there is no event. A timer in hard interrupt sees this without a switch
- * to the monitor, sends the rider on its way again, and wakes the monitor for all else, or for
- * the looks at what needs a thread.
+ * to the monitor and sends the rider again. For all else, and for what needs a thread, it wakes
+ * the monitor.
  */
 #include <linux/sched.h>
 #include "boundary/master.h"
@@ -86,12 +86,12 @@ void ec_quiet_exit(struct ec_quiet *q)
 
 /**
  * ec_quiet_allow() - all is well: let the timer look instead of the monitor, some times
- * @q: of the monitor, with what it shall compare
+ * @q: of the monitor, with the values to compare
  *
  * A second link may be lost without a trace in the frames, and the messages of some mailboxes show
  * in no frame: then the monitor looks itself.
  *
- * Context: The monitor, with the rider on its way.
+ * Context: The monitor, with the rider in flight.
  */
 void ec_quiet_allow(struct ec_quiet *q)
 {

@@ -24,7 +24,7 @@ struct ec_quiet {
 	unsigned int looks;
 	/** @count: slaves that reply */
 	unsigned int count;
-	/** @survey: of all slaves; all are in the state they shall have */
+	/** @survey: of all slaves; all are in their requested state */
 	const struct ec_survey *survey;
 	/** @changes: of the slaves before it */
 	u32 changes;
@@ -32,7 +32,7 @@ struct ec_quiet {
 	u64 event;
 	/** @missed: frames lost and late */
 	u64 missed;
-	/** @events: of the IRQ field that the monitor shall see */
+	/** @events: of the IRQ field that wake the monitor */
 	u16 events;
 	/** @until_ns: then the monitor has to look itself (ktime) */
 	u64 until_ns;
@@ -40,7 +40,7 @@ struct ec_quiet {
 	u64 after_ns;
 	/** @slack_ns: by which it may be longer */
 	u64 slack_ns;
-	/** @ride_ns: when the rider began that is on its way (ktime) */
+	/** @ride_ns: when the rider in flight began (ktime) */
 	u64 ride_ns;
 };
 

@@ -88,6 +88,7 @@ COMMENTS = {
     "lib": 0,
     "lib/ecrt": 0,
     "lib/tools": 0,
+    "master": 0,
     "master/base": 0,
     "master/boundary": 0,
     "master/bus": 0,
