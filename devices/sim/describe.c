@@ -177,8 +177,8 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	if (!name || !name_ok(name))
 		return ec_desc_fail(d, "a slave needs a name of letters, digits, _ and -, at most 23",
 				    NULL, "");
-	if (ec_desc_is(name, "master"))
-		return ec_desc_fail(d, "'master' cannot be the name of a slave", NULL, "");
+	if (ec_desc_is(name, "master") || ec_desc_is(name, "none"))
+		return ec_desc_fail(d, "'", name, "' cannot be the name of a slave");
 	file = ec_desc_value(d, "file");
 	device = file.s ? NULL : ec_desc_next(d);
 	if (!file.s && !device)
@@ -237,10 +237,15 @@ static int do_repeat(struct ec_desc *d)
 static int do_branch(struct ec_desc *d)
 {
 	struct ec_desc_word *name = ec_desc_next(d), *port = ec_desc_next(d);
-	int slave = ec_desc_slave(d, name);
+	int slave, ret;
 	s64 n;
-	int ret;
 
+	if (ec_desc_is(name, "none") && !port) {
+		d->at = EC_DESC_NOWHERE;
+		d->at_port = 0;
+		return 0;
+	}
+	slave = ec_desc_slave(d, name);
 	if (slave < 0)
 		return slave;
 	if (!port)
@@ -251,36 +256,6 @@ static int do_branch(struct ec_desc *d)
 	d->at = slave;
 	d->at_port = (int)n;
 	return 0;
-}
-
-/* one end of a wire: a slave, or a master (-1, -2) */
-static int wire_end(struct ec_desc *d, struct ec_desc_word *w, int *slave,
-		    int *port)
-{
-	struct ec_desc_word name;
-	s64 n;
-	int ret;
-
-	if (ec_desc_is(w, "master")) {
-		*slave = EC_SIM_MASTER0;
-		*port = 0;
-		return 0;
-	}
-	ret = ec_desc_place(d, w, &name, &n);
-	if (ret)
-		return ret;
-	if (ec_desc_is(&name, "master")) {
-		if (n >= EC_SIM_PORTS)
-			return ec_desc_fail(d, "'", w, "': the master has ports 0 and 1");
-		*slave = n ? EC_SIM_MASTER1 : EC_SIM_MASTER0;
-		*port = 0;
-		return 0;
-	}
-	if (n >= EC_MAX_PORT)
-		return ec_desc_fail(d, "'", w, "': ports are 0 to 3");
-	*slave = ec_desc_slave(d, &name);
-	*port = (int)n;
-	return *slave < 0 ? *slave : 0;
 }
 
 static int do_wire(struct ec_desc *d)
@@ -295,9 +270,9 @@ static int do_wire(struct ec_desc *d)
 	if (!b || !ec_desc_is(to, "->"))
 		return ec_desc_fail(d, "invalid wire: expected wire coupler.1 -> out.0",
 				    NULL, "");
-	ret = wire_end(d, a, &w.a, &w.a_port);
+	ret = ec_desc_end_of_wire(d, a, &w.a, &w.a_port);
 	if (!ret)
-		ret = wire_end(d, b, &w.b, &w.b_port);
+		ret = ec_desc_end_of_wire(d, b, &w.b, &w.b_port);
 	if (!ret)
 		ret = ec_desc_time(d, "cable", 1000000, &cable);
 	if (ret)
@@ -496,6 +471,8 @@ static int wire_all(struct ec_desc *d)
 	for (u32 i = 0; i < d->n_nodes; i++) {
 		const struct ec_desc_node *n = &d->node[i];
 
+		if (n->parent == EC_DESC_NOWHERE)
+			continue;
 		if (!ec_sim_wire(d->sim, n->parent, n->parent_port, (int)i,
 				 n->child_port, n->cable_ns))
 			continue;
@@ -548,16 +525,19 @@ static void reach(struct ec_desc *d, int i, int *todo)
 	*todo = i;
 }
 
-/* every slave must be connected with a master, by whatever way */
+/* every slave must be connected with a master, by whatever way, or with one that comes later */
 static int find_islands(struct ec_desc *d)
 {
 	struct ec_desc_word name;
 	int todo = -1, p;
 
-	for (u32 i = 0; i < d->n_nodes; i++)
+	for (u32 i = 0; i < d->n_nodes; i++) {
+		if (d->node[i].parent == EC_DESC_NOWHERE)
+			reach(d, (int)i, &todo);
 		for (p = 0; p < EC_MAX_PORT; p++)
 			if (ec_sim_at(d->sim, i)->port[p].peer < -1)
 				reach(d, (int)i, &todo);
+	}
 	while (todo >= 0) {
 		const struct ec_esc *esc = ec_sim_at(d->sim, (u32)todo);
 

@@ -24,12 +24,14 @@
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
  *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
  *	branch NAME PORT		the next slave hangs there
+ *	branch none			the next slave hangs nowhere, until it is plugged
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too
  *	connect NAME.CHANNEL -> NAME.CHANNEL	an output to an input
  *	const NAME.CHANNEL value=N
  *	ramp NAME.CHANNEL amplitude=N period=TIME [offset=N]
  *	sine NAME.CHANNEL amplitude=N period=TIME [offset=N]
  *	fault [at=TIME] WHAT, where WHAT is one of
+ *		plug NAME.PORT NAME.PORT [cable=TIME]  unplug NAME.PORT
  *		cut|heal NAME.PORT  off|on NAME  dead|alive NAME
  *		deaf|hear NAME (broadcasts)  mute|unmute NAME (application)
  *		refuse NAME STATE code=N  allow NAME

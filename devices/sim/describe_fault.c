@@ -15,6 +15,8 @@ static const struct verb {
 } verbs[] = {
 	{ "cut", PORT, EC_SIM_FAULT_CUT, 0 },
 	{ "heal", PORT, EC_SIM_FAULT_HEAL, 0 },
+	{ "plug", PORT, EC_SIM_FAULT_PLUG, 0 },
+	{ "unplug", PORT, EC_SIM_FAULT_UNPLUG, 0 },
 	{ "off", SLAVE, EC_SIM_FAULT_POWER_OFF, 0 },
 	{ "on", SLAVE, EC_SIM_FAULT_POWER_ON, 0 },
 	{ "dead", SLAVE, EC_SIM_FAULT_DEAD, 1 },
@@ -228,34 +230,25 @@ static int voe(struct ec_desc *d, u64 at)
 static int target(struct ec_desc *d, const struct verb *v,
 		  struct ec_sim_fault *f)
 {
-	struct ec_desc_word *w = ec_desc_next(d), name;
+	struct ec_desc_word *w, name;
 	s64 n;
 
+	if (v->object == PORT)
+		return ec_desc_port(d, f);
+	w = ec_desc_next(d);
 	if (v->object == SLAVE) {
 		f->slave = ec_desc_slave(d, w);
 		return f->slave < 0 ? f->slave : 0;
 	}
 	if (ec_desc_place(d, w, &name, &n))
 		return -EINVAL;
-	if (v->object == CHANNEL) {
-		f->slave = ec_desc_slave(d, &name);
-		if (f->slave < 0)
-			return f->slave;
-		if (!n || n > d->node[f->slave].app->model->n_chan[EC_APP_IN])
-			return ec_desc_fail(d, "'", w, "' is no input channel; channels count from 1");
-		f->arg = (u32)n - 1;
-		return 0;
-	}
-	if (ec_desc_is(&name, "master")) {
-		f->slave = n ? EC_SIM_MASTER1 : EC_SIM_MASTER0;
-		return n < EC_SIM_PORTS ? 0 :
-			ec_desc_fail(d, "'", w, "': the master has ports 0 and 1");
-	}
-	if (n >= EC_MAX_PORT)
-		return ec_desc_fail(d, "'", w, "': ports are 0 to 3");
 	f->slave = ec_desc_slave(d, &name);
-	f->port = (int)n;
-	return f->slave < 0 ? f->slave : 0;
+	if (f->slave < 0)
+		return f->slave;
+	if (!n || n > d->node[f->slave].app->model->n_chan[EC_APP_IN])
+		return ec_desc_fail(d, "'", w, "' is no input channel; channels count from 1");
+	f->arg = (u32)n - 1;
+	return 0;
 }
 
 /* a value of an input, or a word of an EEPROM */

@@ -6,6 +6,7 @@
 #include "describe.h"
 
 #define EC_DESC_WORDS	32
+#define EC_DESC_NOWHERE	(-3)	/* the parent of a slave that is plugged later */
 #define EC_DESC_TIME_MAX	(3600ull * 1000000000ull)
 
 /* a word of a statement, in the text, not terminated */
@@ -64,7 +65,7 @@ struct ec_desc_wire {
  * @model: kinds of slaves so far
  * @n_models: how many
  * @command: a fault to be read into this, for a segment that runs; NULL
- * @at: slave at which the next one hangs, -1: master
+ * @at: slave at which the next one hangs, -1: master, EC_DESC_NOWHERE
  * @at_port: its port
  */
 struct ec_desc {
@@ -111,6 +112,10 @@ int ec_desc_parse_number(struct ec_desc *d, const struct ec_desc_word *w,
 int ec_desc_place(struct ec_desc *d, const struct ec_desc_word *w,
 		  struct ec_desc_word *name, s64 *number);
 int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w);
+
+/* describe_cable.c */
+int ec_desc_end_of_wire(struct ec_desc *d, const struct ec_desc_word *w, int *slave, int *port);
+int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f);
 
 /* describe_slave.c */
 int ec_desc_params(struct ec_desc *d, struct ec_app_params *p);

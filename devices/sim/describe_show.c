@@ -39,18 +39,20 @@ static void add_place(struct line *l, const struct ec_sim *sim, int peer, u32 po
 	add_number(l, app ? port : (u32)(-2 - peer));
 }
 
-/* where the slave hangs: at the master or at an earlier slave */
+/* where the slave hangs: at the master, at an earlier slave, else at a later one */
 static void add_parent(struct line *l, const struct ec_esc *esc)
 {
-	for (u32 i = 0; i < EC_MAX_PORT; i++) {
+	const struct ec_esc_port *at = NULL;
+
+	for (u32 i = EC_MAX_PORT; i--; ) {
 		const struct ec_esc_port *p = &esc->port[i];
 
-		if (p->peer == -1 || p->peer >= esc->index)
-			continue;
-		add(l, " at ");
-		add_place(l, esc->sim, p->peer, p->peer_port);
-		return;
+		if (p->peer != -1 && (!at || p->peer < esc->index || at->peer > esc->index))
+			at = p;
 	}
+	add(l, at ? " at " : " unplugged");
+	if (at)
+		add_place(l, esc->sim, at->peer, at->peer_port);
 }
 
 static void add_faults(struct line *l, const struct ec_esc *esc)

@@ -26,6 +26,8 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_INPUT] = "input",
 	[EC_SIM_FAULT_EMERGENCY] = "emergency",
 	[EC_SIM_FAULT_JUMP] = "jump",
+	[EC_SIM_FAULT_PLUG] = "plug",
+	[EC_SIM_FAULT_UNPLUG] = "unplug",
 };
 
 /**
@@ -61,12 +63,25 @@ static bool is_frame_fault(enum ec_sim_fault_type type)
 	       type == EC_SIM_FAULT_DELAY || type == EC_SIM_FAULT_MANGLE;
 }
 
+/* two different ports */
+static bool can_plug(const struct ec_sim *sim, const struct ec_sim_fault *f)
+{
+	int slave = (int)f->arg, port = (int)f->arg2;
+
+	return ec_sim_has_port(sim, f->slave, f->port) && ec_sim_has_port(sim, slave, port) &&
+	       (f->slave != slave || (slave >= 0 && f->port != port)) &&
+	       (f->slave >= 0 || slave >= 0);
+}
+
 static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 {
-	bool cable = f->type == EC_SIM_FAULT_CUT || f->type == EC_SIM_FAULT_HEAL;
+	bool cable = f->type == EC_SIM_FAULT_CUT || f->type == EC_SIM_FAULT_HEAL ||
+		     f->type == EC_SIM_FAULT_UNPLUG;
 
 	if ((u32)f->type >= EC_SIM_FAULT_TYPES)
 		return false;
+	if (f->type == EC_SIM_FAULT_PLUG)
+		return can_plug(sim, f);
 	if (is_frame_fault(f->type))
 		return f->port >= -1 && f->port < EC_SIM_PORTS;
 	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
@@ -164,6 +179,12 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_HEAL:
 		ec_sim_cut(sim, f->slave, f->port,
 			   f->type == EC_SIM_FAULT_CUT, now);
+		break;
+	case EC_SIM_FAULT_PLUG:
+		ec_sim_plug(sim, f, now);
+		break;
+	case EC_SIM_FAULT_UNPLUG:
+		ec_sim_unplug(sim, f, now);
 		break;
 	case EC_SIM_FAULT_POWER_OFF:
 	case EC_SIM_FAULT_POWER_ON:

@@ -1,65 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Wiring of a segment: cables, links, loops, and the way a frame takes.
+ * Links and loops of a segment, and the way a frame takes.
  *
  * The way depends on the topology only, so it is computed once per change: a
  * list of processing units with the time since the master sent the first bit.
  */
 #include "esc_int.h"
-
-/**
- * ec_sim_wire() - put a cable between two ports
- * @sim: segment
- * @parent: slave, EC_SIM_MASTER0 or EC_SIM_MASTER1
- * @parent_port: its port, ignored for a master
- * @child: slave
- * @child_port: its port
- * @cable_ns: delay, about 5 ns per metre
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0, -EINVAL for a slave or port that is not there, -EBUSY for one
- * that has a cable.
- */
-int ec_sim_wire(struct ec_sim *sim, int parent, int parent_port, int child,
-		int child_port, u32 cable_ns)
-{
-	struct ec_esc_port *a, *b;
-	struct ec_esc *up = NULL, *down;
-
-	if (parent < EC_SIM_MASTER1 || parent >= (int)sim->count ||
-	    child < 0 || child >= (int)sim->count ||
-	    child_port < 0 || child_port >= EC_MAX_PORT ||
-	    (parent >= 0 && (parent_port < 0 || parent_port >= EC_MAX_PORT)))
-		return -EINVAL;
-	down = sim->esc[child];
-	b = &down->port[child_port];
-	if (parent >= 0) {
-		up = sim->esc[parent];
-		a = &up->port[parent_port];
-		if (up->cfg.ports[parent_port] <= EC_PORT_TYPE_UNCONF)
-			return -EINVAL;
-	} else {
-		a = &sim->mport[-1 - parent];
-		parent_port = 0;
-	}
-	if (down->cfg.ports[child_port] <= EC_PORT_TYPE_UNCONF || a == b)
-		return -EINVAL;
-	if (a->peer != -1 || b->peer != -1)
-		return -EBUSY;
-
-	a->peer = child;
-	a->peer_port = (u8)child_port;
-	a->cable_ns = cable_ns;
-	a->cut = false;
-	b->peer = parent >= 0 ? parent : parent - 1;
-	b->peer_port = (u8)parent_port;
-	b->cable_ns = cable_ns;
-	b->cut = false;
-	ec_sim_ports(down, sim->now);
-	if (up)
-		ec_sim_ports(up, sim->now);
-	return 0;
-}
 
 /**
  * ec_sim_link() - what the PHY of the master says
@@ -167,26 +113,6 @@ void ec_sim_power(struct ec_esc *esc, bool on, u64 now)
 			ec_sim_ports(sim->esc[esc->port[p].peer], now);
 	if (on && esc->app_ops && esc->app_ops->power_on)
 		esc->app_ops->power_on(esc, now);
-}
-
-/* cut or heal the cable at one of its ends; @slave below 0: master port */
-void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now)
-{
-	struct ec_esc_port *a = slave < 0 ? &sim->mport[-1 - slave] :
-					    &sim->esc[slave]->port[port];
-
-	if (a->peer == -1)
-		return;
-	a->cut = cut;
-	if (a->peer < 0)
-		sim->mport[-2 - a->peer].cut = cut;
-	else
-		sim->esc[a->peer]->port[a->peer_port].cut = cut;
-	sim->dirty = true;
-	if (slave >= 0)
-		ec_sim_ports(sim->esc[slave], now);
-	if (a->peer >= 0)
-		ec_sim_ports(sim->esc[a->peer], now);
 }
 
 /* false: the frame ends here */

@@ -55,6 +55,9 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_INPUT: no fault: input channel @arg (from 0) becomes (s64)@value
  * @EC_SIM_FAULT_EMERGENCY: CoE emergency, error code @arg, error register @arg2
  * @EC_SIM_FAULT_JUMP: the clock of @slave jumps by (s64)@value ns
+ * @EC_SIM_FAULT_PLUG: no fault: a cable of @value ns from @slave, @port to port @arg2 of
+ *                     slave (int)@arg; a cable in one of these ports comes out before
+ * @EC_SIM_FAULT_UNPLUG: the cable at @slave, @port is taken away
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -81,6 +84,8 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_INPUT,
 	EC_SIM_FAULT_EMERGENCY,
 	EC_SIM_FAULT_JUMP,
+	EC_SIM_FAULT_PLUG,
+	EC_SIM_FAULT_UNPLUG,
 	EC_SIM_FAULT_TYPES
 };
 
@@ -133,8 +138,8 @@ enum ec_sim_mailbox_fault {
  * struct ec_sim_fault - one scripted fault
  * @at_ns: when it begins; 0 or past: with the next frame or advance
  * @type: what
- * @slave: which slave; for frame faults ignored. -1, -2: CUT and HEAL at the
- *         master's own port
+ * @slave: which slave; for frame faults ignored. -1, -2: CUT, HEAL, PLUG and
+ *         UNPLUG at the master's own port
  * @port: which port; for frame faults the master port, -1 = both
  * @arg: frame faults: the n-th frame from @at_ns on (1 = next), 0 = by chance
  * @arg2: frame faults by chance: probability in ppm, 0 ends the earlier one
@@ -191,6 +196,7 @@ bool ec_sim_eth_is_ethercat(const u8 *eth, size_t len);
 void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
 u64 ec_sim_next_event(struct ec_sim *sim);
 bool ec_sim_link(const struct ec_sim *sim, int port);
+bool ec_sim_has_port(const struct ec_sim *sim, int slave, int port);
 
 /* looking */
 u32 ec_sim_count(const struct ec_sim *sim);

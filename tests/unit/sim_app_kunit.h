@@ -9,8 +9,8 @@
 
 #define STATION(i)	((u16)(1001 + (i)))
 
-/* builds @text and addresses all slaves: 1001, 1002... */
-static inline struct bed *app_bed(struct kunit *test, const char *text)
+/* builds @text and addresses its first @n slaves: 1001, 1002... */
+static inline struct bed *app_bed_part(struct kunit *test, const char *text, u32 n)
 {
 	struct bed *b = kunit_kzalloc(test, sizeof(*b), GFP_KERNEL);
 	struct ec_sim_error err;
@@ -22,9 +22,15 @@ static inline struct bed *app_bed(struct kunit *test, const char *text)
 	b->gap = 20000;
 	ret = ec_sim_describe(&b->sim, &bed_ops, text, strlen(text), NULL, &err);
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
-	for (u32 i = 0; i < ec_sim_count(b->sim); i++)
+	for (u32 i = 0; i < min(n, ec_sim_count(b->sim)); i++)
 		KUNIT_ASSERT_EQ(test, bed_station(b, (u16)-i, STATION(i)), 1);
 	return b;
+}
+
+/* all of them */
+static inline struct bed *app_bed(struct kunit *test, const char *text)
+{
+	return app_bed_part(test, text, ~0u);
 }
 
 /* AL status in bits 0-15, code in bits 16-31 */

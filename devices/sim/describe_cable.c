@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Ends of cables in descriptions, and what happens to cables while a segment runs. */
+#include "describe_int.h"
+
+#define CABLE_MAX	1000000	/* ns */
+
+/**
+ * ec_desc_end_of_wire() - read one end of a cable
+ * @d: description
+ * @w: NAME.PORT, "master" or "master.PORT"; NULL: missing
+ * @slave: result, EC_SIM_MASTER0 or EC_SIM_MASTER1 for a master
+ * @port: its port, 0 for a master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, or -EINVAL.
+ */
+int ec_desc_end_of_wire(struct ec_desc *d, const struct ec_desc_word *w, int *slave, int *port)
+{
+	struct ec_desc_word name;
+	s64 n;
+	int ret;
+
+	if (ec_desc_is(w, "master")) {
+		*slave = EC_SIM_MASTER0;
+		*port = 0;
+		return 0;
+	}
+	ret = ec_desc_place(d, w, &name, &n);
+	if (ret)
+		return ret;
+	if (ec_desc_is(&name, "master")) {
+		if (n >= EC_SIM_PORTS)
+			return ec_desc_fail(d, "'", w, "': the master has ports 0 and 1");
+		*slave = n ? EC_SIM_MASTER1 : EC_SIM_MASTER0;
+		*port = 0;
+		return 0;
+	}
+	if (n >= EC_MAX_PORT)
+		return ec_desc_fail(d, "'", w, "': ports are 0 to 3");
+	*slave = ec_desc_slave(d, &name);
+	*port = (int)n;
+	return *slave < 0 ? *slave : 0;
+}
+
+/* an end of a cable at a port that the slave has */
+static int real_end(struct ec_desc *d, const struct ec_desc_word *w, int *slave, int *port)
+{
+	int ret = ec_desc_end_of_wire(d, w, slave, port);
+
+	if (ret)
+		return ret;
+	return ec_sim_has_port(d->sim, *slave, *port) ? 0 :
+		ec_desc_fail(d, "'", w, "': the slave does not have this port");
+}
+
+static int plug(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word *a = ec_desc_next(d), *b = ec_desc_next(d);
+	int slave = -1, port = 0, ret;
+
+	ret = real_end(d, a, &f->slave, &f->port);
+	if (!ret)
+		ret = real_end(d, b, &slave, &port);
+	if (!ret)
+		ret = ec_desc_time(d, "cable", CABLE_MAX, &f->value);
+	if (ret)
+		return ret;
+	if (f->slave == slave && f->port == port)
+		return ec_desc_fail(d, "'", b, "' cannot be connected to itself");
+	if (f->slave < 0 && slave < 0)
+		return ec_desc_fail(d, "the ports of the master cannot be connected to each other",
+				    NULL, "");
+	f->arg = (u32)slave;
+	f->arg2 = (u32)port;
+	return 0;
+}
+
+/**
+ * ec_desc_port() - the ports that a fault statement names
+ * @d: description, the verb is used
+ * @f: the fault, its type is known
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, or -EINVAL.
+ */
+int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word *w;
+
+	if (f->type == EC_SIM_FAULT_PLUG)
+		return plug(d, f);
+	w = ec_desc_next(d);
+	if (f->type == EC_SIM_FAULT_UNPLUG)
+		return real_end(d, w, &f->slave, &f->port);
+	return ec_desc_end_of_wire(d, w, &f->slave, &f->port);
+}

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Cables that come and go, and what the registers of both ends say. */
+#include "sim_app_kunit.h"
+#include "../../devices/sim/esc_int.h"
+
+#define DL_EVENT	EC_ECAT_EVENT_DL
+
+static void command(struct kunit *test, struct bed *b, const char *text)
+{
+	struct ec_sim_error err;
+	struct ec_sim_fault f;
+
+	KUNIT_ASSERT_EQ_MSG(test, ec_sim_command(b->sim, &bed_ops, text, strlen(text), &f, &err),
+			    0, "%s: %s", text, err.text);
+	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(b->sim, &f), 0);
+	ec_sim_advance(b->sim, b->now);
+}
+
+static int count(struct bed *b, int port)
+{
+	u8 v[2] = {};
+
+	return bed_tx_port(b, port, EC_CMD_BRD, 0, 0, v, 2);
+}
+
+/* registers of a slave, reached or not */
+static u32 dl(struct bed *b, u32 slave)
+{
+	return ec_esc_dl_status(ec_sim_slave(b->sim, slave));
+}
+
+/* one byte for each port */
+static u32 lost(struct bed *b, u32 slave)
+{
+	return get_unaligned_le32(ec_sim_slave(b->sim, slave)->mem + EC_REG_ERR_LOST(0));
+}
+
+static void forget_dl_event(struct bed *b, u32 slave)
+{
+	ec_esc_event(ec_sim_slave(b->sim, slave), 0, DL_EVENT);
+}
+
+static bool dl_event(struct bed *b, u32 slave)
+{
+	return ec_sim_slave(b->sim, slave)->ecat_event & DL_EVENT;
+}
+
+#define LINE	"slave a EK1100\nslave b EL2008\nslave c EL2008\n" \
+		"branch none\nslave x EL1008\nslave y EL1008\n"
+
+static void sim_cable_plug_and_unplug(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, LINE, 3);
+
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	/* link at its port 1 only, to y */
+	KUNIT_EXPECT_EQ(test, dl(b, 3) & 0xfff0, 0x5920);
+	KUNIT_EXPECT_EQ(test, dl(b, 2) & 0xfff0, 0x5610);
+	forget_dl_event(b, 2);
+	forget_dl_event(b, 3);
+	forget_dl_event(b, 4);
+
+	command(test, b, "plug c.1 x.0 cable=100ns");
+	KUNIT_EXPECT_EQ(test, dl(b, 2) & 0xfff0, 0x5a30);
+	KUNIT_EXPECT_EQ(test, dl(b, 3) & 0xfff0, 0x5a30);
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0);
+	KUNIT_EXPECT_EQ(test, lost(b, 3), 0);
+	KUNIT_EXPECT_TRUE(test, dl_event(b, 2));
+	KUNIT_EXPECT_TRUE(test, dl_event(b, 3));
+	KUNIT_EXPECT_FALSE_MSG(test, dl_event(b, 4), "nothing happened at its ports");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 5);
+
+	forget_dl_event(b, 2);
+	command(test, b, "unplug x.0");
+	KUNIT_EXPECT_EQ(test, dl(b, 2) & 0xfff0, 0x5610);
+	KUNIT_EXPECT_EQ(test, dl(b, 3) & 0xfff0, 0x5920);
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0x100);
+	KUNIT_EXPECT_EQ(test, lost(b, 3), 0x1);
+	KUNIT_EXPECT_TRUE(test, dl_event(b, 2));
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	/* there is no cable left that could be healed or pulled */
+	command(test, b, "heal c.1");
+	command(test, b, "unplug c.1");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0x100);
+}
+
+/* at another place, and the wrong way round: it keeps what it knows */
+static void sim_cable_plug_elsewhere(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, LINE, 3);
+
+	command(test, b, "plug c.1 x.0");
+	for (u16 i = 0; i < 5; i++)
+		bed_station(b, (u16)-i, (u16)(1001 + i));
+	command(test, b, "plug a.2 y.1");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 5);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1005, EC_REG_STATION, 2), 1005);
+	/* y is passed on the way back only: the frame enters at its port 1 */
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x6a70);
+	/* a plug fits into one port only: the cables at x.0 and a.2 come out */
+	command(test, b, "plug x.0 a.2");
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0x100);
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x10000);
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 4), 0x100, "pulled at its port 1");
+	KUNIT_EXPECT_EQ(test, lost(b, 3), 0x1);
+	KUNIT_EXPECT_EQ(test, count(b, 0), 5);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1004, EC_REG_STATION, 2), 1004);
+}
+
+/* a port that is closed shows what was plugged in, and lets nothing through */
+static void sim_cable_plug_at_closed_port(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, LINE, 3);
+	struct ec_esc *c = ec_sim_slave(b->sim, 2);
+
+	bed_station(b, (u16)-2, 1003);
+	bed_put(b, 1003, EC_REG_DL_LOOPS, 0x0c, 1);
+	bed_put(b, 1003, EC_REG_ECAT_MASK, DL_EVENT, 2);
+	forget_dl_event(b, 2);
+	command(test, b, "plug c.1 x.0");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	KUNIT_EXPECT_EQ_MSG(test, b->irq, DL_EVENT, "told in each datagram");
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1003, EC_REG_DL_STATUS, 2) & 0xfff0, 0x5e30);
+	KUNIT_EXPECT_EQ(test, c->mem[EC_REG_DL_LOOPS], 0x0c);
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	KUNIT_EXPECT_EQ_MSG(test, b->irq, 0, "read, so forgotten");
+	command(test, b, "unplug c.1");
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1003, EC_REG_DL_STATUS, 2) & 0xfff0, 0x5610);
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0x100);
+	command(test, b, "plug c.1 x.0");
+	bed_put(b, 1003, EC_REG_DL_LOOPS, 0x04, 1);
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 5, "opened by the write");
+	command(test, b, "unplug c.1");
+	command(test, b, "plug c.1 x.0");
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 3, "closed itself when the link was lost");
+	KUNIT_EXPECT_EQ(test, dl(b, 2) & 0xfff0, 0x5e30);
+}
+
+static void sim_cable_master_and_ring(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, LINE, 3);
+
+	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 1));
+	command(test, b, "plug c.1 master.1");
+	KUNIT_EXPECT_TRUE(test, ec_sim_link(b->sim, 1));
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	KUNIT_EXPECT_EQ(test, b->out, 1);
+	command(test, b, "unplug master.0");
+	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
+	KUNIT_EXPECT_EQ(test, count(b, 0), -1);
+	KUNIT_EXPECT_EQ(test, count(b, 1), 3);
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x1);
+	/* an island is no part of it */
+	command(test, b, "plug master.0 y.0");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	KUNIT_EXPECT_EQ(test, count(b, 1), 3);
+}
+
+/* a cable between two free ports: no frame is lost, nobody is passed twice */
+static void sim_cable_between_free_ports(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EK1100\nslave b EK1100\nslave c EK1100\n");
+
+	command(test, b, "plug a.2 b.2");
+	for (u32 i = 0; i < 3; i++)
+		KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	command(test, b, "unplug a.2");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+}
+
+static void sim_cable_without_power(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, LINE "fault off x\n", 3);
+
+	command(test, b, "plug c.1 x.0");
+	KUNIT_EXPECT_EQ_MSG(test, dl(b, 2) & 0xfff0, 0x5610, "no link without power");
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0);
+	command(test, b, "on x");
+	KUNIT_EXPECT_EQ(test, dl(b, 2) & 0xfff0, 0x5a30);
+	KUNIT_EXPECT_EQ(test, count(b, 0), 5);
+}
+
+static void sim_cable_errors_are_reported(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, LINE, 3);
+	static const struct {
+		const char *text, *want;
+	} bad[] = {
+		{ "plug c.1", "missing channel or port" },
+		{ "plug c.1 c.1", "cannot be connected to itself" },
+		{ "plug c.1 x.3", "does not have this port" },
+		{ "plug c.4 x.0", "ports are 0 to 3" },
+		{ "plug c.1 z.0", "unknown slave 'z'" },
+		{ "plug master.0 master.1", "cannot be connected to each other" },
+		{ "plug c.1 x.0 cable=2ms", "too long here" },
+		{ "unplug c", "has no number" },
+		{ "unplug c.2", "does not have this port" },
+	};
+	struct ec_sim_error err;
+	struct ec_sim_fault f;
+	char line[100];
+
+	for (u32 i = 0; i < ARRAY_SIZE(bad); i++) {
+		KUNIT_EXPECT_EQ_MSG(test, ec_sim_command(b->sim, &bed_ops, bad[i].text,
+							 strlen(bad[i].text), &f, &err),
+				    -EINVAL, "%s", bad[i].text);
+		KUNIT_EXPECT_TRUE_MSG(test, strstr(err.text, bad[i].want), "\"%s\" says \"%s\"",
+				      bad[i].text, err.text);
+	}
+	f = (struct ec_sim_fault){ .type = EC_SIM_FAULT_PLUG, .slave = 2, .port = 1,
+				   .arg = 3, .arg2 = 3 };
+	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(b->sim, &f), -EINVAL);
+	f = (struct ec_sim_fault){ .type = EC_SIM_FAULT_UNPLUG, .slave = -3 };
+	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(b->sim, &f), -EINVAL);
+	ec_sim_show(b->sim, 3, line, sizeof(line));
+	KUNIT_EXPECT_STREQ(test, line, "3 x EL1008 at y.0");
+	command(test, b, "unplug x.1");
+	ec_sim_show(b->sim, 3, line, sizeof(line));
+	KUNIT_EXPECT_STREQ(test, line, "3 x EL1008 unplugged");
+	command(test, b, "plug c.1 y.1");
+	ec_sim_show(b->sim, 4, line, sizeof(line));
+	KUNIT_EXPECT_STREQ(test, line, "4 y EL1008 at c.1");
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(sim_cable_plug_and_unplug),
+	KUNIT_CASE(sim_cable_plug_elsewhere),
+	KUNIT_CASE(sim_cable_plug_at_closed_port),
+	KUNIT_CASE(sim_cable_master_and_ring),
+	KUNIT_CASE(sim_cable_between_free_ports),
+	KUNIT_CASE(sim_cable_without_power),
+	KUNIT_CASE(sim_cable_errors_are_reported),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "sim_cable",
+	.exit = bed_exit,
+	.test_cases = cases,
+};
+
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
