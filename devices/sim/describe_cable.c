@@ -53,26 +53,61 @@ static int real_end(struct ec_desc *d, const struct ec_desc_word *w, int *slave,
 		ec_desc_fail(d, "'", w, "': the slave does not have this port");
 }
 
-static int plug(struct ec_desc *d, struct ec_sim_fault *f)
+static bool has_dot(const struct ec_desc_word *w)
 {
-	struct ec_desc_word *a = ec_desc_next(d), *b = ec_desc_next(d);
+	for (size_t i = 0; w && i < w->n; i++)
+		if (w->s[i] == '.')
+			return true;
+	return false;
+}
+
+/* the two ends of plug and swap */
+static int two_ends(struct ec_desc *d, struct ec_sim_fault *f, struct ec_desc_word *a,
+		    struct ec_desc_word *b)
+{
 	int slave = -1, port = 0, ret;
 
 	ret = real_end(d, a, &f->slave, &f->port);
 	if (!ret)
 		ret = real_end(d, b, &slave, &port);
-	if (!ret)
-		ret = ec_desc_time(d, "cable", CABLE_MAX, &f->value);
 	if (ret)
 		return ret;
-	if (f->slave == slave && f->port == port)
-		return ec_desc_fail(d, "'", b, "' cannot be connected to itself");
-	if (f->slave < 0 && slave < 0)
-		return ec_desc_fail(d, "the ports of the master cannot be connected to each other",
-				    NULL, "");
 	f->arg = (u32)slave;
 	f->arg2 = (u32)port;
-	return 0;
+	return f->slave != slave || f->port != port ? 0 :
+		ec_desc_fail(d, "'", b, "' is named twice; name two different ports");
+}
+
+static int plug(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word *a = ec_desc_next(d), *b = ec_desc_next(d);
+	int ret = two_ends(d, f, a, b);
+
+	if (!ret)
+		ret = ec_desc_time(d, "cable", CABLE_MAX, &f->value);
+	if (!ret && f->slave < 0 && (int)f->arg < 0)
+		return ec_desc_fail(d, "the ports of the master cannot be connected to each other",
+				    NULL, "");
+	return ret;
+}
+
+static int exchange(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word *a = ec_desc_next(d), *b = ec_desc_next(d);
+	int slave;
+
+	if (has_dot(a) || has_dot(b))
+		return two_ends(d, f, a, b);
+	f->port = EC_SIM_ALL_PORTS;
+	f->slave = ec_desc_slave(d, a);
+	if (f->slave < 0)
+		return f->slave;
+	slave = ec_desc_slave(d, b);
+	if (slave < 0)
+		return slave;
+	f->arg = (u32)slave;
+	return f->slave != slave ? 0 :
+		ec_desc_fail(d, "'", b, "' is named twice; name two different slaves");
 }
 
 /**
@@ -89,6 +124,8 @@ int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f)
 
 	if (f->type == EC_SIM_FAULT_PLUG)
 		return plug(d, f);
+	if (f->type == EC_SIM_FAULT_SWAP)
+		return exchange(d, f);
 	w = ec_desc_next(d);
 	if (f->type == EC_SIM_FAULT_UNPLUG)
 		return real_end(d, w, &f->slave, &f->port);

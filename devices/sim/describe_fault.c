@@ -17,6 +17,7 @@ static const struct verb {
 	{ "heal", PORT, EC_SIM_FAULT_HEAL, 0 },
 	{ "plug", PORT, EC_SIM_FAULT_PLUG, 0 },
 	{ "unplug", PORT, EC_SIM_FAULT_UNPLUG, 0 },
+	{ "swap", PORT, EC_SIM_FAULT_SWAP, 0 },
 	{ "off", SLAVE, EC_SIM_FAULT_POWER_OFF, 0 },
 	{ "on", SLAVE, EC_SIM_FAULT_POWER_ON, 0 },
 	{ "dead", SLAVE, EC_SIM_FAULT_DEAD, 1 },

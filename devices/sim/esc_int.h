@@ -289,6 +289,7 @@ void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
 void ec_sim_plug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
 void ec_sim_unplug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
+void ec_sim_swap(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
 
 /* segment_spans.c */
 int ec_sim_spans_room(struct ec_sim *sim, u32 n);

@@ -28,6 +28,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_JUMP] = "jump",
 	[EC_SIM_FAULT_PLUG] = "plug",
 	[EC_SIM_FAULT_UNPLUG] = "unplug",
+	[EC_SIM_FAULT_SWAP] = "swap",
 };
 
 /**
@@ -63,14 +64,23 @@ static bool is_frame_fault(enum ec_sim_fault_type type)
 	       type == EC_SIM_FAULT_DELAY || type == EC_SIM_FAULT_MANGLE;
 }
 
-/* two different ports */
-static bool can_plug(const struct ec_sim *sim, const struct ec_sim_fault *f)
+/* two different ports, or slaves */
+static bool can_swap(const struct ec_sim *sim, const struct ec_sim_fault *f)
 {
 	int slave = (int)f->arg, port = (int)f->arg2;
 
+	if (f->port == EC_SIM_ALL_PORTS)
+		return f->slave != slave && f->slave >= 0 && f->slave < (int)sim->count &&
+		       slave >= 0 && slave < (int)sim->count;
 	return ec_sim_has_port(sim, f->slave, f->port) && ec_sim_has_port(sim, slave, port) &&
-	       (f->slave != slave || (slave >= 0 && f->port != port)) &&
-	       (f->slave >= 0 || slave >= 0);
+	       (f->slave != slave || (slave >= 0 && f->port != port));
+}
+
+/* not both of them at the master */
+static bool can_plug(const struct ec_sim *sim, const struct ec_sim_fault *f)
+{
+	return f->port != EC_SIM_ALL_PORTS && can_swap(sim, f) &&
+	       (f->slave >= 0 || (int)f->arg >= 0);
 }
 
 static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
@@ -82,6 +92,8 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 		return false;
 	if (f->type == EC_SIM_FAULT_PLUG)
 		return can_plug(sim, f);
+	if (f->type == EC_SIM_FAULT_SWAP)
+		return can_swap(sim, f);
 	if (is_frame_fault(f->type))
 		return f->port >= -1 && f->port < EC_SIM_PORTS;
 	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
@@ -185,6 +197,9 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 		break;
 	case EC_SIM_FAULT_UNPLUG:
 		ec_sim_unplug(sim, f, now);
+		break;
+	case EC_SIM_FAULT_SWAP:
+		ec_sim_swap(sim, f, now);
 		break;
 	case EC_SIM_FAULT_POWER_OFF:
 	case EC_SIM_FAULT_POWER_ON:

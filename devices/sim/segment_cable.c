@@ -23,6 +23,13 @@ static struct end far_end(const struct ec_esc_port *port)
 	};
 }
 
+/* what has to be known to lay it again */
+struct cable {
+	struct end a, b;
+	u32 ns;
+	bool cut;
+};
+
 static bool same_end(struct end a, struct end b)
 {
 	return a.slave == b.slave && a.port == b.port;
@@ -45,11 +52,17 @@ bool ec_sim_has_port(const struct ec_sim *sim, int slave, int port)
 	       sim->esc[slave]->cfg.ports[port] > EC_PORT_TYPE_UNCONF;
 }
 
-static void attach(struct ec_esc_port *port, struct end far, u32 cable_ns)
+static void attach(struct ec_esc_port *port, struct end far, const struct cable *c)
 {
 	port->peer = far.slave < 0 ? far.slave - 1 : far.slave;
 	port->peer_port = (u8)far.port;
-	port->cable_ns = cable_ns;
+	port->cable_ns = c->ns;
+	port->cut = c->cut;
+}
+
+static void detach(struct ec_esc_port *port)
+{
+	port->peer = -1;
 	port->cut = false;
 }
 
@@ -60,29 +73,35 @@ static void look(struct ec_sim *sim, struct end e, u64 now)
 		ec_sim_ports(sim->esc[e.slave], now);
 }
 
-static void lay(struct ec_sim *sim, struct end a, struct end b, u32 cable_ns, u64 now)
+static void lay(struct ec_sim *sim, const struct cable *c, u64 now)
 {
-	attach(port_of(sim, a), b, cable_ns);
-	attach(port_of(sim, b), a, cable_ns);
-	look(sim, b, now);
-	look(sim, a, now);
+	attach(port_of(sim, c->a), c->b, c);
+	attach(port_of(sim, c->b), c->a, c);
+	look(sim, c->b, now);
+	look(sim, c->a, now);
+}
+
+/* false: there is none */
+static bool cable_at(struct ec_sim *sim, struct end a, struct cable *c)
+{
+	const struct ec_esc_port *port = port_of(sim, a);
+
+	if (port->peer == -1)
+		return false;
+	*c = (struct cable){ a, far_end(port), port->cable_ns, port->cut };
+	return true;
 }
 
 static void pull(struct ec_sim *sim, struct end a, u64 now)
 {
-	struct ec_esc_port *port = port_of(sim, a);
-	struct end b;
+	struct cable c;
 
-	if (port->peer == -1)
+	if (!cable_at(sim, a, &c))
 		return;
-	b = far_end(port);
-	port->peer = -1;
-	port->cut = false;
-	port = port_of(sim, b);
-	port->peer = -1;
-	port->cut = false;
-	look(sim, a, now);
-	look(sim, b, now);
+	detach(port_of(sim, c.a));
+	detach(port_of(sim, c.b));
+	look(sim, c.a, now);
+	look(sim, c.b, now);
 }
 
 /**
@@ -101,42 +120,94 @@ static void pull(struct ec_sim *sim, struct end a, u64 now)
 int ec_sim_wire(struct ec_sim *sim, int parent, int parent_port, int child,
 		int child_port, u32 cable_ns)
 {
-	struct end a = { parent, parent < 0 ? 0 : parent_port }, b = { child, child_port };
+	const struct cable c = {
+		{ parent, parent < 0 ? 0 : parent_port }, { child, child_port }, cable_ns, false,
+	};
 
 	if (child < 0 || !ec_sim_has_port(sim, parent, parent_port) ||
-	    !ec_sim_has_port(sim, child, child_port) || same_end(a, b))
+	    !ec_sim_has_port(sim, child, child_port) || same_end(c.a, c.b))
 		return -EINVAL;
-	if (port_of(sim, a)->peer != -1 || port_of(sim, b)->peer != -1)
+	if (port_of(sim, c.a)->peer != -1 || port_of(sim, c.b)->peer != -1)
 		return -EBUSY;
-	lay(sim, a, b, cable_ns, sim->now);
+	lay(sim, &c, sim->now);
 	return 0;
 }
 
 /* cut or heal the cable at one of its ends; @slave below 0: master port */
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now)
 {
-	struct end a = { slave, port }, b;
+	struct cable c;
 
-	if (port_of(sim, a)->peer == -1)
+	if (!cable_at(sim, (struct end){ slave, port }, &c))
 		return;
-	b = far_end(port_of(sim, a));
-	port_of(sim, a)->cut = cut;
-	port_of(sim, b)->cut = cut;
-	look(sim, a, now);
-	look(sim, b, now);
+	port_of(sim, c.a)->cut = cut;
+	port_of(sim, c.b)->cut = cut;
+	look(sim, c.a, now);
+	look(sim, c.b, now);
 }
 
 /* a plug fits into one port only: a cable that is there comes out first */
 void ec_sim_plug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 {
-	struct end a = { f->slave, f->port }, b = { (int)f->arg, (int)f->arg2 };
+	const struct cable c = {
+		{ f->slave, f->port }, { (int)f->arg, (int)f->arg2 }, (u32)f->value, false,
+	};
 
-	pull(sim, a, now);
-	pull(sim, b, now);
-	lay(sim, a, b, (u32)f->value, now);
+	pull(sim, c.a, now);
+	pull(sim, c.b, now);
+	lay(sim, &c, now);
 }
 
 void ec_sim_unplug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 {
 	pull(sim, (struct end){ f->slave, f->port }, now);
+}
+
+/* the end that takes the place of @e when two slaves, or two of their ports, are exchanged */
+static struct end exchanged(const struct ec_sim_fault *f, struct end e)
+{
+	const struct end a = { f->slave, f->port }, b = { (int)f->arg, (int)f->arg2 };
+
+	if (f->port == EC_SIM_ALL_PORTS) {
+		if (e.slave == a.slave || e.slave == b.slave)
+			e.slave = e.slave == a.slave ? b.slave : a.slave;
+		return e;
+	}
+	return same_end(e, a) ? b : same_end(e, b) ? a : e;
+}
+
+/* take the cables out of @slave; returns how many */
+static u32 pull_all(struct ec_sim *sim, int slave, int port, struct cable *c, u64 now)
+{
+	int first = port == EC_SIM_ALL_PORTS ? 0 : port;
+	int last = port == EC_SIM_ALL_PORTS ? EC_MAX_PORT - 1 : port;
+	u32 n = 0;
+
+	for (int p = first; p <= last; p++) {
+		const struct end e = { slave, p };
+
+		if (!cable_at(sim, e, &c[n]))
+			continue;
+		pull(sim, e, now);
+		n++;
+	}
+	return n;
+}
+
+/* each cable comes out, then goes in again; where there is no port, it stays out */
+void ec_sim_swap(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
+{
+	struct cable c[2 * EC_MAX_PORT];
+	u32 n = pull_all(sim, f->slave, f->port, c, now);
+
+	n += pull_all(sim, (int)f->arg, f->port == EC_SIM_ALL_PORTS ? f->port : (int)f->arg2,
+		      c + n, now);
+	for (u32 i = 0; i < n; i++) {
+		c[i].a = exchanged(f, c[i].a);
+		c[i].b = exchanged(f, c[i].b);
+		if ((c[i].a.slave >= 0 || c[i].b.slave >= 0) &&
+		    ec_sim_has_port(sim, c[i].a.slave, c[i].a.port) &&
+		    ec_sim_has_port(sim, c[i].b.slave, c[i].b.port))
+			lay(sim, &c[i], now);
+	}
 }

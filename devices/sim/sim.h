@@ -58,6 +58,9 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_PLUG: no fault: a cable of @value ns from @slave, @port to port @arg2 of
  *                     slave (int)@arg; a cable in one of these ports comes out before
  * @EC_SIM_FAULT_UNPLUG: the cable at @slave, @port is taken away
+ * @EC_SIM_FAULT_SWAP: what hangs at @slave, @port and what hangs at port @arg2 of
+ *                     slave (int)@arg are exchanged; @port EC_SIM_ALL_PORTS: the
+ *                     two slaves change places
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -86,8 +89,11 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_JUMP,
 	EC_SIM_FAULT_PLUG,
 	EC_SIM_FAULT_UNPLUG,
+	EC_SIM_FAULT_SWAP,
 	EC_SIM_FAULT_TYPES
 };
+
+#define EC_SIM_ALL_PORTS	(-1)	/* "port" of EC_SIM_FAULT_SWAP */
 
 #define EC_SIM_EDGE_RISING	1	/* both: a pulse, too short to see */
 #define EC_SIM_EDGE_FALLING	2
@@ -138,8 +144,8 @@ enum ec_sim_mailbox_fault {
  * struct ec_sim_fault - one scripted fault
  * @at_ns: when it begins; 0 or past: with the next frame or advance
  * @type: what
- * @slave: which slave; for frame faults ignored. -1, -2: CUT, HEAL, PLUG and
- *         UNPLUG at the master's own port
+ * @slave: which slave; for frame faults ignored. -1, -2: CUT, HEAL, PLUG,
+ *         UNPLUG and SWAP at the master's own port
  * @port: which port; for frame faults the master port, -1 = both
  * @arg: frame faults: the n-th frame from @at_ns on (1 = next), 0 = by chance
  * @arg2: frame faults by chance: probability in ppm, 0 ends the earlier one

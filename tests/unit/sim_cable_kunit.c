@@ -169,6 +169,86 @@ static void sim_cable_between_free_ports(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
 }
 
+/* station addresses in ring order, as far as there are any */
+static void expect_order(struct kunit *test, struct bed *b, u32 n, const u16 *want)
+{
+	for (u32 i = 0; i < n; i++) {
+		u8 v[2] = { 0 };
+
+		KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_APRD, (u16)-i, EC_REG_STATION, v, 2), 1);
+		KUNIT_EXPECT_EQ_MSG(test, get_unaligned_le16(v), want[i], "position %u", i);
+	}
+	KUNIT_EXPECT_EQ(test, count(b, 0), (int)n);
+}
+
+#define TREE	"slave a EK1100\nslave b EL2008\nslave c EL2008\nslave d EL2008\n" \
+		"branch a 2\nslave e EK1100\nslave f EL2008\n"
+
+static void sim_cable_swap_slaves(struct kunit *test)
+{
+	struct bed *b = app_bed(test, TREE);
+
+	expect_order(test, b, 6, (const u16[]){ 1001, 1002, 1003, 1004, 1005, 1006 });
+	command(test, b, "swap b d");
+	expect_order(test, b, 6, (const u16[]){ 1001, 1004, 1003, 1002, 1005, 1006 });
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x100);
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 2), 0x101, "both neighbours of c");
+	KUNIT_EXPECT_EQ(test, lost(b, 1), 0x101);
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 3), 0x1, "its port 1 was free");
+	KUNIT_EXPECT_EQ(test, dl(b, 3) & 0xfff0, 0x5a30);
+	KUNIT_EXPECT_EQ(test, dl(b, 1) & 0xfff0, 0x5610);
+	KUNIT_EXPECT_EQ(test, lost(b, 4), 0);
+
+	command(test, b, "swap c d");		/* neighbours */
+	expect_order(test, b, 6, (const u16[]){ 1001, 1003, 1004, 1002, 1005, 1006 });
+	/* f has no port 2: the branch of e stays out */
+	command(test, b, "swap f a");
+	expect_order(test, b, 4, (const u16[]){ 1006, 1003, 1004, 1002 });
+	KUNIT_EXPECT_EQ_MSG(test, dl(b, 0) & 0xfff0, 0x5610, "a is at e");
+	KUNIT_EXPECT_EQ(test, ec_sim_at(b->sim, 0)->port[0].peer, 4);
+}
+
+static void sim_cable_swap_branches(struct kunit *test)
+{
+	struct bed *b = app_bed(test, TREE);
+
+	command(test, b, "swap a.1 a.2");
+	expect_order(test, b, 6, (const u16[]){ 1001, 1005, 1006, 1002, 1003, 1004 });
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x10100);
+	KUNIT_EXPECT_EQ(test, lost(b, 1), 0x1);
+	KUNIT_EXPECT_EQ(test, lost(b, 4), 0x1);
+	KUNIT_EXPECT_EQ(test, lost(b, 5), 0);
+	command(test, b, "swap a.1 e.2");	/* free: a branch below itself is cut off */
+	KUNIT_EXPECT_EQ(test, count(b, 0), 4);
+	command(test, b, "swap e.2 a.1");
+	expect_order(test, b, 6, (const u16[]){ 1001, 1005, 1006, 1002, 1003, 1004 });
+
+	/* both ends of one cable: it comes out and goes in again */
+	command(test, b, "swap a.2 b.0");
+	KUNIT_EXPECT_EQ(test, lost(b, 1), 0x2);
+	KUNIT_EXPECT_EQ(test, count(b, 0), 6);
+	command(test, b, "cut d.0");
+	command(test, b, "swap c.1 f.1");
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 5, "the cable of d is still broken");
+	command(test, b, "heal f.1");
+	expect_order(test, b, 6, (const u16[]){ 1001, 1005, 1006, 1004, 1002, 1003 });
+}
+
+static void sim_cable_swap_master(struct kunit *test)
+{
+	struct bed *b = app_bed(test, TREE "wire f.1 -> master.1\n");
+
+	KUNIT_EXPECT_EQ(test, count(b, 0), 6);
+	KUNIT_EXPECT_EQ(test, count(b, 1), 0);
+	command(test, b, "swap master.0 master.1");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 0);
+	KUNIT_EXPECT_EQ(test, count(b, 1), 6);
+	/* would connect the master with itself: stays out */
+	command(test, b, "swap a.0 master.0");
+	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 1));
+	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
+}
+
 static void sim_cable_without_power(struct kunit *test)
 {
 	struct bed *b = app_bed_part(test, LINE "fault off x\n", 3);
@@ -188,13 +268,17 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 		const char *text, *want;
 	} bad[] = {
 		{ "plug c.1", "missing channel or port" },
-		{ "plug c.1 c.1", "cannot be connected to itself" },
+		{ "plug c.1 c.1", "is named twice; name two different ports" },
 		{ "plug c.1 x.3", "does not have this port" },
 		{ "plug c.4 x.0", "ports are 0 to 3" },
 		{ "plug c.1 z.0", "unknown slave 'z'" },
 		{ "plug master.0 master.1", "cannot be connected to each other" },
 		{ "plug c.1 x.0 cable=2ms", "too long here" },
 		{ "unplug c", "has no number" },
+		{ "swap c", "missing name of a slave" },
+		{ "swap c c", "is named twice; name two different slaves" },
+		{ "swap c x.0", "has no number" },
+		{ "swap c.1 x.2", "does not have this port" },
 		{ "unplug c.2", "does not have this port" },
 	};
 	struct ec_sim_error err;
@@ -210,6 +294,11 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 	}
 	f = (struct ec_sim_fault){ .type = EC_SIM_FAULT_PLUG, .slave = 2, .port = 1,
 				   .arg = 3, .arg2 = 3 };
+	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(b->sim, &f), -EINVAL);
+	f.type = EC_SIM_FAULT_SWAP;
+	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(b->sim, &f), -EINVAL);
+	f.port = EC_SIM_ALL_PORTS;
+	f.arg = 5;
 	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(b->sim, &f), -EINVAL);
 	f = (struct ec_sim_fault){ .type = EC_SIM_FAULT_UNPLUG, .slave = -3 };
 	KUNIT_EXPECT_EQ(test, ec_sim_add_fault(b->sim, &f), -EINVAL);
@@ -229,6 +318,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_cable_plug_at_closed_port),
 	KUNIT_CASE(sim_cable_master_and_ring),
 	KUNIT_CASE(sim_cable_between_free_ports),
+	KUNIT_CASE(sim_cable_swap_slaves),
+	KUNIT_CASE(sim_cable_swap_branches),
+	KUNIT_CASE(sim_cable_swap_master),
 	KUNIT_CASE(sim_cable_without_power),
 	KUNIT_CASE(sim_cable_errors_are_reported),
 	{}
