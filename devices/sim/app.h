@@ -433,11 +433,15 @@ struct ec_app_model *ec_app_model_file(struct ec_sim *sim, const u8 *eeprom,
 void ec_app_model_put(struct ec_app_model *model);
 void *ec_app_model_alloc(struct ec_app_model *model, size_t bytes);
 
+/* slave_old.c */
+void ec_app_old(struct ec_app *app, const struct ec_sim_fault *f, u64 now);
+
 /* slave_al.c */
 void ec_app_al_reset(struct ec_app *app, u64 now);
 bool ec_app_al_legal(u8 from, u8 to);
 void ec_app_al_control(struct ec_app *app, u64 now);
 void ec_app_al_poll(struct ec_app *app, u64 now);
+void ec_app_al_old(struct ec_app *app, u8 state, u64 now);
 void ec_app_al_fail(struct ec_app *app, u8 state, u16 code, u64 now);
 void ec_app_al_outputs(struct ec_app *app, u64 now);
 

@@ -33,6 +33,7 @@
  *	fault [at=TIME] WHAT, where WHAT is one of
  *		plug NAME.PORT NAME.PORT [cable=TIME]  unplug NAME.PORT
  *		swap NAME NAME (slaves)  swap NAME.PORT NAME.PORT (branches)
+ *		old NAME [station=N] [loops=N] [state=STATE] [logical=N] (registers)
  *		cut|heal NAME.PORT  off|on NAME  dead|alive NAME
  *		deaf|hear NAME (broadcasts)  mute|unmute NAME (application)
  *		refuse NAME STATE code=N  allow NAME

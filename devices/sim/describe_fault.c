@@ -36,6 +36,7 @@ static const struct verb {
 	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
 	{ "latch", SLAVE, EC_SIM_FAULT_LATCH, 0 },
 	{ "jump", SLAVE, EC_SIM_FAULT_JUMP, 0 },
+	{ "old", SLAVE, EC_SIM_FAULT_OLD, 0 },
 	{ "error", SLAVE, EC_SIM_FAULT_AL_ERROR, 0 },
 	{ "eeprom", SLAVE, EC_SIM_FAULT_EEPROM, 0 },
 	{ "input", CHANNEL, EC_SIM_FAULT_INPUT, 0 },
@@ -53,20 +54,58 @@ static const struct {
 	{ "BOOT", EC_AL_BOOT }, { "SAFEOP", EC_AL_SAFEOP }, { "OP", EC_AL_OP },
 };
 
+/* its bits of AL status, 0: none of them */
+static u8 state_of(const struct ec_desc_word *w)
+{
+	for (u32 i = 0; i < ARRAY_SIZE(states); i++)
+		if (ec_desc_is(w, states[i].name))
+			return states[i].state;
+	return 0;
+}
+
 static int refuse(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	struct ec_desc_word *w = ec_desc_next(d);
 	s64 code = EC_AL_CODE_UNSPECIFIED;
 
-	for (u32 i = 0; i < ARRAY_SIZE(states); i++)
-		if (ec_desc_is(w, states[i].name))
-			f->arg = states[i].state;
+	f->arg = state_of(w);
 	if (!f->arg)
 		return ec_desc_fail(d, "invalid refuse: expected fault refuse NAME SAFEOP code=0x1d",
 				    NULL, "");
 	if (ec_desc_number(d, "code", 1, 0xFFFF, &code))
 		return -EINVAL;
 	f->arg2 = (u32)code;
+	return 0;
+}
+
+/* which registers another master left behind */
+static int old(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	s64 station = -1, loops = -1, logical = -1;
+	struct ec_desc_word state;
+
+	if (ec_desc_number(d, "station", 0, 0xFFFF, &station) ||
+	    ec_desc_number(d, "loops", 0, 0xFF, &loops) ||
+	    ec_desc_number(d, "logical", 0, 0xFFFFFFFF, &logical))
+		return -EINVAL;
+	state = ec_desc_value(d, "state");
+	f->arg2 = state_of(&state);
+	if (state.s && !f->arg2)
+		return ec_desc_fail(d, "invalid state '", &state,
+				    "': expected INIT, PREOP, BOOT, SAFEOP or OP");
+	if (station < 0 && loops < 0 && logical < 0 && !state.s)
+		return ec_desc_fail(d, "nothing is old: expected station=N, loops=N, state=STATE or logical=N",
+				    NULL, "");
+	if (station >= 0)
+		f->value |= (u64)station | EC_SIM_OLD_STATION;
+	if (loops >= 0)
+		f->value |= (u64)loops << EC_SIM_OLD_LOOPS_SHIFT | EC_SIM_OLD_LOOPS;
+	if (state.s)
+		f->value |= EC_SIM_OLD_STATE;
+	if (logical >= 0) {
+		f->value |= EC_SIM_OLD_LOGICAL;
+		f->arg = (u32)logical;
+	}
 	return 0;
 }
 
@@ -294,6 +333,8 @@ static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault 
 	switch (v->type) {
 	case EC_SIM_FAULT_MAILBOX:
 		return mailbox(d, f);
+	case EC_SIM_FAULT_OLD:
+		return old(d, f);
 	case EC_SIM_FAULT_LATCH:
 		return latch(d, f);
 	case EC_SIM_FAULT_JUMP:

@@ -467,6 +467,7 @@ void ec_esc_set_al_status(struct ec_esc *esc, u16 status, u16 code, u64 now);
 bool ec_esc_sm_readable(const struct ec_esc *esc, int sm);
 bool ec_esc_sm_writable(const struct ec_esc *esc, int sm);
 void ec_esc_sm_pdi_disable(struct ec_esc *esc, int sm, bool disable);
+void ec_esc_old_write(struct ec_esc *esc, u16 ado, const void *buf, size_t len, u64 now);
 void ec_esc_wake_at(struct ec_esc *esc, u64 at_ns);
 const u8 *ec_esc_pdi_take(struct ec_esc *esc, int sm, u16 len, u64 now);
 u8 *ec_esc_pdi_give(struct ec_esc *esc, int sm, u16 len, u64 now);

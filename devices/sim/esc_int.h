@@ -285,6 +285,9 @@ void ec_sim_ports(struct ec_esc *esc, u64 now);
 void ec_sim_loops(struct ec_esc *esc, bool written, u64 now);
 void ec_sim_power(struct ec_esc *esc, bool on, u64 now);
 
+/* esc_old.c */
+void ec_esc_old(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now);
+
 /* segment_cable.c */
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
 void ec_sim_plug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);

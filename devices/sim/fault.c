@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Scripted faults. */
+#include "../../master/wire/al.h"
 #include "esc_int.h"
 
 static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
@@ -29,6 +30,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_PLUG] = "plug",
 	[EC_SIM_FAULT_UNPLUG] = "unplug",
 	[EC_SIM_FAULT_SWAP] = "swap",
+	[EC_SIM_FAULT_OLD] = "old",
 };
 
 /**
@@ -101,6 +103,9 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	if (f->slave < 0 || f->slave >= (int)sim->count)
 		return false;
 	if (f->type == EC_SIM_FAULT_LATCH && (f->arg > 1 || !f->arg2 || f->arg2 > 3))
+		return false;
+	if (f->type == EC_SIM_FAULT_OLD && f->value & EC_SIM_OLD_STATE &&
+	    !ec_al_state_valid((u8)f->arg2))
 		return false;
 	if (f->type == EC_SIM_FAULT_MAILBOX && f->arg >= EC_SIM_MAILBOX_FAULTS)
 		return false;
@@ -250,6 +255,10 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 		if ((u64)f->arg * 2 + 2 <= esc->eep.len)
 			put_unaligned_le16((u16)f->arg2, esc->eep.data + f->arg * 2);
 		break;
+	case EC_SIM_FAULT_OLD:
+		if (esc->powered)
+			ec_esc_old(esc, f, now);
+		fallthrough;
 	case EC_SIM_FAULT_AL_ERROR:
 	case EC_SIM_FAULT_INPUT:
 	case EC_SIM_FAULT_EMERGENCY:

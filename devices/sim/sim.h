@@ -61,6 +61,8 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_SWAP: what hangs at @slave, @port and what hangs at port @arg2 of
  *                     slave (int)@arg are exchanged; @port EC_SIM_ALL_PORTS: the
  *                     two slaves change places
+ * @EC_SIM_FAULT_OLD: @slave is as another master left it: @value EC_SIM_OLD_* and the
+ *                    station address, AL state @arg2, FMMUs from logical @arg on
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -90,10 +92,18 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_PLUG,
 	EC_SIM_FAULT_UNPLUG,
 	EC_SIM_FAULT_SWAP,
+	EC_SIM_FAULT_OLD,
 	EC_SIM_FAULT_TYPES
 };
 
 #define EC_SIM_ALL_PORTS	(-1)	/* "port" of EC_SIM_FAULT_SWAP */
+
+/* "value" of EC_SIM_FAULT_OLD: what is said; station in bits 0 to 15, 0x0101 above */
+#define EC_SIM_OLD_LOOPS_SHIFT	16
+#define EC_SIM_OLD_STATION	BIT(24)
+#define EC_SIM_OLD_LOOPS	BIT(25)
+#define EC_SIM_OLD_STATE	BIT(26)
+#define EC_SIM_OLD_LOGICAL	BIT(27)
 
 #define EC_SIM_EDGE_RISING	1	/* both: a pulse, too short to see */
 #define EC_SIM_EDGE_FALLING	2

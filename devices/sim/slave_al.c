@@ -100,6 +100,33 @@ void ec_app_al_fail(struct ec_app *app, u8 state, u16 code, u64 now)
 	show(app, now);
 }
 
+/**
+ * ec_app_al_old() - the state in which another master left the slave
+ * @app: slave
+ * @state: that state; its SyncManagers are set
+ * @now: time, ns
+ *
+ * It is reached step by step, at once and without checks.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_al_old(struct ec_app *app, u8 state, u64 now)
+{
+	static const u8 way[] = { EC_AL_PREOP, EC_AL_SAFEOP, EC_AL_OP };
+
+	app->al_to = 0;
+	app->al_waits = false;
+	app->error = false;
+	app->code = 0;
+	if (app->state != EC_AL_INIT)
+		enter(app, EC_AL_INIT, now);
+	for (u32 i = 0; i < ARRAY_SIZE(way) && state != EC_AL_BOOT && way[i] <= state; i++)
+		enter(app, way[i], now);
+	if (app->state != state)
+		enter(app, state, now);
+	show(app, now);
+}
+
 static u16 sii_word(const struct ec_app *app, u32 word)
 {
 	const struct ec_esc_eeprom *e = &app->esc->eep;

@@ -155,6 +155,9 @@ static void fault(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now)
 		if (!app->model->emulation)
 			ec_app_al_fail(app, app->state, (u16)f->arg, now);
 		break;
+	case EC_SIM_FAULT_OLD:
+		ec_app_old(app, f, now);
+		break;
 	case EC_SIM_FAULT_EMERGENCY:
 		ec_app_emergency(app, (u16)f->arg, (u8)f->arg2, data, now);
 		break;

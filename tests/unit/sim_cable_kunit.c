@@ -249,6 +249,79 @@ static void sim_cable_swap_master(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
 }
 
+/* logical @first on, @len bytes; returns the working counter */
+static int logical(struct bed *b, u8 cmd, u32 first, u8 *data, u16 len)
+{
+	return bed_tx(b, cmd, (u16)first, (u16)(first >> 16), data, len);
+}
+
+static void sim_cable_old_registers_are_live(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, "slave a EK1100\nslave o EL2008\nbranch none\n"
+				     "slave x EL2008\nslave m io in=32 out=32 cpu=yes\n"
+				     "fault old x station=1002 state=OP logical=0x10000\n"
+				     "fault old m station=7 loops=0x0c state=OP logical=0x10001\n",
+				     2);
+	struct ec_app *m = ec_sim_find(b->sim, "m"), *x = ec_sim_find(b->sim, "x");
+	static const u8 outputs[] = { 0xA5, 1, 2, 3, 4 };
+	u8 v[9] = { 0 };
+
+	KUNIT_EXPECT_EQ(test, bed_get(b, 1002, EC_REG_AL_STATUS, 2), EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, logical(b, EC_CMD_LRW, 0x10000, v, 9), 0);
+	command(test, b, "plug o.1 x.0");
+	/* two slaves answer, the first with its state, the second with an old one */
+	KUNIT_EXPECT_EQ(test, bed_rd(b, 1002, EC_REG_AL_STATUS, v, 2), 2);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 7, EC_REG_AL_STATUS, 2), EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 7, EC_REG_AL_CONTROL, 2), EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 7, EC_REG_DL_LOOPS, 1), 0x0c);
+	KUNIT_EXPECT_EQ(test, bed_get(b, 7, EC_REG_DL_STATUS, 2) & 0xfff0, 0x5610);
+	/* and they take part in the process data at once */
+	memcpy(v, outputs, sizeof(outputs));
+	KUNIT_EXPECT_EQ(test, logical(b, EC_CMD_LRW, 0x10000, v, 9), 2 + 3);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(x, EC_APP_OUT, 0), 1);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(x, EC_APP_OUT, 1), 0);
+	KUNIT_EXPECT_EQ(test, ec_app_channel(x, EC_APP_OUT, 7), 1);
+	for (u16 i = 0; i < 32; i++)
+		KUNIT_EXPECT_EQ_MSG(test, ec_app_channel(m, EC_APP_OUT, i), 0x04030201 >> i & 1,
+				    "output %u", i);
+	b->now += 2000000000;
+	KUNIT_EXPECT_EQ_MSG(test, bed_get(b, 7, EC_REG_AL_STATUS, 2), EC_AL_OP, "no watchdog");
+	/* INIT through its own master ends it */
+	bed_put(b, 7, EC_REG_AL_CONTROL, EC_AL_INIT, 2);
+	b->now += 100000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, 7, EC_REG_AL_STATUS, 2), EC_AL_INIT);
+	command(test, b, "off m");
+	command(test, b, "old m station=9");
+	command(test, b, "on m");
+	KUNIT_EXPECT_EQ(test, bed_get(b, 9, EC_REG_STATION, 2), ~0ull);
+}
+
+static void sim_cable_old_states(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave m drive\nslave o EL2008\n");
+	static const struct {
+		const char *command;
+		u16 state;
+	} steps[] = {
+		{ "old m state=PREOP", EC_AL_PREOP }, { "old m state=OP", EC_AL_OP },
+		{ "old m state=SAFEOP", EC_AL_SAFEOP }, { "old m state=BOOT", EC_AL_BOOT },
+		{ "old m state=INIT", EC_AL_INIT },
+	};
+
+	for (u32 i = 0; i < ARRAY_SIZE(steps); i++) {
+		command(test, b, steps[i].command);
+		KUNIT_EXPECT_EQ_MSG(test, bed_get(b, STATION(0), EC_REG_AL_STATUS, 2),
+				    steps[i].state, "%s", steps[i].command);
+		KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_STATION, 2), STATION(0));
+	}
+	/* it goes on from there as any slave */
+	command(test, b, "old m state=SAFEOP");
+	bed_put(b, STATION(0), EC_REG_AL_CONTROL, EC_AL_PREOP, 2);
+	b->now += 100000000;
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_AL_STATUS, 2), EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), EC_REG_AL_STATUS, 2), EC_AL_INIT);
+}
+
 static void sim_cable_without_power(struct kunit *test)
 {
 	struct bed *b = app_bed_part(test, LINE "fault off x\n", 3);
@@ -275,6 +348,9 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 		{ "plug master.0 master.1", "cannot be connected to each other" },
 		{ "plug c.1 x.0 cable=2ms", "too long here" },
 		{ "unplug c", "has no number" },
+		{ "old c", "nothing is old" },
+		{ "old c state=ON", "invalid state 'ON'" },
+		{ "old c loops=256", "out of range" },
 		{ "swap c", "missing name of a slave" },
 		{ "swap c c", "is named twice; name two different slaves" },
 		{ "swap c x.0", "has no number" },
@@ -321,6 +397,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_cable_swap_slaves),
 	KUNIT_CASE(sim_cable_swap_branches),
 	KUNIT_CASE(sim_cable_swap_master),
+	KUNIT_CASE(sim_cable_old_registers_are_live),
+	KUNIT_CASE(sim_cable_old_states),
 	KUNIT_CASE(sim_cable_without_power),
 	KUNIT_CASE(sim_cable_errors_are_reported),
 	{}
