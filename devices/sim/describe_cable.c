@@ -2,6 +2,7 @@
 /* Ends of cables in descriptions, and what happens to cables while a segment runs. */
 #include "describe_int.h"
 
+#define BOUNCE_STEP_MAX	4000000000u	/* ns */
 #define CABLE_MAX	1000000	/* ns */
 
 /**
@@ -110,6 +111,32 @@ static int exchange(struct ec_desc *d, struct ec_sim_fault *f)
 		ec_desc_fail(d, "'", b, "' is named twice; name two different slaves");
 }
 
+/* "0110": no contact, contact twice, none */
+static int bounce(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	struct ec_desc_word w = ec_desc_value(d, "pattern");
+	u64 step = 1000;
+	s64 times = 1;
+	u32 n;
+
+	for (n = 0; n < w.n && n < EC_SIM_BOUNCE_BITS; n++) {
+		if (w.s[n] != '0' && w.s[n] != '1')
+			break;
+		f->value |= (u64)(w.s[n] == '1') << n;
+	}
+	if (!n || n < w.n || n == EC_SIM_BOUNCE_BITS)
+		return ec_desc_fail(d, "invalid pattern '", &w,
+				    "': expected 1 to 63 digits 0 (no contact) and 1, as pattern=01001");
+	if (ec_desc_time(d, "step", BOUNCE_STEP_MAX, &step) ||
+	    ec_desc_number(d, "times", 1, EC_SIM_BOUNCE_MAX / n, &times))
+		return -EINVAL;
+	if (!step)
+		return ec_desc_fail(d, "the contact needs time: expected step=1us", NULL, "");
+	f->arg = (u32)step;
+	f->arg2 = (u32)times * n * EC_SIM_BOUNCE_BITS + n;
+	return 0;
+}
+
 /**
  * ec_desc_port() - the ports that a fault statement names
  * @d: description, the verb is used
@@ -129,5 +156,7 @@ int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f)
 	w = ec_desc_next(d);
 	if (f->type == EC_SIM_FAULT_UNPLUG)
 		return real_end(d, w, &f->slave, &f->port);
-	return ec_desc_end_of_wire(d, w, &f->slave, &f->port);
+	if (ec_desc_end_of_wire(d, w, &f->slave, &f->port))
+		return -EINVAL;
+	return f->type == EC_SIM_FAULT_BOUNCE ? bounce(d, f) : 0;
 }

@@ -31,6 +31,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_UNPLUG] = "unplug",
 	[EC_SIM_FAULT_SWAP] = "swap",
 	[EC_SIM_FAULT_OLD] = "old",
+	[EC_SIM_FAULT_BOUNCE] = "bounce",
 };
 
 /**
@@ -88,7 +89,7 @@ static bool can_plug(const struct ec_sim *sim, const struct ec_sim_fault *f)
 static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 {
 	bool cable = f->type == EC_SIM_FAULT_CUT || f->type == EC_SIM_FAULT_HEAL ||
-		     f->type == EC_SIM_FAULT_UNPLUG;
+		     f->type == EC_SIM_FAULT_UNPLUG || f->type == EC_SIM_FAULT_BOUNCE;
 
 	if ((u32)f->type >= EC_SIM_FAULT_TYPES)
 		return false;
@@ -98,6 +99,9 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 		return can_swap(sim, f);
 	if (is_frame_fault(f->type))
 		return f->port >= -1 && f->port < EC_SIM_PORTS;
+	if (f->type == EC_SIM_FAULT_BOUNCE &&
+	    (!f->arg || !(f->arg2 % EC_SIM_BOUNCE_BITS) || f->arg2 < EC_SIM_BOUNCE_BITS))
+		return false;
 	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
 		return true;
 	if (f->slave < 0 || f->slave >= (int)sim->count)
@@ -119,6 +123,17 @@ static void give_back(struct ec_sim *sim, int i)
 	sim->fault_free = i;
 }
 
+/* into the list of those that wait, behind those of the same time */
+static void queue(struct ec_sim *sim, int i)
+{
+	int *at = &sim->fault_due;
+
+	while (*at >= 0 && sim->fault[*at].f.at_ns <= sim->fault[i].f.at_ns)
+		at = &sim->fault[*at].next;
+	sim->fault[i].next = *at;
+	*at = i;
+}
+
 /**
  * ec_sim_add_fault() - script a fault
  * @sim: segment
@@ -132,19 +147,16 @@ static void give_back(struct ec_sim *sim, int i)
  */
 int ec_sim_add_fault(struct ec_sim *sim, const struct ec_sim_fault *fault)
 {
-	int *at = &sim->fault_due, i = sim->fault_free;
+	int i = sim->fault_free;
 
 	if (!is_valid(sim, fault))
 		return -EINVAL;
 	if (i < 0)
 		return -ENOSPC;
 	sim->fault_free = sim->fault[i].next;
-	while (*at >= 0 && sim->fault[*at].f.at_ns <= fault->at_ns)
-		at = &sim->fault[*at].next;
 	sim->fault[i].f = *fault;
 	sim->fault[i].seen = 0;
-	sim->fault[i].next = *at;
-	*at = i;
+	queue(sim, i);
 	return 0;
 }
 
@@ -196,6 +208,9 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_HEAL:
 		ec_sim_cut(sim, f->slave, f->port,
 			   f->type == EC_SIM_FAULT_CUT, now);
+		break;
+	case EC_SIM_FAULT_BOUNCE:
+		ec_sim_cut(sim, f->slave, f->port, !(f->value & 1), now);
 		break;
 	case EC_SIM_FAULT_PLUG:
 		ec_sim_plug(sim, f, now);
@@ -288,16 +303,32 @@ static void end_chance(struct ec_sim *sim, const struct ec_sim_fault *f)
 	}
 }
 
+/* the next bit of a contact that bounces; false: that was the last */
+static bool bounce_on(struct ec_sim_fault *f, u64 now)
+{
+	u32 bits = f->arg2 % EC_SIM_BOUNCE_BITS;
+
+	if (f->type != EC_SIM_FAULT_BOUNCE || f->arg2 < 2 * EC_SIM_BOUNCE_BITS)
+		return false;
+	f->arg2 -= EC_SIM_BOUNCE_BITS;
+	f->value = f->value >> 1 | (f->value & 1) << (bits - 1);
+	f->at_ns = now + f->arg;
+	return true;
+}
+
 /* the first of the waiting faults is due */
 void ec_sim_faults_run(struct ec_sim *sim, u64 now)
 {
 	int i = sim->fault_due;
-	const struct ec_sim_fault *f = &sim->fault[i].f;
+	struct ec_sim_fault *f = &sim->fault[i].f;
 
 	sim->fault_due = sim->fault[i].next;
 	if (!is_frame_fault(f->type)) {
 		strike(sim, f, now);
-		give_back(sim, i);
+		if (bounce_on(f, now))
+			queue(sim, i);
+		else
+			give_back(sim, i);
 		return;
 	}
 	if (!f->arg)

@@ -63,6 +63,9 @@ struct ec_sim_ops {
  *                     two slaves change places
  * @EC_SIM_FAULT_OLD: @slave is as another master left it: @value EC_SIM_OLD_* and the
  *                    station address, AL state @arg2, FMMUs from logical @arg on
+ * @EC_SIM_FAULT_BOUNCE: the contact at @slave, @port bounces: one bit of @value every @arg ns
+ *                       (bit 0 first, 1: contact), @arg2 % EC_SIM_BOUNCE_BITS of them, and
+ *                       again from the first; @arg2 / EC_SIM_BOUNCE_BITS altogether
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -93,6 +96,7 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_UNPLUG,
 	EC_SIM_FAULT_SWAP,
 	EC_SIM_FAULT_OLD,
+	EC_SIM_FAULT_BOUNCE,
 	EC_SIM_FAULT_TYPES
 };
 
@@ -104,6 +108,9 @@ enum ec_sim_fault_type {
 #define EC_SIM_OLD_LOOPS	BIT(25)
 #define EC_SIM_OLD_STATE	BIT(26)
 #define EC_SIM_OLD_LOGICAL	BIT(27)
+
+#define EC_SIM_BOUNCE_BITS	64	/* a pattern has fewer */
+#define EC_SIM_BOUNCE_MAX	0x3FFFFFF	/* bits altogether */
 
 #define EC_SIM_EDGE_RISING	1	/* both: a pulse, too short to see */
 #define EC_SIM_EDGE_FALLING	2
@@ -154,8 +161,8 @@ enum ec_sim_mailbox_fault {
  * struct ec_sim_fault - one scripted fault
  * @at_ns: when it begins; 0 or past: with the next frame or advance
  * @type: what
- * @slave: which slave; for frame faults ignored. -1, -2: CUT, HEAL, PLUG,
- *         UNPLUG and SWAP at the master's own port
+ * @slave: which slave; for frame faults ignored. -1, -2: CUT, HEAL, BOUNCE,
+ *         PLUG, UNPLUG and SWAP at the master's own port
  * @port: which port; for frame faults the master port, -1 = both
  * @arg: frame faults: the n-th frame from @at_ns on (1 = next), 0 = by chance
  * @arg2: frame faults by chance: probability in ppm, 0 ends the earlier one

@@ -229,6 +229,7 @@ int ec_sim_wire_fault(struct ec_sim_wire *w, const struct ec_sim_fault *f)
 	int ret;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
+	ec_sim_advance(w->sim, now_ns(w));	/* it begins now, not with the last frame */
 	ret = ec_sim_add_fault(w->sim, f);
 	ec_sim_advance(w->sim, now_ns(w));
 	raw_spin_unlock_irqrestore(&w->lock, flags);

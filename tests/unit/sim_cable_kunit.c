@@ -12,6 +12,7 @@ static void command(struct kunit *test, struct bed *b, const char *text)
 
 	KUNIT_ASSERT_EQ_MSG(test, ec_sim_command(b->sim, &bed_ops, text, strlen(text), &f, &err),
 			    0, "%s: %s", text, err.text);
+	ec_sim_advance(b->sim, b->now);
 	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(b->sim, &f), 0);
 	ec_sim_advance(b->sim, b->now);
 }
@@ -322,6 +323,74 @@ static void sim_cable_old_states(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), EC_REG_AL_STATUS, 2), EC_AL_INIT);
 }
 
+/* what the registers and the frames say of each digit of a pattern */
+static void sim_cable_bounce_follows_pattern(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EK1100\nslave b EL2008\nslave c EL2008\n");
+	static const char pattern[] = "0100110";
+
+	b->gap = 0;
+	b->now = 2000000000;
+	command(test, b, "bounce a.1 pattern=0100110 step=1ms times=2");
+	for (u32 i = 0; i < 14; i++) {
+		bool on = pattern[i % 7] == '1';
+
+		b->now = 2000000000 + i * 1000000 + 999999;
+		KUNIT_EXPECT_EQ_MSG(test, count(b, 0), on ? 3 : 1, "digit %u", i);
+		KUNIT_EXPECT_EQ_MSG(test, bed_get(b, STATION(0), EC_REG_DL_STATUS, 2) & 0xfff0,
+				    on ? 0x5a30ull : 0x5610ull, "digit %u", i);
+	}
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 0), 0x500, "0 after 1, five times");
+	KUNIT_EXPECT_EQ(test, lost(b, 1), 0x5);
+	KUNIT_EXPECT_EQ(test, lost(b, 2), 0);
+	b->now += 1000000000;
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 1, "as the last digit");
+	KUNIT_EXPECT_EQ(test, ec_sim_next_event(b->sim), EC_ESC_NEVER);
+}
+
+/* a port that closes itself loses the first frame only, however often the contact comes */
+static void sim_cable_bounce_at_auto_closed_port(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EK1100\nslave b EL2008\n");
+
+	b->now = 2000000000;
+	bed_put(b, STATION(0), EC_REG_DL_LOOPS, EC_LOOP_AUTO_CLOSE << 2, 1);
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	command(test, b, "bounce a.1 pattern=01 step=7us times=400");
+	for (u32 i = 0; i < 300; i++)
+		KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 0), 0xff00, "counts up to 255");
+	KUNIT_EXPECT_EQ(test, lost(b, 1), 0xff);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(0), EC_REG_DL_STATUS, 2) & 0xfff0, 0x5e30);
+}
+
+/* many events in one microsecond: each is counted, the last one stays */
+static void sim_cable_bursts_within_microsecond(struct kunit *test)
+{
+	struct bed *b = app_bed(test, TREE
+		"fault at=2000000000ns bounce a.1 pattern=01 step=100ns times=5\n"
+		"fault at=2000000050ns bounce a.2 pattern=0 step=100ns\n"
+		"fault at=2000000250ns off c\n"
+		"fault at=2000000250ns on c\n"
+		"fault at=2000000250ns swap b d\n"
+		"fault at=2000000300ns unplug e.1\n"
+		"fault at=2000000300ns plug b.1 f.0\n"
+		"fault at=2000000900ns heal e.0\n");
+
+	b->now = 1999999999;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 6);
+	b->now = 2000001000;
+	/* a, d, c, b, f, e; c has lost its address, nobody else has */
+	expect_order(test, b, 6, (const u16[]){ 1001, 1004, 0, 1002, 1006, 1005 });
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 0), 0x10500, "five times; the swap without contact");
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 2), 0x101, "after its power came: the swap");
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 3), 0x5, "c off, the swap, then three times at a.1");
+	KUNIT_EXPECT_EQ(test, lost(b, 4), 0x101);
+	KUNIT_EXPECT_EQ(test, lost(b, 5), 0x1);
+	for (u32 i = 0; i < 6; i++)
+		KUNIT_EXPECT_TRUE_MSG(test, dl_event(b, i), "slave %u", i);
+}
+
 static void sim_cable_without_power(struct kunit *test)
 {
 	struct bed *b = app_bed_part(test, LINE "fault off x\n", 3);
@@ -348,6 +417,11 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 		{ "plug master.0 master.1", "cannot be connected to each other" },
 		{ "plug c.1 x.0 cable=2ms", "too long here" },
 		{ "unplug c", "has no number" },
+		{ "bounce c.0", "invalid pattern ''" },
+		{ "bounce c.0 pattern=012", "invalid pattern '012'" },
+		{ "bounce c.0 pattern=01 step=0", "needs time" },
+		{ "bounce c.0 pattern=01 step=5s", "too long here" },
+		{ "bounce c.0 pattern=01 times=0", "out of range" },
 		{ "old c", "nothing is old" },
 		{ "old c state=ON", "invalid state 'ON'" },
 		{ "old c loops=256", "out of range" },
@@ -399,6 +473,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_cable_swap_master),
 	KUNIT_CASE(sim_cable_old_registers_are_live),
 	KUNIT_CASE(sim_cable_old_states),
+	KUNIT_CASE(sim_cable_bounce_follows_pattern),
+	KUNIT_CASE(sim_cable_bounce_at_auto_closed_port),
+	KUNIT_CASE(sim_cable_bursts_within_microsecond),
 	KUNIT_CASE(sim_cable_without_power),
 	KUNIT_CASE(sim_cable_errors_are_reported),
 	{}

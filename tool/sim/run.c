@@ -202,8 +202,10 @@ static void rest(struct run *r, const sigset_t *mask)
 	for (i = 0; i < r->n_ports; i++)
 		if (fds[i].revents)
 			receive(r, i);
-	if (fds[i].revents)
+	if (fds[i].revents) {
+		ec_sim_advance(r->sim, now_ns(r));	/* a fault begins now */
 		control_receive(r->control, r->sim);
+	}
 }
 
 /* Periodic: advance the time of a quiet segment, check the interfaces. */
