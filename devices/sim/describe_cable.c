@@ -137,6 +137,15 @@ static int bounce(struct ec_desc *d, struct ec_sim_fault *f)
 	return 0;
 }
 
+static int host(struct ec_desc *d, const struct ec_desc_word *w, struct ec_sim_fault *f)
+{
+	if (real_end(d, w, &f->slave, &f->port))
+		return -EINVAL;
+	if (f->slave < 0)
+		return ec_desc_fail(d, "a PC or a switch is plugged in at a slave only", NULL, "");
+	return ec_desc_time(d, "every", EC_DESC_TIME_MAX, &f->value);
+}
+
 /**
  * ec_desc_port() - the ports that a fault statement names
  * @d: description, the verb is used
@@ -154,6 +163,8 @@ int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f)
 	if (f->type == EC_SIM_FAULT_SWAP)
 		return exchange(d, f);
 	w = ec_desc_next(d);
+	if (f->type == EC_SIM_FAULT_HOST)
+		return host(d, w, f);
 	if (f->type == EC_SIM_FAULT_UNPLUG)
 		return real_end(d, w, &f->slave, &f->port);
 	if (ec_desc_end_of_wire(d, w, &f->slave, &f->port))

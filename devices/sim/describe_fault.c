@@ -16,6 +16,7 @@ static const struct verb {
 	{ "cut", PORT, EC_SIM_FAULT_CUT, 0 },
 	{ "heal", PORT, EC_SIM_FAULT_HEAL, 0 },
 	{ "bounce", PORT, EC_SIM_FAULT_BOUNCE, 0 },
+	{ "host", PORT, EC_SIM_FAULT_HOST, 0 },
 	{ "plug", PORT, EC_SIM_FAULT_PLUG, 0 },
 	{ "unplug", PORT, EC_SIM_FAULT_UNPLUG, 0 },
 	{ "swap", PORT, EC_SIM_FAULT_SWAP, 0 },

@@ -47,7 +47,9 @@ static void add_parent(struct line *l, const struct ec_esc *esc)
 	for (u32 i = EC_MAX_PORT; i--; ) {
 		const struct ec_esc_port *p = &esc->port[i];
 
-		if (p->peer != -1 && (!at || p->peer < esc->index || at->peer > esc->index))
+		if (p->peer == -1 || p->peer == EC_ESC_PEER_HOST)
+			continue;
+		if (!at || p->peer < esc->index || at->peer > esc->index)
 			at = p;
 	}
 	add(l, at ? " at " : " unplugged");
@@ -77,10 +79,12 @@ static void add_faults(struct line *l, const struct ec_esc *esc)
 		before = ", ";
 	}
 	for (u32 i = 0; i < EC_MAX_PORT; i++) {
-		if (!esc->port[i].cut)
+		bool host = esc->port[i].peer == EC_ESC_PEER_HOST;
+
+		if (!esc->port[i].cut && !host)
 			continue;
 		add(l, before);
-		add(l, "cut .");
+		add(l, esc->port[i].cut ? "cut ." : "host .");
 		add_number(l, i);
 		before = ", ";
 	}

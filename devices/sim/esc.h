@@ -123,9 +123,12 @@ struct ec_esc_app_ops {
 	void (*free)(struct ec_esc *esc);
 };
 
+#define EC_ESC_PEER_HOST	(-100)	/* a PC or a switch: no EtherCAT */
+
 /**
  * struct ec_esc_port - one port and what hangs on it
- * @peer: index of the slave at the other end; -1 nothing, -2 - n master port n
+ * @peer: index of the slave at the other end; -1 nothing, -2 - n master port n,
+ *        EC_ESC_PEER_HOST
  * @peer_port: port of the peer
  * @cable_ns: delay of the cable
  * @cut: the cable is cut (kept on both ends)

@@ -292,6 +292,7 @@ void ec_esc_old(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
 void ec_sim_plug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
 void ec_sim_unplug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
+bool ec_sim_host(struct ec_sim *sim, struct ec_sim_fault *f, u64 now);
 void ec_sim_swap(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
 
 /* segment_spans.c */

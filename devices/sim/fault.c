@@ -32,6 +32,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_SWAP] = "swap",
 	[EC_SIM_FAULT_OLD] = "old",
 	[EC_SIM_FAULT_BOUNCE] = "bounce",
+	[EC_SIM_FAULT_HOST] = "host",
 };
 
 /**
@@ -106,6 +107,8 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 		return true;
 	if (f->slave < 0 || f->slave >= (int)sim->count)
 		return false;
+	if (f->type == EC_SIM_FAULT_HOST)
+		return ec_sim_has_port(sim, f->slave, f->port) && !f->arg2;
 	if (f->type == EC_SIM_FAULT_LATCH && (f->arg > 1 || !f->arg2 || f->arg2 > 3))
 		return false;
 	if (f->type == EC_SIM_FAULT_OLD && f->value & EC_SIM_OLD_STATE &&
@@ -325,7 +328,7 @@ void ec_sim_faults_run(struct ec_sim *sim, u64 now)
 	sim->fault_due = sim->fault[i].next;
 	if (!is_frame_fault(f->type)) {
 		strike(sim, f, now);
-		if (bounce_on(f, now))
+		if (f->type == EC_SIM_FAULT_HOST ? ec_sim_host(sim, f, now) : bounce_on(f, now))
 			queue(sim, i);
 		else
 			give_back(sim, i);

@@ -15,7 +15,7 @@ static struct ec_esc_port *port_of(struct ec_sim *sim, struct end e)
 	return e.slave < 0 ? &sim->mport[-1 - e.slave] : &sim->esc[e.slave]->port[e.port];
 }
 
-/* what is at the other end of the cable in @port, which has one */
+/* what is at the other end of the cable in @port, which has one, of a slave or the master */
 static struct end far_end(const struct ec_esc_port *port)
 {
 	return (struct end){
@@ -86,7 +86,7 @@ static bool cable_at(struct ec_sim *sim, struct end a, struct cable *c)
 {
 	const struct ec_esc_port *port = port_of(sim, a);
 
-	if (port->peer == -1)
+	if (port->peer == -1 || port->peer == EC_ESC_PEER_HOST)
 		return false;
 	*c = (struct cable){ a, far_end(port), port->cable_ns, port->cut };
 	return true;
@@ -96,6 +96,10 @@ static void pull(struct ec_sim *sim, struct end a, u64 now)
 {
 	struct cable c;
 
+	if (port_of(sim, a)->peer == EC_ESC_PEER_HOST) {
+		detach(port_of(sim, a));
+		look(sim, a, now);
+	}
 	if (!cable_at(sim, a, &c))
 		return;
 	detach(port_of(sim, c.a));
@@ -136,9 +140,14 @@ int ec_sim_wire(struct ec_sim *sim, int parent, int parent_port, int child,
 /* cut or heal the cable at one of its ends; @slave below 0: master port */
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now)
 {
+	const struct end a = { slave, port };
 	struct cable c;
 
-	if (!cable_at(sim, (struct end){ slave, port }, &c))
+	if (port_of(sim, a)->peer == EC_ESC_PEER_HOST) {
+		port_of(sim, a)->cut = cut;
+		look(sim, a, now);
+	}
+	if (!cable_at(sim, a, &c))
 		return;
 	port_of(sim, c.a)->cut = cut;
 	port_of(sim, c.b)->cut = cut;
@@ -163,6 +172,29 @@ void ec_sim_unplug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	pull(sim, (struct end){ f->slave, f->port }, now);
 }
 
+/*
+ * First a host comes, then each time one of its frames. An open port destroys it, as it
+ * is no EtherCAT; a port that closed itself opens. Returns whether there is a next one.
+ */
+bool ec_sim_host(struct ec_sim *sim, struct ec_sim_fault *f, u64 now)
+{
+	const struct end a = { f->slave, f->port };
+	struct ec_esc *esc = sim->esc[f->slave];
+	struct ec_esc_port *port = &esc->port[f->port];
+
+	if (!f->arg2) {
+		pull(sim, a, now);
+		port->peer = EC_ESC_PEER_HOST;
+		look(sim, a, now);
+		f->arg2 = 1;
+	} else if (port->peer == EC_ESC_PEER_HOST && port->link && port->auto_closed) {
+		port->auto_closed = false;
+		ec_sim_loops(esc, false, now);
+	}
+	f->at_ns = now + f->value;
+	return f->value && port->peer == EC_ESC_PEER_HOST;
+}
+
 /* the end that takes the place of @e when two slaves, or two of their ports, are exchanged */
 static struct end exchanged(const struct ec_sim_fault *f, struct end e)
 {
@@ -176,7 +208,7 @@ static struct end exchanged(const struct ec_sim_fault *f, struct end e)
 	return same_end(e, a) ? b : same_end(e, b) ? a : e;
 }
 
-/* take the cables out of @slave; returns how many */
+/* take the cables out of @slave; returns how many can be laid again: not that of a host */
 static u32 pull_all(struct ec_sim *sim, int slave, int port, struct cable *c, u64 now)
 {
 	int first = port == EC_SIM_ALL_PORTS ? 0 : port;
@@ -186,10 +218,8 @@ static u32 pull_all(struct ec_sim *sim, int slave, int port, struct cable *c, u6
 	for (int p = first; p <= last; p++) {
 		const struct end e = { slave, p };
 
-		if (!cable_at(sim, e, &c[n]))
-			continue;
+		n += cable_at(sim, e, &c[n]);
 		pull(sim, e, now);
-		n++;
 	}
 	return n;
 }

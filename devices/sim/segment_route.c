@@ -182,6 +182,8 @@ static void walk(struct ec_sim *sim, int mport)
 		cable = &esc->port[p];
 		if (!cable->link)		/* loop held open: lost */
 			return;
+		if (cable->peer == EC_ESC_PEER_HOST)	/* does not send it back */
+			return;
 		if (cable->peer < 0) {
 			r->out_port = -2 - cable->peer;
 			r->delay_ns = t + cable->cable_ns;

@@ -66,6 +66,8 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_BOUNCE: the contact at @slave, @port bounces: one bit of @value every @arg ns
  *                       (bit 0 first, 1: contact), @arg2 % EC_SIM_BOUNCE_BITS of them, and
  *                       again from the first; @arg2 / EC_SIM_BOUNCE_BITS altogether
+ * @EC_SIM_FAULT_HOST: a PC or a switch comes to @slave, @port; a cable there comes out
+ *                     before. It sends a frame every @value ns, 0: none. @arg2 is 0
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -97,6 +99,7 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_SWAP,
 	EC_SIM_FAULT_OLD,
 	EC_SIM_FAULT_BOUNCE,
+	EC_SIM_FAULT_HOST,
 	EC_SIM_FAULT_TYPES
 };
 

@@ -391,6 +391,57 @@ static void sim_cable_bursts_within_microsecond(struct kunit *test)
 		KUNIT_EXPECT_TRUE_MSG(test, dl_event(b, i), "slave %u", i);
 }
 
+/* what a PC or a switch does depends on the loop of its port */
+static void sim_cable_host_and_loops(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EK1100\nslave b EL2008\n");
+	char line[100];
+
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	command(test, b, "host a.2");
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), -1, "auto: open at once, and frames do not return");
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x6a70);
+	ec_sim_show(b->sim, 0, line, sizeof(line));
+	KUNIT_EXPECT_STREQ(test, line, "0 a EK1100 at master.0: host .2");
+	command(test, b, "unplug a.2");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x10000);
+
+	bed_put(b, STATION(0), EC_REG_DL_LOOPS, EC_LOOP_CLOSED << 4, 1);
+	forget_dl_event(b, 0);
+	command(test, b, "host a.2 every=30us");
+	for (u32 i = 0; i < 20; i++)
+		KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 2, "closed: whatever is sent there");
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x7a70);
+	KUNIT_EXPECT_TRUE(test, dl_event(b, 0));
+	command(test, b, "cut a.2");
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x5a30);
+	command(test, b, "heal a.2");
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x7a70);
+	command(test, b, "unplug a.2");
+
+	/* closes itself: a silent one does nothing, one with traffic opens the port */
+	bed_put(b, STATION(0), EC_REG_DL_LOOPS, EC_LOOP_AUTO_CLOSE << 4, 1);
+	command(test, b, "host a.2");
+	for (u32 i = 0; i < 20; i++)
+		KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x7a70);
+	command(test, b, "host a.2 every=1ms");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	b->now += 1000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), -1);
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x6a70);
+	command(test, b, "swap a.1 a.2");
+	KUNIT_EXPECT_EQ_MSG(test, dl(b, 0) & 0xfff0, 0x7650, "b is behind a closed port, no host");
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 0), 0x50100, "a cut, four hosts that went");
+	command(test, b, "swap a.1 a.2");
+	command(test, b, "host a.2 every=1ms");
+	command(test, b, "plug a.2 master.1");
+	b->now += 10000000;
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 2, "it is gone, and its frames with it");
+	KUNIT_EXPECT_EQ(test, ec_sim_next_event(b->sim), EC_ESC_NEVER);
+}
+
 static void sim_cable_without_power(struct kunit *test)
 {
 	struct bed *b = app_bed_part(test, LINE "fault off x\n", 3);
@@ -422,6 +473,8 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 		{ "bounce c.0 pattern=01 step=0", "needs time" },
 		{ "bounce c.0 pattern=01 step=5s", "too long here" },
 		{ "bounce c.0 pattern=01 times=0", "out of range" },
+		{ "host c.2", "does not have this port" },
+		{ "host master.0", "at a slave only" },
 		{ "old c", "nothing is old" },
 		{ "old c state=ON", "invalid state 'ON'" },
 		{ "old c loops=256", "out of range" },
@@ -476,6 +529,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_cable_bounce_follows_pattern),
 	KUNIT_CASE(sim_cable_bounce_at_auto_closed_port),
 	KUNIT_CASE(sim_cable_bursts_within_microsecond),
+	KUNIT_CASE(sim_cable_host_and_loops),
 	KUNIT_CASE(sim_cable_without_power),
 	KUNIT_CASE(sim_cable_errors_are_reported),
 	{}
