@@ -142,37 +142,19 @@ void ec_link_poll(struct ec_link *link)
 	rcu_read_unlock();
 }
 
-static __always_inline void poll_cycle(struct ec_link *link)
-{
-	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
-
-	if (!dev || !dev->ops->poll)
-		return;
-	WRITE_ONCE(link->keep, dev->ops->keeps);
-	dev->ops->poll(dev->priv);
-	WRITE_ONCE(link->keep, false);
-}
-
 /**
- * ec_links_poll_cycle() - deliver what the devices have received, for the cycle
+ * ec_links_poll_each() - ec_links_poll_cycle() with several links
  * @l: links
  *
- * Replies to the cycle may stay in the memory of the device: they have to be taken before the
- * links are left and before the RCU read section of the caller ends.
- *
- * Context: The cycle owner, in an RCU read section. RT-safe.
+ * Context: As there.
  */
-void ec_links_poll_cycle(struct ec_links *l)
+void ec_links_poll_each(struct ec_links *l)
 {
 	struct ec_link *link;
 
-	if (likely(l->only)) {
-		poll_cycle(l->only);
-		return;
-	}
 	ec_links_for_each(l, link)
 		if (l->sides & BIT(link->side))
-			poll_cycle(link);
+			ec_link_poll_cycle(link);
 }
 
 /**

@@ -88,7 +88,7 @@ void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data,
 void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size_t len);
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now);
 void ec_link_poll(struct ec_link *link);
-void ec_links_poll_cycle(struct ec_links *l);
+void ec_links_poll_each(struct ec_links *l);
 bool ec_link_is_up(const struct ec_link *link);
 bool ec_link_look(struct ec_link *link);
 void ec_link_clear_counters(struct ec_link *link);

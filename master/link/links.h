@@ -172,6 +172,35 @@ static inline void ec_links_poll(struct ec_links *l)
 			ec_link_poll(link);
 }
 
+/* deliver what the device of a link has received, for the cycle; as ec_links_poll_cycle() */
+static inline void ec_link_poll_cycle(struct ec_link *link)
+{
+	struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+
+	if (!dev || !dev->ops->poll)
+		return;
+	WRITE_ONCE(link->keep, dev->ops->keeps);
+	dev->ops->poll(dev->priv);
+	WRITE_ONCE(link->keep, false);
+}
+
+/**
+ * ec_links_poll_cycle() - deliver what the devices have received, for the cycle
+ * @l: links
+ *
+ * Replies to the cycle may stay in the memory of the device: they have to be taken before the
+ * links are left and before the RCU read section of the caller ends.
+ *
+ * Context: The cycle owner, in an RCU read section. RT-safe.
+ */
+static inline void ec_links_poll_cycle(struct ec_links *l)
+{
+	if (likely(l->only))
+		ec_link_poll_cycle(l->only);
+	else
+		ec_links_poll_each(l);
+}
+
 /* the device and its next transmit buffer or NULL; for the owner of the bus access, RT-safe */
 static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
 {
