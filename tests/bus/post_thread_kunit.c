@@ -53,15 +53,21 @@ static u64 lines(const struct bus *b)
 	return READ_ONCE(bus_base(b)->log.lines);
 }
 
+/* once nothing is left to report: all lines so far */
+static u64 lines_at_rest(struct bus *b)
+{
+	bus_idle(b);
+	msleep(11000);
+	return lines(b);
+}
+
 /* A thread of higher priority on its CPU is reported after a second, and no sooner. */
 static void post_thread_starved_reported(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
 	u64 l0;
 
-	bus_idle(b);
-	msleep(11000);
-	l0 = lines(b);
+	l0 = lines_at_rest(b);
 	keep_cpu(b, 900);
 	msleep(2000);
 	KUNIT_EXPECT_EQ(test, lines(b), l0);
@@ -78,9 +84,7 @@ static void post_thread_at_rest_not_reported(struct kunit *test)
 	u32 i;
 	u64 l0;
 
-	bus_idle(b);
-	msleep(11000);
-	l0 = lines(b);
+	l0 = lines_at_rest(b);
 	ec_carry_expect(bus_carry(b), 0);
 	msleep(5000);
 	KUNIT_EXPECT_EQ(test, lines(b), l0);
@@ -97,9 +101,7 @@ static void post_thread_of_paused_machine_not_reported(struct kunit *test)
 	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
 	u64 l0;
 
-	bus_idle(b);
-	msleep(11000);
-	l0 = lines(b);
+	l0 = lines_at_rest(b);
 	stand_still(b, 5000);
 	msleep(5000);
 	KUNIT_EXPECT_EQ(test, lines(b), l0);
