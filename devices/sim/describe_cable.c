@@ -143,7 +143,11 @@ static int host(struct ec_desc *d, const struct ec_desc_word *w, struct ec_sim_f
 		return -EINVAL;
 	if (f->slave < 0)
 		return ec_desc_fail(d, "a PC or a switch is plugged in at a slave only", NULL, "");
-	return ec_desc_time(d, "every", EC_DESC_TIME_MAX, &f->value);
+	if (ec_desc_time(d, "every", EC_DESC_TIME_MAX, &f->value))
+		return -EINVAL;
+	return !f->value || f->value >= EC_SIM_HOST_MIN_NS ? 0 :
+		ec_desc_fail(d, "the frames of a host do not follow each other so fast: expected every=7us or more",
+			     NULL, "");
 }
 
 /**

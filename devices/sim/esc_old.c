@@ -30,7 +30,7 @@ void ec_esc_old(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now)
 	v[0] = (u8)(f->value >> EC_SIM_OLD_LOOPS_SHIFT);
 	if (f->value & EC_SIM_OLD_LOOPS)
 		ec_esc_old_write(esc, EC_REG_DL_LOOPS, v, 1, now);
-	/* no request of this moment: nobody is to answer it */
+	/* not a request of now: the application must not answer it */
 	if (f->value & EC_SIM_OLD_STATE)
 		put_unaligned_le16((u16)f->arg2, esc->mem + EC_REG_AL_CONTROL);
 }

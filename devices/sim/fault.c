@@ -101,14 +101,16 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	if (is_frame_fault(f->type))
 		return f->port >= -1 && f->port < EC_SIM_PORTS;
 	if (f->type == EC_SIM_FAULT_BOUNCE &&
-	    (!f->arg || !(f->arg2 % EC_SIM_BOUNCE_BITS) || f->arg2 < EC_SIM_BOUNCE_BITS))
+	    (!f->arg || !(f->arg2 % EC_SIM_BOUNCE_BITS) || f->arg2 < EC_SIM_BOUNCE_BITS ||
+	     f->arg2 / EC_SIM_BOUNCE_BITS > EC_SIM_BOUNCE_MAX))
 		return false;
 	if (cable && (f->slave == EC_SIM_MASTER0 || f->slave == EC_SIM_MASTER1))
 		return true;
 	if (f->slave < 0 || f->slave >= (int)sim->count)
 		return false;
 	if (f->type == EC_SIM_FAULT_HOST)
-		return ec_sim_has_port(sim, f->slave, f->port) && !f->arg2;
+		return ec_sim_has_port(sim, f->slave, f->port) && !f->arg2 &&
+		       (!f->value || f->value >= EC_SIM_HOST_MIN_NS);
 	if (f->type == EC_SIM_FAULT_LATCH && (f->arg > 1 || !f->arg2 || f->arg2 > 3))
 		return false;
 	if (f->type == EC_SIM_FAULT_OLD && f->value & EC_SIM_OLD_STATE &&

@@ -113,7 +113,8 @@ enum ec_sim_fault_type {
 #define EC_SIM_OLD_LOGICAL	BIT(27)
 
 #define EC_SIM_BOUNCE_BITS	64	/* a pattern has fewer */
-#define EC_SIM_BOUNCE_MAX	0x3FFFFFF	/* bits altogether */
+#define EC_SIM_BOUNCE_MAX	100000	/* bits altogether: they may all be due at one time */
+#define EC_SIM_HOST_MIN_NS	6720	/* a minimum frame of a host, with preamble and gap */
 
 #define EC_SIM_EDGE_RISING	1	/* both: a pulse, too short to see */
 #define EC_SIM_EDGE_FALLING	2

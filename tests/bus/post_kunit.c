@@ -433,7 +433,7 @@ static void post_keeps_data(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, r->data[0][0], sent, sizeof(sent));
 }
 
-/* A caller that sleeps and comes after the end of the posts is told, as no thread would be left. */
+/* A caller that sleeps and comes after the end of the posts gets -ENODEV: no thread is left. */
 static void post_after_end(struct kunit *test)
 {
 	struct rig *r = rig_new(test);

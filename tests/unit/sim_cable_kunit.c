@@ -121,7 +121,7 @@ static void sim_cable_plug_at_closed_port(struct kunit *test)
 	forget_dl_event(b, 2);
 	command(test, b, "plug c.1 x.0");
 	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
-	KUNIT_EXPECT_EQ_MSG(test, b->irq, DL_EVENT, "told in each datagram");
+	KUNIT_EXPECT_EQ_MSG(test, b->irq, DL_EVENT, "shown in each datagram");
 	KUNIT_EXPECT_EQ(test, bed_get(b, 1003, EC_REG_DL_STATUS, 2) & 0xfff0, 0x5e30);
 	KUNIT_EXPECT_EQ(test, c->mem[EC_REG_DL_LOOPS], 0x0c);
 	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
@@ -158,7 +158,7 @@ static void sim_cable_master_and_ring(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 1), 3);
 }
 
-/* a cable between two free ports: no frame is lost, nobody is passed twice */
+/* a cable between two free ports: no frame is lost, no slave is passed twice */
 static void sim_cable_between_free_ports(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a EK1100\nslave b EK1100\nslave c EK1100\n");
@@ -380,7 +380,7 @@ static void sim_cable_bursts_within_microsecond(struct kunit *test)
 	b->now = 1999999999;
 	KUNIT_EXPECT_EQ(test, count(b, 0), 6);
 	b->now = 2000001000;
-	/* a, d, c, b, f, e; c has lost its address, nobody else has */
+	/* a, d, c, b, f, e; c has lost its address, no other slave has */
 	expect_order(test, b, 6, (const u16[]){ 1001, 1004, 0, 1002, 1006, 1005 });
 	KUNIT_EXPECT_EQ_MSG(test, lost(b, 0), 0x10500, "five times; the swap without contact");
 	KUNIT_EXPECT_EQ_MSG(test, lost(b, 2), 0x101, "after its power came: the swap");
@@ -473,6 +473,8 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 		{ "bounce c.0 pattern=01 step=0", "needs time" },
 		{ "bounce c.0 pattern=01 step=5s", "too long here" },
 		{ "bounce c.0 pattern=01 times=0", "out of range" },
+		{ "bounce c.0 pattern=01 times=50001", "out of range" },
+		{ "host c.0 every=1us", "expected every=7us or more" },
 		{ "host c.2", "does not have this port" },
 		{ "host master.0", "at a slave only" },
 		{ "old c", "nothing is old" },
