@@ -154,6 +154,8 @@ revision() { ethercat upload -p2 -t uint32 0x1018 1 | grep 0x00000002; }
 	revision
 	sleep 3
 	[ -z "$(dmesg | grep "$line")" ]
+	# on PREEMPT_RT a timer of this shell on the CPU of the spinner would wait behind it
+	taskset -p 1 $BASHPID
 	taskset -p 2 "$post"
 	# below the threads of interrupts; for 60 s at most
 	taskset 2 chrt -f 2 prlimit --rttime=60000000 sh -c 'while :; do :; done' &
