@@ -457,7 +457,7 @@ static void want_states(struct ec_master *m)
 static void maybe_scan(struct watch *w)
 {
 	struct ec_master *m = w->m;
-	bool changed = false;
+	struct ec_scan_result result = { 0 };
 
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
@@ -483,15 +483,18 @@ static void maybe_scan(struct watch *w)
 		WRITE_ONCE(m->bus.rescan, false);
 		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT &&
 		    !READ_ONCE(m->sessions.session))
-			ec_scan(&m->bus, 0, &changed);
+			ec_scan(&m->bus, 0, &result);
 	}
-	if (!ec_scan(&m->bus, w->count, &changed)) {
-		w->scanned = true;
-		WRITE_ONCE(m->bus.due, false);
+	if (!ec_scan(&m->bus, w->count, &result)) {
+		w->scanned = !result.again;
+		if (result.again)
+			w->same = 0;
+		else
+			WRITE_ONCE(m->bus.due, false);
 		WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
 		/* before their workers ask for their clocks */
-		if (changed)
+		if (result.changed)
 			WRITE_ONCE(m->dc.changed, true);
 		ec_session_attach(&m->sessions);
 		if (!READ_ONCE(m->cycles.active))

@@ -191,14 +191,11 @@ int ec_ioc_master(struct ec_call *call)
 }
 
 /* Delay to the neighbor at a port, if both have a clock. */
-static u32 way(const struct ec_master *m, const struct ec_slave *s, unsigned int p)
+static u32 way(const struct ec_slave *s, unsigned int p)
 {
-	const struct ec_slave *next;
+	const struct ec_slave *next = s->at[p];
 
-	if (s->next[p] >= m->bus.n_slaves)
-		return 0;
-	next = m->bus.slaves[s->next[p]];
-	if (!(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
+	if (!next || !(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
 		return 0;
 	return p == s->upstream ? ec_clock_of(s)->prev_delay : ec_clock_of(next)->prev_delay;
 }
@@ -217,8 +214,8 @@ int ec_ioc_port(struct ec_call *call)
 	i->loop_closed = !!(s->dl_status & EC_DLS_LOOP(p));
 	i->signal = !!(s->dl_status & EC_DLS_COMM(p));
 	i->receive_time = s->recv[p];
-	i->next_slave = s->next[p];
-	i->delay_to_next_dc = way(call->master, s, p);
+	i->next_slave = s->at[p] ? s->at[p]->position : EC_UAPI_NONE16;
+	i->delay_to_next_dc = way(s, p);
 	return 0;
 }
 

@@ -8,7 +8,18 @@
 struct ec_bus;
 struct ec_slave;
 
-int ec_scan(struct ec_bus *bus, unsigned int count, bool *changed);
+/**
+ * struct ec_scan_result - what a scan has found
+ * @changed: there are other slaves than before, or one fell silent or replies again
+ * @again: somewhere the bus has changed meanwhile; there all is as before the scan
+ */
+struct ec_scan_result {
+	bool changed;
+	bool again;
+};
+
+int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *result);
+int ec_scan_count(struct ec_bus *bus);
 unsigned int ec_scan_limit(void);
 u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims);
 
@@ -18,8 +29,5 @@ void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 
 /* scan_preop.c */
 void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool clean);
-
-/* topology.c */
-void ec_topology_build(struct ec_slave **slaves, unsigned int n);
 
 #endif

@@ -20,6 +20,20 @@ struct regs {
 	bool delay_only;
 	bool there;		/* it answered when its address was read */
 	bool partial;		/* and not to each read after that */
+	bool gone;		/* when the number of slaves had changed */
+	bool ports;		/* a known slave whose ports have changed */
+};
+
+/*
+ * A piece of the ring between two slaves that are where they were: what was there, what is there
+ * now. Each is a step of its own: what contradicts one says nothing about another.
+ */
+struct stretch {
+	unsigned int old;	/* the first slave of it in the list of the bus */
+	unsigned int n_old;
+	unsigned int new;	/* in @slaves of the scan */
+	unsigned int n_new;
+	bool thrown;		/* the bus contradicts it: the slaves of the list stay */
 };
 
 struct scan {
@@ -28,6 +42,10 @@ struct scan {
 	struct ec_slave **slaves;
 	struct regs *regs;
 	struct ec_dg *dg;		/* two for each slave */
+	u16 *who;			/* the slave that a datagram is for */
+	struct stretch *stretch;	/* in ring order */
+	unsigned int n_stretches;
+	unsigned int n_thrown;		/* of these */
 	struct ec_slave **known;	/* slaves of the last scan by station address */
 	u8 *claims;			/* slaves that have the address now, up to 2 */
 	u16 *aliases;			/* first slave with each alias, ring position + 1 */
@@ -40,6 +58,9 @@ static inline u16 ec_scan_address(const struct scan *sc, unsigned int i)
 	return get_unaligned_le16(sc->regs[i].station);
 }
 
+/* DL status: link, loop and communication of all ports */
+#define EC_SCAN_PORTS	0xfff0
+
 static inline bool ec_scan_is_known(const struct scan *sc, const struct ec_slave *s)
 {
 	return sc->known[s->station] == s;
@@ -49,8 +70,13 @@ static inline bool ec_scan_is_known(const struct scan *sc, const struct ec_slave
 int ec_scan_stations(struct scan *sc);
 const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int i);
 
+/* scan_stretch.c */
+int ec_scan_stretches(struct scan *sc);
+
 /* scan_proof.c */
-bool ec_scan_same_count(struct ec_bus *bus, unsigned int n);
 int ec_scan_proof(struct scan *sc);
+
+/* scan_publish.c */
+int ec_scan_publish(struct scan *sc);
 
 #endif

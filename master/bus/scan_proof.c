@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * A scan takes many frames. Its result is valid only if the bus was the same all the time: else
- * it may be a list of slaves that never existed, in which one is missing that never left.
+ * A scan takes many frames. What it has found in a stretch of the ring is valid only if that was the
+ * same all the time: else it may be a list of slaves that never existed, in which one is missing
+ * that never left.
  */
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "scan_int.h"
-
-/* link, loop and communication of all ports */
-#define PORTS	0xfff0
 
 /* scans in a row that are thrown away because of a slave that contradicts itself, at most */
 #define NEW_MAX		5	/* one that is new, or its ports */
@@ -20,31 +18,98 @@ enum doubt {
 	NONE,
 	NEW,		/* a slave that was not known, or a port */
 	KNOWN,		/* a known slave: it is in another place, or not lost */
+	UNREAD,		/* the contact was lost before the slave was read */
 };
 
-/* replies to the reads of the proof */
+/* replies to the reads of the proof, by ring position */
 struct reply {
 	u8 station[2];
 	u8 dl[2];
 };
 
-/**
- * ec_scan_same_count() - is the number of slaves still the same?
- * @bus: bus
- * @n: slaves the scan began with
- *
- * Context: Process. Waits for bus traffic.
- * Return: whether it is.
- */
-bool ec_scan_same_count(struct ec_bus *bus, unsigned int n)
-{
-	u8 type[1] = { 0 };
-	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
+struct proof {
+	struct scan *sc;
+	struct reply *r;
+	struct ec_dg *dg;	/* by position, and by station address of the slave found there */
+};
 
-	return !ec_xfer(bus->links, &dg, 1) && dg.back == (u16)n;
+static bool answers_as(const struct proof *p, unsigned int i, u16 station)
+{
+	return p->dg[2 * i].wkc == 1 && get_unaligned_le16(p->r[i].station) == station;
 }
 
-static bool is_listed(const struct scan *sc, const struct ec_slave *s)
+/*
+ * Where the slaves of a stretch are by now: others may have come or gone before it. The slave before
+ * it has kept its address; without one, or when it is silent, nothing has moved.
+ */
+static int moved_by(const struct proof *p, const struct stretch *t)
+{
+	const struct scan *sc = p->sc;
+	unsigned int i, before = t->new - 1;
+	u16 station;
+
+	if (!t->new || !sc->regs[before].there)
+		return 0;
+	station = sc->slaves[before]->station;
+	if (answers_as(p, before, station))
+		return 0;
+	for (i = 0; i < sc->n; i++)
+		if (answers_as(p, i, station))
+			return (int)i - (int)before;
+	return 0;
+}
+
+/* Address and ports of slave @i, now at @at; a known one that fell silent does not reply. */
+static enum doubt check(const struct proof *p, unsigned int i, unsigned int at)
+{
+	const struct scan *sc = p->sc;
+	const struct ec_slave *s = sc->slaves[i];
+	const struct ec_dg *direct = &p->dg[2 * i + 1];
+	bool known = ec_scan_is_known(sc, s);
+	u16 changed = get_unaligned_le16(p->r[i].dl) ^ get_unaligned_le16(sc->regs[i].dl);
+
+	if (known && !sc->regs[i].there)
+		return direct->wkc ? KNOWN : NONE;
+	/* unless it failed because it has lost its address: power was off for a moment */
+	if (!known && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		return p->dg[2 * at].wkc == 1 && !answers_as(p, at, s->station) ? NEW : NONE;
+	if (!answers_as(p, at, s->station) || direct->wkc != 1)
+		return known ? KNOWN : NEW;
+	return changed & EC_SCAN_PORTS ? NEW : NONE;
+}
+
+/* The slaves found in @t, and that the one after them comes next. */
+static enum doubt check_found(const struct proof *p, const struct stretch *t)
+{
+	const struct scan *sc = p->sc;
+	int by = moved_by(p, t);
+	unsigned int i, end = t->new + t->n_new;
+	enum doubt doubt = NONE;
+
+	for (i = t->new; i < end; i++) {
+		if (sc->regs[i].gone || (int)i + by < 0 || i + by >= sc->n)
+			return UNREAD;
+		doubt = max(doubt, check(p, i, i + by));
+	}
+	if (t->n_new && end < sc->n && sc->regs[end].there &&
+	    (end + by >= sc->n || !answers_as(p, end + by, sc->slaves[end]->station)))
+		doubt = max(doubt, NEW);
+	return doubt;
+}
+
+static int ask_found(struct proof *p)
+{
+	struct scan *sc = p->sc;
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		p->dg[2 * i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, p->r[i].station);
+		p->dg[2 * i + 1] = EC_FPRD(sc->slaves[i]->station, EC_REG_DL_STATUS, 2, p->r[i].dl);
+	}
+	return ec_xfer(sc->bus->links, p->dg, 2 * sc->n);
+}
+
+static bool is_found(const struct scan *sc, const struct ec_slave *s)
 {
 	unsigned int i;
 
@@ -57,48 +122,31 @@ static bool is_listed(const struct scan *sc, const struct ec_slave *s)
 	return false;
 }
 
-/* Address and ports of the slave at @i; a known one that fell silent does not reply. */
-static enum doubt scan_proof_check(const struct scan *sc, unsigned int i, const struct ec_dg *dg,
-				   const struct reply *r)
+/* Slaves of the list that this scan has not found in @t: none of them replies. */
+static int check_lost(struct scan *sc, const struct stretch *t, enum doubt *doubt)
 {
-	const struct ec_slave *s = sc->slaves[i];
-	bool known = ec_scan_is_known(sc, s);
-	u16 changed = get_unaligned_le16(r->dl) ^ get_unaligned_le16(sc->regs[i].dl);
-
-	if (known && !sc->regs[i].there)
-		return dg[1].wkc ? KNOWN : NONE;
-	/* unless it failed because it has lost its address: power was off for a moment */
-	if (!known && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
-		return dg[0].wkc == 1 && get_unaligned_le16(r->station) != s->station ? NEW : NONE;
-	if (dg[0].wkc != 1 || get_unaligned_le16(r->station) != s->station || dg[1].wkc != 1)
-		return known ? KNOWN : NEW;
-	return changed & PORTS ? NEW : NONE;
-}
-
-/* Slaves that this scan has not found: none of them replies. */
-static int check_lost(struct scan *sc, enum doubt *doubt)
-{
-	struct ec_bus *bus = sc->bus;
 	struct ec_dg *dg;
 	unsigned int i, n = 0;
 	u8 (*v)[2];
 	int ret = 0;
 
-	dg = kvcalloc(bus->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
-	v = kvcalloc(bus->n_slaves + 1, sizeof(*v), GFP_KERNEL);
+	dg = kvcalloc(t->n_old + 1, sizeof(*dg), GFP_KERNEL);
+	v = kvcalloc(t->n_old + 1, sizeof(*v), GFP_KERNEL);
 	if (!dg || !v) {
 		ret = -ENOMEM;
 		goto out;
 	}
-	ec_for_each_slave(s, bus) {
+	for (i = t->old; i < t->old + t->n_old; i++) {
+		const struct ec_slave *s = sc->bus->slaves[i];
+
 		/* its address may be that of another one */
-		if (sc->claims[s->station] || is_listed(sc, s))
+		if (sc->claims[s->station] || is_found(sc, s))
 			continue;
 		dg[n] = EC_FPRD(s->station, EC_REG_STATION, 2, v[n]);
 		n++;
 	}
 	if (n)
-		ret = ec_xfer(bus->links, dg, n);
+		ret = ec_xfer(sc->bus->links, dg, n);
 	for (i = 0; i < n && !ret; i++)
 		if (dg[i].wkc)
 			*doubt = KNOWN;
@@ -108,52 +156,51 @@ out:
 	return ret;
 }
 
-static int check_found(struct scan *sc, enum doubt *doubt)
+/* A slave that contradicts itself all the time must not keep the others from being used. */
+static void note_doubt(struct scan *sc, struct stretch *t, enum doubt doubt)
 {
-	struct reply *r = kvcalloc(sc->n, sizeof(*r), GFP_KERNEL);
-	unsigned int i;
-	int ret;
+	static const unsigned int max[] = { 0, NEW_MAX, KNOWN_MAX, UINT_MAX };
 
-	if (!r)
-		return -ENOMEM;
-	for (i = 0; i < sc->n; i++) {
-		sc->dg[2 * i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, r[i].station);
-		sc->dg[2 * i + 1] = EC_FPRD(sc->slaves[i]->station, EC_REG_DL_STATUS, 2, r[i].dl);
+	t->thrown = sc->bus->thrown_away < max[doubt];
+	sc->n_thrown += t->thrown;
+}
+
+static int prove(struct proof *p)
+{
+	struct scan *sc = p->sc;
+	unsigned int k;
+	int ret = ask_found(p);
+
+	for (k = 0; k < sc->n_stretches && !ret; k++) {
+		enum doubt doubt = check_found(p, &sc->stretch[k]);
+
+		ret = check_lost(sc, &sc->stretch[k], &doubt);
+		note_doubt(sc, &sc->stretch[k], doubt);
 	}
-	ret = ec_xfer(sc->bus->links, sc->dg, 2 * sc->n);
-	for (i = 0; i < sc->n && !ret; i++)
-		*doubt = max(*doubt, scan_proof_check(sc, i, &sc->dg[2 * i], &r[i]));
-	kvfree(r);
+	sc->bus->thrown_away = sc->n_thrown ? sc->bus->thrown_away + 1 : 0;
 	return ret;
 }
 
 /**
  * ec_scan_proof() - is the bus what the scan has found?
- * @sc: scan that has read everything
- *
- * A slave that contradicts itself all the time must not keep the others from being used.
+ * @sc: scan that has read everything, with its stretches; @thrown is set in those where it is not
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: 0; -EAGAIN when the result has to be thrown away; -ENOMEM; or as ec_xfer().
+ * Return: 0; -EAGAIN when nothing of the result remains; -ENOMEM; or as ec_xfer().
  */
 int ec_scan_proof(struct scan *sc)
 {
-	struct ec_bus *bus = sc->bus;
-	enum doubt doubt = NONE;
-	int ret;
+	struct proof p = { .sc = sc };
+	int ret = -ENOMEM;
 
 	/* an empty list needs no check of the bus */
-	if (!sc->n)
+	if (!sc->n || !sc->n_stretches)
 		return 0;
-	ret = check_found(sc, &doubt) ?: check_lost(sc, &doubt);
-	if (ret)
-		return ret;
-	if (!ec_scan_same_count(bus, sc->n))
-		return -EAGAIN;
-	if (!doubt || bus->thrown_away >= (doubt == NEW ? NEW_MAX : KNOWN_MAX)) {
-		bus->thrown_away = 0;
-		return 0;
-	}
-	bus->thrown_away++;
-	return -EAGAIN;
+	p.r = kvcalloc(sc->n, sizeof(*p.r), GFP_KERNEL);
+	p.dg = kvcalloc(2 * sc->n, sizeof(*p.dg), GFP_KERNEL);
+	if (p.r && p.dg)
+		ret = prove(&p);
+	kvfree(p.r);
+	kvfree(p.dg);
+	return ret ?: sc->n_thrown && sc->n_thrown == sc->n_stretches ? -EAGAIN : 0;
 }

@@ -47,7 +47,6 @@ struct job {
 	struct reader *rd;
 	unsigned int n;
 	unsigned int count;	/* slaves on the bus */
-	bool changed;	/* their number has changed, so no reader has failed */
 	struct ec_dg *dg;
 	u8 (*cmd)[6];
 	struct reader **rds;
@@ -219,7 +218,7 @@ static bool scan_sii_take(struct reader *r)
 /* Without link, or with other slaves, none is to blame: the scan ends and fails as a whole. */
 static bool scan_sii_go_on(const struct job *j)
 {
-	return !j->changed && !READ_ONCE(j->bus->base->stopping) && ec_links_is_up(j->bus->links);
+	return !READ_ONCE(j->bus->base->stopping) && ec_links_is_up(j->bus->links);
 }
 
 static void command(u8 *c, u32 word)
@@ -265,15 +264,30 @@ static void scan_sii_collect(struct job *j, struct reader **rds, unsigned int n)
 	}
 }
 
-/* A slave that does not reply may have been disconnected. */
-static void check_count(struct job *j, struct reader **rds, unsigned int n)
+/*
+ * A slave that does not reply may have been disconnected: it is neither read nor marked. Returns
+ * the number of those that remain.
+ */
+static unsigned int drop_gone(struct job *j, struct reader **rds, unsigned int n)
 {
-	unsigned int i;
+	unsigned int i, k = 0;
+	int count;
 
 	for (i = 0; i < n && !rds[i]->unheard; i++)
 		;
-	if (i < n)
-		j->changed = !ec_scan_same_count(j->bus, j->count);
+	if (i == n)
+		return n;
+	count = ec_scan_count(j->bus);
+	if (count == j->count)
+		return n;
+	for (i = 0; i < n; i++)
+		if (rds[i]->unheard)
+			is_done(rds[i]);
+		else
+			rds[k++] = rds[i];
+	if (count >= 0)
+		j->count = count;
+	return k;
 }
 
 /* Start the same read in all of @rds; broadcast where all slaves are meant. */
@@ -356,8 +370,8 @@ static void scan_sii_step(struct job *j, struct reader **rds, unsigned int n, u3
 			ready = looked;
 		if (!left)
 			break;
-		check_count(j, rds, left);
-		if (!scan_sii_go_on(j))
+		left = drop_gone(j, rds, left);
+		if (!left || !scan_sii_go_on(j))
 			return;
 		/* the slowest tenth is handled apart instead of holding the others */
 		if (looked > STEP_TIMEOUT_NS || (left * 10 <= n && looked > STRAGGLER_NS)) {
@@ -427,8 +441,7 @@ static void read_apart(struct job *j)
 		for (left = n;
 		     left && ktime_get_ns() - t0 < STEP_TIMEOUT_NS && scan_sii_go_on(j);) {
 			usleep_range(300, 400);
-			left = scan_sii_look(j, j->rds, left, left);
-			check_count(j, j->rds, left);
+			left = drop_gone(j, j->rds, scan_sii_look(j, j->rds, left, left));
 		}
 	}
 }
@@ -475,7 +488,8 @@ static void scan_sii_run(struct job *j)
  * @slaves: slaves with station addresses; @sii is set where it worked, @part where more
  *	is to be read, the others are marked as failed unless the link went down meanwhile
  * @n: how many
- * @count: slaves on the bus; when their number changes, the rest is neither read nor marked
+ * @count: slaves on the bus; when their number changes, one that does not reply is neither read
+ *	nor marked
  * @all: these are all slaves of the segment and no process data run, so
  *	broadcasts are allowed
  *

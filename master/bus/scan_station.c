@@ -312,8 +312,9 @@ static int write_stations(struct scan *sc, const u16 *at, unsigned int n)
 	for (i = 0; i < n && !ret; i++) {
 		if (sc->dg[i].wkc == 1)
 			continue;
-		if (!ec_scan_same_count(sc->bus, sc->n))
-			return -EAGAIN;
+		sc->regs[at[i]].gone = ec_scan_count(sc->bus) != sc->n;
+		if (sc->regs[at[i]].gone)
+			continue;
 		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
 			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
 	}
@@ -357,8 +358,7 @@ static int assign(struct scan *sc, u16 *at)
  * A slave that has kept the address of this master is a known one.
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: 0; -EAGAIN when the bus changed meanwhile; -ENOSPC without a free address; -ENOMEM; or
- * as ec_xfer().
+ * Return: 0; -ENOSPC without a free address; -ENOMEM; or as ec_xfer().
  */
 int ec_scan_stations(struct scan *sc)
 {

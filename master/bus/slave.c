@@ -39,7 +39,7 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	const size_t *bytes = bus->slave_bytes;
 	size_t size = ALIGN(sizeof(struct ec_slave), EXT_ALIGN);
 	struct ec_slave *s;
-	unsigned int p, x;
+	unsigned int x;
 
 	for (x = 0; x < EC_N_EXT; x++)
 		size += ALIGN(bytes[x], EXT_ALIGN);
@@ -70,8 +70,6 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	s->mbox.box.station = station;
 	ec_mbox_init(&s->mbox);
 	ec_dict_init(&s->dict);
-	for (p = 0; p < EC_MAX_PORT; p++)
-		s->next[p] = EC_UAPI_NONE16;
 	return s;
 }
 

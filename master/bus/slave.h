@@ -25,10 +25,12 @@
 /**
  * struct ec_break - where the way to a lost slave breaks
  * @station: address of the slave that is still there, 0: the main device
+ * @position: ring position it had then, EC_EVENT_NONE: the main device
  * @port: its port
  */
 struct ec_break {
 	u16 station;
+	u32 position;
 	u8 port;
 };
 
@@ -70,8 +72,9 @@ struct ec_break {
  * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
  * @recv: receive times at the ports
  * @delay_only: it has receive times, but no other register of a clock (0x0928)
- * @next: ring positions of the neighbours at the ports, EC_UAPI_NONE16 none
- * @upstream: port towards the master
+ * @at: neighbors at the ports, NULL none; what graph.c finds
+ * @upstream: port towards the main device
+ * @hung: its neighbor there is known, or it hangs at the main device
  * @parent: where the first slave hung that was lost with it, in words
  * @first_lost: the first slave that was lost with it, in words; empty: itself
  * @lost_at: where the way to it broke then
@@ -108,6 +111,7 @@ struct ec_break {
  * @cause: the same for programs
  * @warning: what is not certain of its process data, empty: nothing
  * @found: the list that it was in first, counted by bus->lists
+ * @listing: it is in the list that is being made; the monitor's
  * @listed: it is in the list of the bus; what fails before is reported when it comes there
  * @unreported: @why is to be reported then
  * @sii_flaw: what is wrong with its EEPROM, empty: nothing
@@ -161,8 +165,9 @@ struct ec_slave {
 	u16 alias_first;
 	u32 recv[EC_MAX_PORT];
 	bool delay_only;
-	u16 next[EC_MAX_PORT];
+	struct ec_slave *at[EC_MAX_PORT];
 	u8 upstream;
+	bool hung;
 	u8 parent_port;
 	char parent[EC_UAPI_STRING];
 	char first_lost[40];
@@ -193,6 +198,7 @@ struct ec_slave {
 	struct ec_cause cause;
 	char warning[EC_UAPI_WARNING];
 	u32 found;
+	bool listing;
 	bool listed;
 	bool unreported;
 	char sii_flaw[EC_UAPI_WARNING];

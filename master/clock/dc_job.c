@@ -4,6 +4,7 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
+#include "../bus/graph.h"
 #include "dc_job.h"
 
 #define ROUNDS		16	/* latches; the times have 10 ns of noise */
@@ -47,20 +48,17 @@ static bool is_clock(const struct ec_dc_job *j, unsigned int i)
 
 static void fill_node(struct ec_dc_job *j, unsigned int i)
 {
-	const struct ec_slave *s = j->slaves[i];
+	const struct ec_slave *s = j->slaves[i], *up = ec_graph_parent(s);
 	struct ec_dc_node *n = &j->nodes[i];
 	unsigned int p;
 
 	lockdep_assert_held(&j->dc->bus->topo);
-	n->parent = s->next[s->upstream] < j->n ? s->next[s->upstream] : EC_DC_NONE;
+	n->parent = up ? up->position : EC_DC_NONE;
 	n->entry = s->upstream;
 	n->dc = dc_job_has_times(s);
-	for (p = 0; p < EC_DC_PORTS; p++) {
-		if (s->dl_status & EC_DLS_COMM(p) && !(s->dl_status & EC_DLS_LOOP(p)))
-			n->open |= BIT(p);
-		if (n->parent != EC_DC_NONE && j->slaves[n->parent]->next[p] == i)
-			n->parent_port = p;
-	}
+	n->parent_port = up ? s->parent_port : 0;
+	for (p = 0; p < EC_DC_PORTS; p++)
+		n->open |= ec_graph_is_open(s, p) ? BIT(p) : 0;
 }
 
 /**

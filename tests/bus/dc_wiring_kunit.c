@@ -26,7 +26,7 @@ static u32 expect_wiring(struct bus *b, const char *text)
 		for (p = 0; p < EC_MAX_PORT; p++) {
 			s32 peer = esc->port[p].peer;
 
-			KUNIT_EXPECT_EQ_MSG(b->test, s->next[p], peer < 0 ? EC_UAPI_NONE16 :
+			KUNIT_EXPECT_EQ_MSG(b->test, bus_next(s, p), peer < 0 ? EC_UAPI_NONE16 :
 					    (u16)b->sim->esc[peer]->route_pos[0],
 					    "slave %u port %u of\n%s", i, p, text);
 			if (peer == -2)

@@ -469,14 +469,14 @@ static void scan_reads_new_slaves_only(struct kunit *test)
 	for (i = 0; i < 4; i++)
 		KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, i), old[i]);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, 5)->order, "EL2004");
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 3)->next[1], 4);
+	KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, 3), 1), 4);
 
 	/* nobody is new now: no EEPROM is read */
 	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
 	KUNIT_EXPECT_LT(test, bus_scan_frames(b), 12ull);
 	KUNIT_EXPECT_LT(test, 8 * bus_scan_frames(b), all);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 4)->next[1], EC_UAPI_NONE16);
+	KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, 4), 1), EC_UAPI_NONE16);
 }
 
 /* The request of a user reads everything anew. */

@@ -110,16 +110,16 @@ static void scan_bench_topology(struct kunit *test)
 	for (i = 0; i < ARRAY_SIZE(bench); i++) {
 		struct ec_slave *s = bus_slave(b, i);
 
-		KUNIT_EXPECT_EQ_MSG(test, s->next[s->upstream], bench[i].parent, "parent of %s",
+		KUNIT_EXPECT_EQ_MSG(test, bus_next(s, s->upstream), bench[i].parent, "parent of %s",
 				    bench[i].name);
 		for (p = 0; p < EC_MAX_PORT; p++)
-			if (p != s->upstream && s->next[p] != EC_UAPI_NONE16)
-				KUNIT_EXPECT_EQ_MSG(test, bench[s->next[p]].parent, i,
+			if (p != s->upstream && bus_next(s, p) != EC_UAPI_NONE16)
+				KUNIT_EXPECT_EQ_MSG(test, bench[bus_next(s, p)].parent, i,
 						    "port %u of %s", p, bench[i].name);
 	}
 	/* the fieldbus coupler hangs at the second way out of the first coupler */
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->next[1], 1);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->next[2], 15);
+	KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, 0), 1), 1);
+	KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, 0), 2), 15);
 }
 
 /*

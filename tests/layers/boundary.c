@@ -103,9 +103,9 @@ static void bench_free(struct bench *b)
 
 static bool scan(struct ec_master *m)
 {
-	bool changed;
+	struct ec_scan_result result;
 
-	if (!CHECK_EQ(ec_scan(&m->bus, SLAVES, &changed), 0))
+	if (!CHECK_EQ(ec_scan(&m->bus, SLAVES, &result), 0))
 		return false;
 	ec_links_look(&m->links);
 	WRITE_ONCE(m->bus.responding, SLAVES);

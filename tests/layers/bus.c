@@ -48,7 +48,7 @@ static void scan_identifies_slaves_and_brings_them_to_preop(void)
 	CHECK_EQ(b->bus.slaves[2]->info.vendor, 0x1234);
 	/* in a line: each hangs at port 1 of the one before */
 	CHECK_EQ(b->bus.slaves[1]->upstream, 0);
-	CHECK_EQ(b->bus.slaves[1]->next[0], 0);
+	CHECK_EQ(b->bus.slaves[1]->at[0], b->bus.slaves[0]);
 	CHECK_EQ(b->bus.slaves[1]->next[1], 2);
 	bench_free(b);
 }
@@ -91,17 +91,17 @@ static void lost_slaves_are_gone_after_a_scan(void)
 {
 	struct scanned *b = bench_new();
 	struct ec_slave *last;
-	bool changed = false;
+	struct ec_scan_result result = { 0 };
 
 	if (!b)
 		return;
 	last = ec_bus_slave(&b->bus, 2);
-	CHECK_EQ(ec_scan(&b->bus, 3, &changed), 0);
-	CHECK_EQ(changed, false);
+	CHECK_EQ(ec_scan(&b->bus, 3, &result), 0);
+	CHECK_EQ(result.changed, false);
 	CHECK(ec_bus_slave(&b->bus, 3) == NULL);
 	segment_fault(&b->seg, "off axis");
-	CHECK_EQ(ec_scan(&b->bus, 2, &changed), 0);
-	CHECK_EQ(changed, true);
+	CHECK_EQ(ec_scan(&b->bus, 2, &result), 0);
+	CHECK_EQ(result.changed, true);
 	CHECK_EQ(b->bus.n_slaves, 2);
 	CHECK_EQ(last->stop.gone, true);
 	ec_slave_unref(last);

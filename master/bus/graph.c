@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The bus is a graph: slaves joined at their ports. Ring order and registers say where a slave hangs
+ * that is new there; who hangs where it did is not asked again.
+ */
+#include "../link/links.h"
+#include "graph.h"
+#include "slave.h"
+
+/* of receive times; the way through any port and back takes longer */
+#define NOISE_NS	40
+
+/* order in which a frame passes the ports of a slave (ETG.1000.4 clause 6.2) */
+static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
+
+/**
+ * ec_graph_is_open() - do frames leave a slave by a port?
+ * @s: slave
+ * @port: port
+ *
+ * By its DL status (register 0x0110) as it was read last.
+ *
+ * Context: Any.
+ * Return: whether they do.
+ */
+bool ec_graph_is_open(const struct ec_slave *s, unsigned int port)
+{
+	return s->dl_status & EC_DLS_COMM(port) && !(s->dl_status & EC_DLS_LOOP(port));
+}
+
+/* place of each port in that order */
+static const u8 place[EC_MAX_PORT] = { 0, 2, 3, 1 };
+
+static bool has_times(const struct ec_slave *s)
+{
+	return ec_slave_features(s) & EC_FEAT_DC;
+}
+
+/*
+ * The port the frame comes in by: the open one that latched first. Without receive
+ * times (no DC) it is port 0; with that closed the last one, so that all others come
+ * behind the processing unit, as usual.
+ */
+static u8 entry_of(const struct ec_slave *s)
+{
+	int best = -1;
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_PORT; i++) {
+		u8 p = order[i];
+
+		if (!ec_graph_is_open(s, p))
+			continue;
+		if (best < 0 ||
+		    (has_times(s) ? (s32)(s->recv[p] - s->recv[best]) < -NOISE_NS :
+					     best != 0))
+			best = p;
+	}
+	return max(best, 0);
+}
+
+/* the port a frame passes as number @step after its entry */
+static u8 port_at(const struct ec_slave *s, unsigned int step)
+{
+	return order[(place[s->upstream] + step) % EC_MAX_PORT];
+}
+
+/* Number of port 0 likewise: behind it is the processing unit; 0: the entry is port 0. */
+static unsigned int unit_step(const struct ec_slave *s)
+{
+	return (EC_MAX_PORT - place[s->upstream]) % EC_MAX_PORT;
+}
+
+/* Next open port without a slave behind it, of those behind the processing unit, or -1. */
+static int next_port(const struct ec_slave *s)
+{
+	unsigned int step;
+
+	for (step = unit_step(s) + 1; step < EC_MAX_PORT; step++) {
+		u8 p = port_at(s, step);
+
+		if (ec_graph_is_open(s, p) && !s->at[p])
+			return p;
+	}
+	return -1;
+}
+
+/* How long the frame was behind the port; with @all: behind all up to it. */
+static u32 away(const struct ec_slave *s, unsigned int step, bool all)
+{
+	u8 from = s->upstream, to = s->upstream;
+	unsigned int i;
+
+	for (i = 1; i <= step; i++) {
+		u8 p = port_at(s, i);
+
+		if (!ec_graph_is_open(s, p))
+			continue;
+		from = all ? from : to;
+		to = p;
+	}
+	return s->recv[to] - s->recv[from];
+}
+
+/**
+ * ec_graph_parent() - the neighbor of a slave towards the main device
+ * @s: slave of the list
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: that slave, or NULL.
+ */
+struct ec_slave *ec_graph_parent(const struct ec_slave *s)
+{
+	return s->at[s->upstream];
+}
+
+/*
+ * The branch behind a port that the frame passes before the processing unit: it ends
+ * with slave @last, and is the largest one that fits in the time the frame was away.
+ */
+static struct ec_slave *branch_before(struct ec_slave *last, const struct ec_slave *s,
+				      unsigned int step)
+{
+	u32 time = away(s, step, false);
+	struct ec_slave *x = last, *up = last;
+
+	if (!last || next_port(last) >= 0)
+		return NULL;
+	while ((up = ec_graph_parent(up)) && next_port(up) < 0) {
+		if (!has_times(up))
+			continue;
+		if (away(up, EC_MAX_PORT - 1, true) >= time)
+			break;
+		x = up;
+	}
+	return x;
+}
+
+/* the one of a branch that comes first in the ring */
+static struct ec_slave *first_of(struct ec_slave *x)
+{
+	unsigned int step = 1;
+
+	while (step <= unit_step(x)) {
+		struct ec_slave *next = x->at[port_at(x, step)];
+
+		step++;
+		if (next) {
+			x = next;
+			step = 1;
+		}
+	}
+	return x;
+}
+
+static struct ec_slave *before(struct ec_slave **slaves, const struct ec_slave *s)
+{
+	return s->position ? slaves[s->position - 1] : NULL;
+}
+
+static void join(struct ec_slave *parent, u8 port, struct ec_slave *child)
+{
+	parent->at[port] = child;
+	child->at[child->upstream] = parent;
+	child->parent_port = port;
+	child->hung = true;
+}
+
+/* The neighbor at @port is none any more; what hung at @s is to be hung anew. */
+static void part(struct ec_slave *s, unsigned int port)
+{
+	struct ec_slave *next = s->at[port];
+	unsigned int p;
+
+	if (!next)
+		return;
+	s->at[port] = NULL;
+	if (port == s->upstream)
+		s->hung = false;
+	for (p = 0; p < EC_MAX_PORT; p++) {
+		if (next->at[p] != s)
+			continue;
+		next->at[p] = NULL;
+		if (p == next->upstream)
+			next->hung = false;
+	}
+}
+
+/**
+ * ec_graph_leave() - a slave has no neighbors any more
+ * @s: slave
+ *
+ * Those that hung at it are hung anew by ec_graph_fit().
+ *
+ * Context: Topo held for writing, or the slave is in no list.
+ */
+void ec_graph_leave(struct ec_slave *s)
+{
+	unsigned int p;
+
+	for (p = 0; p < EC_MAX_PORT; p++)
+		part(s, p);
+	s->hung = false;
+}
+
+/**
+ * ec_graph_note_ports() - take over DL status and receive times of a slave
+ * @s: slave, with both as they were read
+ *
+ * A neighbor behind a port that is closed now is none any more; with another entry none is.
+ *
+ * Context: As ec_graph_leave().
+ */
+void ec_graph_note_ports(struct ec_slave *s)
+{
+	u8 entry = entry_of(s);
+	unsigned int p;
+
+	if (entry != s->upstream)
+		ec_graph_leave(s);
+	s->upstream = entry;
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (!ec_graph_is_open(s, p))
+			part(s, p);
+}
+
+/* Slaves that precede @s because they are behind its port 0; returns the last one before. */
+static struct ec_slave *join_before(struct ec_slave **slaves, struct ec_slave *s)
+{
+	struct ec_slave *last = before(slaves, s);
+	unsigned int step;
+
+	for (step = unit_step(s); step; step--) {
+		u8 p = port_at(s, step);
+		struct ec_slave *x = s->at[p];
+
+		if (!x && ec_graph_is_open(s, p))
+			x = branch_before(last, s, step);
+		if (!x)
+			continue;
+		if (x != s->at[p]) {
+			part(x, x->upstream);
+			join(s, p, x);
+		}
+		last = before(slaves, first_of(x));
+	}
+	return last;
+}
+
+/* Hang @s at the nearest slave up to @parent that has a free port, or at the main device. */
+static void hang(struct ec_slave **slaves, struct ec_slave *s, struct ec_slave *parent)
+{
+	s->hung = true;
+	while (parent) {
+		struct ec_slave *up = ec_graph_parent(parent);
+		int port = next_port(parent);
+
+		if (port >= 0) {
+			join(parent, port, s);
+			return;
+		}
+		/* up: its parent, or when that is unknown the slave before */
+		parent = up && up->position < parent->position ? up : before(slaves, parent);
+	}
+}
+
+/**
+ * ec_graph_make_room() - a slave that hangs where others were found before it hangs behind these
+ * @last: slave before those in the ring, NULL: there is none
+ * @next: slave after them
+ *
+ * Context: As ec_graph_leave().
+ */
+void ec_graph_make_room(struct ec_slave *last, struct ec_slave *next)
+{
+	const struct ec_slave *top = ec_graph_parent(next);
+
+	for (; last; last = ec_graph_parent(last)) {
+		if (next_port(last) >= 0)
+			return;
+		if (last == top)
+			break;
+	}
+	part(next, next->upstream);
+	next->hung = false;
+}
+
+/**
+ * ec_graph_fit() - find the place of those slaves that hang nowhere
+ * @slaves: by ring position, @position set, after ec_graph_note_ports()
+ * @n: entries in @slaves
+ *
+ * Each hangs at the nearest earlier slave that has a free open port. A frame goes through the
+ * processing unit when it comes from port 0: what hangs there at a slave that is connected by
+ * another port precedes it in the ring.
+ *
+ * Context: As ec_graph_leave().
+ */
+void ec_graph_fit(struct ec_slave **slaves, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		if (!slaves[i]->hung)
+			hang(slaves, slaves[i], join_before(slaves, slaves[i]));
+}
+
+/**
+ * ec_graph_misfit() - look for a contradiction between ring order and ports
+ * @slaves: as for ec_graph_fit(), after it
+ * @n: entries in @slaves
+ *
+ * Context: As ec_graph_leave().
+ * Return: position of the first slave with an open port that leads nowhere, or without one
+ * upstream; @n: there is none, or what a slave says of its ports was guessed.
+ */
+unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n)
+{
+	unsigned int i, p, first = n, roots = 0, free = 0;
+
+	for (i = 0; i < n; i++) {
+		struct ec_slave *s = slaves[i];
+		bool bad = !ec_graph_parent(s) && roots++;
+
+		if (READ_ONCE(s->silent) || !s->regs[EC_REG_TYPE])
+			return n;
+		for (p = 0; p < EC_MAX_PORT; p++)
+			if (p != s->upstream && ec_graph_is_open(s, p) && !s->at[p]) {
+				free++;
+				bad = true;
+			}
+		first = bad ? min(first, i) : first;
+	}
+	/* the one that leads to the other device of a ring */
+	if (n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links))
+		return n;
+	return first;
+}

@@ -1,0 +1,18 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Which slave hangs at which port of which one. */
+#ifndef EC_GRAPH_H
+#define EC_GRAPH_H
+
+#include <linux/types.h>
+
+struct ec_slave;
+
+bool ec_graph_is_open(const struct ec_slave *s, unsigned int port);
+struct ec_slave *ec_graph_parent(const struct ec_slave *s);
+void ec_graph_leave(struct ec_slave *s);
+void ec_graph_note_ports(struct ec_slave *s);
+void ec_graph_make_room(struct ec_slave *last, struct ec_slave *next);
+void ec_graph_fit(struct ec_slave **slaves, unsigned int n);
+unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n);
+
+#endif
