@@ -22,8 +22,9 @@
 #define BOUNCE_MS	5	/* between looks while the number of slaves changes */
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
+#define MOVING_NS	(100 * NSEC_PER_MSEC)	/* or so long: a contact may bounce all the time */
 #define TRIES		2	/* to poll all slaves */
-#define STAYS		5	/* looks that do not clear an AL event, then it is not watched */
+#define STAYS		5	/* looks that do not clear an event, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
 
 static const char lost[] =
@@ -37,6 +38,7 @@ struct watch {
 	bool link_up;
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
+	u64 moving_ns;		/* since when counts differ and no scan has begun, 0: they do not */
 	bool scanned;		/* @count slaves are scanned */
 	bool held;		/* the list is held: no scan now, also if not @scanned */
 	unsigned int silent;	/* looks in which a slave did not answer to its address */
@@ -54,6 +56,7 @@ struct watch {
 	u16 watched;		/* that are to wake it, until the next look */
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
+	unsigned int dl_stays;	/* looks in a row that did not clear the event of a port */
 	u64 event;		/* number of the next one for the kernel log */
 	struct ec_quiet quiet;	/* looks of the timer */
 };
@@ -280,6 +283,7 @@ static void ask_slaves(struct watch *w)
 		w->count = count;
 		w->same = 0;
 		w->scanned = false;
+		w->moving_ns = w->moving_ns ?: ktime_get_ns();
 	} else {
 		w->same++;
 	}
@@ -294,7 +298,8 @@ static void ask_slaves(struct watch *w)
 			check_slaves(w);
 		return;
 	}
-	if (!w->scanned || w->well || check_slaves(w))
+	/* also while a contact bounces somewhere: the others are looked after */
+	if (w->well || !count || check_slaves(w) || !w->scanned)
 		w->silent = 0;
 	else
 		w->silent++;
@@ -350,10 +355,27 @@ static void ride(struct watch *w)
 	w->riding = true;
 }
 
-/* Are the slaves of the list those that the monitor polls now? */
+/* Are there slaves that the monitor polls now? */
 static bool looks_after_list(const struct watch *w)
 {
-	return w->scanned || w->held;
+	return w->scanned || w->held || (w->count && w->m->bus.n_slaves);
+}
+
+/*
+ * A port has got or lost its link: slaves may have changed although their number has not. One that
+ * shows the event all the time is ignored.
+ */
+static void note_ports(struct watch *w)
+{
+	if (!(w->irq & EC_ECAT_EVENT_DL)) {
+		w->dl_stays = 0;
+		return;
+	}
+	if (!w->scanned || w->held || w->dl_stays >= STAYS)
+		return;
+	w->dl_stays++;
+	if (ec_scan_ports_changed(&w->m->bus))
+		scan_next(w);
 }
 
 static void note_held(struct watch *w)
@@ -379,6 +401,7 @@ static void monitor_count_slaves(struct watch *w)
 	if (!all_well(w))
 		ask_slaves(w);
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
+	note_ports(w);
 	ride(w);
 	if (looks_after_list(w) && w->link_up)
 		w->survey.exchange |= ec_mailboxes_look(&w->m->bus, w->irq);
@@ -397,6 +420,8 @@ static void watch_events(struct watch *w)
 		w->watched = ec_mailboxes_watch(&m->bus, w->survey.exchange);
 		if (w->stays < STAYS)
 			w->watched |= EC_ECAT_EVENT_AL;
+		if (w->dl_stays < STAYS)
+			w->watched |= EC_ECAT_EVENT_DL;
 	}
 	WRITE_ONCE(m->links.events, w->watched);
 }
@@ -464,8 +489,10 @@ static void maybe_scan(struct watch *w)
 		return;
 	if (READ_ONCE(m->bus.rescan))
 		scan_next(w);
-	if (w->scanned || w->same < STABLE_LOOKS)
+	if (w->scanned || (w->same < STABLE_LOOKS &&
+			   !(w->moving_ns && ktime_get_ns() - w->moving_ns >= MOVING_NS)))
 		return;
+	w->moving_ns = 0;
 	WRITE_ONCE(m->bus.scan_index, 0);
 	WRITE_ONCE(m->bus.scan_slaves, w->count);
 	/* a reader that sees the scan sees its numbers */
@@ -571,8 +598,9 @@ static void quiet_sleep(struct watch *w)
 		q->survey = &w->survey;
 		q->changes = w->changes;
 		q->event = w->event;
-		/* an AL event that stays is no news */
-		q->events = EC_ECAT_EVENT_SM(1) | (w->watched & EC_ECAT_EVENT_AL);
+		/* an event that stays is no news */
+		q->events = EC_ECAT_EVENT_SM(1) |
+			    (w->watched & (EC_ECAT_EVENT_AL | EC_ECAT_EVENT_DL));
 		q->until_ns = w->rates_ns + NSEC_PER_SEC;
 		q->ride_ns = w->ride_ns;
 		ms -= SLACK_MS;

@@ -14,18 +14,36 @@
 static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 
 /**
+ * ec_graph_open_ports() - by which ports do frames leave a slave?
+ * @dl_status: its DL status (register 0x0110)
+ *
+ * Context: Any.
+ * Return: bit mask of these ports.
+ */
+u8 ec_graph_open_ports(u16 dl_status)
+{
+	unsigned int p;
+	u8 open = 0;
+
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (dl_status & EC_DLS_COMM(p) && !(dl_status & EC_DLS_LOOP(p)))
+			open |= BIT(p);
+	return open;
+}
+
+/**
  * ec_graph_is_open() - do frames leave a slave by a port?
  * @s: slave
  * @port: port
  *
- * By its DL status (register 0x0110) as it was read last.
+ * By its DL status as it was read last.
  *
  * Context: Any.
  * Return: whether they do.
  */
 bool ec_graph_is_open(const struct ec_slave *s, unsigned int port)
 {
-	return s->dl_status & EC_DLS_COMM(port) && !(s->dl_status & EC_DLS_LOOP(port));
+	return ec_graph_open_ports(s->dl_status) & BIT(port);
 }
 
 /* place of each port in that order */

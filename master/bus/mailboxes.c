@@ -94,12 +94,13 @@ out:
  * @mailbox: its SM1 is a mailbox
  *
  * Context: Any.
- * Return: two bytes for register 0x0200: AL status, and SM1 if that is a mailbox.
+ * Return: two bytes for register 0x0200: ports, AL status, and SM1 if that is a mailbox.
  */
 const u8 *ec_mailboxes_mask(bool mailbox)
 {
 	static const u8 mask[][2] = {
-		{ EC_ECAT_EVENT_AL }, { EC_ECAT_EVENT_AL | EC_ECAT_EVENT_SM(1) },
+		{ EC_ECAT_EVENT_DL | EC_ECAT_EVENT_AL },
+		{ EC_ECAT_EVENT_DL | EC_ECAT_EVENT_AL | EC_ECAT_EVENT_SM(1) },
 	};
 
 	return mask[mailbox];

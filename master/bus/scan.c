@@ -45,6 +45,40 @@ int ec_scan_count(struct ec_bus *bus)
 	return ret ?: dg.back;
 }
 
+/**
+ * ec_scan_ports_changed() - has a slave other ports than the list says?
+ * @bus: bus
+ *
+ * Reads the DL status of all, which clears their events of it.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: whether one has.
+ */
+bool ec_scan_ports_changed(struct ec_bus *bus)
+{
+	struct ec_dg *dg = kvcalloc(bus->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
+	u8 (*dl)[2] = kvcalloc(bus->n_slaves + 1, sizeof(*dl), GFP_KERNEL);
+	bool changed = false;
+	unsigned int n = 0;
+
+	if (dg && dl) {
+		ec_for_each_slave(s, bus) {
+			dg[n] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[n]);
+			n++;
+		}
+		ec_xfer(bus->links, dg, n);
+		n = 0;
+		ec_for_each_slave(s, bus) {
+			changed |= !dg[n].err && dg[n].wkc == 1 &&
+				   (get_unaligned_le16(dl[n]) ^ s->dl_status) & EC_SCAN_PORTS;
+			n++;
+		}
+	}
+	kvfree(dg);
+	kvfree(dl);
+	return changed;
+}
+
 /* which slaves a read is for */
 static bool each(const struct scan *sc, unsigned int i)
 {
@@ -346,8 +380,8 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	int ret = scan_alloc(&sc);
 
-	/* it may be begun again and again while a plug is pulled in */
-	if (count && !bus->scan_noted) {
+	/* it may be begun again and again while a plug is pulled in, or for a port alone */
+	if (count && count != bus->n_slaves && !bus->scan_noted) {
 		bus->scan_noted = true;
 		ec_event(bus->base, EC_EVENT_SCAN_START, count);
 	}

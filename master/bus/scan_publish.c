@@ -125,6 +125,8 @@ static void take_ports(struct scan *sc, const struct list *l)
 		if (l->at[i] == EC_UAPI_NONE16 || (known && (!r->ports || r->partial)))
 			continue;
 		if (known) {
+			sc->changed |= ec_graph_open_ports(s->dl_status) !=
+				       ec_graph_open_ports(get_unaligned_le16(r->dl));
 			s->dl_status = get_unaligned_le16(r->dl);
 			for (p = 0; p < EC_MAX_PORT; p++)
 				s->recv[p] = get_unaligned_le32(r->recv + 4 * p);

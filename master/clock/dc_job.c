@@ -50,15 +50,13 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 {
 	const struct ec_slave *s = j->slaves[i], *up = ec_graph_parent(s);
 	struct ec_dc_node *n = &j->nodes[i];
-	unsigned int p;
 
 	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = up ? up->position : EC_DC_NONE;
 	n->entry = s->upstream;
 	n->dc = dc_job_has_times(s);
 	n->parent_port = up ? s->parent_port : 0;
-	for (p = 0; p < EC_DC_PORTS; p++)
-		n->open |= ec_graph_is_open(s, p) ? BIT(p) : 0;
+	n->open = ec_graph_open_ports(s->dl_status);
 }
 
 /**
