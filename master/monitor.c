@@ -23,6 +23,7 @@
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define MOVING_NS	(100 * NSEC_PER_MSEC)	/* or so long: a contact may bounce all the time */
+#define PORTS_NS	(20 * NSEC_PER_MSEC)	/* between looks at all ports */
 #define TRIES		2	/* to poll all slaves */
 #define STAYS		5	/* looks that do not clear an event, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
@@ -56,6 +57,7 @@ struct watch {
 	u16 watched;		/* that are to wake it, until the next look */
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
+	u64 ports_ns;		/* last look at all ports */
 	unsigned int dl_stays;	/* looks in a row that did not clear the event of a port */
 	u64 event;		/* number of the next one for the kernel log */
 	struct ec_quiet quiet;	/* looks of the timer */
@@ -367,14 +369,18 @@ static bool looks_after_list(const struct watch *w)
  */
 static void note_ports(struct watch *w)
 {
+	u64 now = ktime_get_ns();
+
 	if (!(w->irq & EC_ECAT_EVENT_DL)) {
 		w->dl_stays = 0;
 		return;
 	}
-	if (!w->scanned || w->held || w->dl_stays >= STAYS)
+	if (!w->scanned || w->held || w->dl_stays >= STAYS ||
+	    now - w->ports_ns < PORTS_NS)
 		return;
 	w->dl_stays++;
-	if (ec_scan_ports_changed(&w->m->bus))
+	w->ports_ns = now;
+	if (ec_scan_worth(&w->m->bus))
 		scan_next(w);
 }
 

@@ -45,38 +45,50 @@ int ec_scan_count(struct ec_bus *bus)
 	return ret ?: dg.back;
 }
 
+/* Has a slave other ports than the list says, or has one shown an event without such a reason? */
+static bool is_other(struct ec_slave *s, u16 dl, u16 *reason)
+{
+	u16 before = s->dl_seen ?: s->dl_status;
+
+	/* its PDI came or went */
+	*reason |= (dl ^ before) & ~EC_SCAN_PORTS;
+	s->dl_seen = dl;
+	return (dl ^ s->dl_status) & EC_SCAN_PORTS;
+}
+
 /**
- * ec_scan_ports_changed() - has a slave other ports than the list says?
+ * ec_scan_worth() - a slave has shown the event of its DL status: is a scan worth it?
  * @bus: bus
  *
- * Reads the DL status of all, which clears their events of it.
+ * Reads the DL status of all, which clears the events.
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: whether one has.
+ * Return: false when it was the PDI of a slave.
  */
-bool ec_scan_ports_changed(struct ec_bus *bus)
+bool ec_scan_worth(struct ec_bus *bus)
 {
 	struct ec_dg *dg = kvcalloc(bus->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
 	u8 (*dl)[2] = kvcalloc(bus->n_slaves + 1, sizeof(*dl), GFP_KERNEL);
-	bool changed = false;
+	bool other = !dg || !dl;
 	unsigned int n = 0;
+	u16 reason = 0;
 
-	if (dg && dl) {
+	if (!other) {
 		ec_for_each_slave(s, bus) {
 			dg[n] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[n]);
 			n++;
 		}
 		ec_xfer(bus->links, dg, n);
-		n = 0;
 		ec_for_each_slave(s, bus) {
-			changed |= !dg[n].err && dg[n].wkc == 1 &&
-				   (get_unaligned_le16(dl[n]) ^ s->dl_status) & EC_SCAN_PORTS;
-			n++;
+			const struct ec_dg *d = &dg[s->position];
+
+			if (!d->err && d->wkc == 1)
+				other |= is_other(s, get_unaligned_le16(dl[s->position]), &reason);
 		}
 	}
 	kvfree(dg);
 	kvfree(dl);
-	return changed;
+	return other || !reason;
 }
 
 /* which slaves a read is for */
@@ -260,18 +272,22 @@ static int read_new(struct scan *sc)
 	return 0;
 }
 
-/* A known slave is where it was, and is not read again, if its ports are as they were. */
+/* A known slave hangs where it did if neither its place in the ring nor its ports have changed. */
 static void note_ports(struct scan *sc)
 {
-	unsigned int i;
+	unsigned int i, k;
 
 	for (i = 0; i < sc->n; i++) {
 		u16 dl = get_unaligned_le16(sc->regs[i].dl);
 
-		sc->regs[i].ports = each(sc, i) && !sc->regs[i].partial &&
-				    ec_scan_is_known(sc, sc->slaves[i]) &&
-				    (dl ^ sc->slaves[i]->dl_status) & EC_SCAN_PORTS;
+		sc->regs[i].ports = (dl ^ sc->slaves[i]->dl_status) & EC_SCAN_PORTS;
 	}
+	for (k = 0; k < sc->n_stretches; k++)
+		for (i = 0; i < sc->stretch[k].n_new; i++)
+			sc->regs[sc->stretch[k].new + i].ports = true;
+	for (i = 0; i < sc->n; i++)
+		sc->regs[i].ports &= each(sc, i) && !sc->regs[i].partial &&
+				     ec_scan_is_known(sc, sc->slaves[i]);
 }
 
 static int read_times(struct scan *sc)
@@ -297,7 +313,7 @@ static int scan_look(struct scan *sc)
 
 	if (sc->fresh)
 		reset_bus(sc->bus);
-	ret = ec_scan_stations(sc) ?:
+	ret = ec_scan_stations(sc) ?: ec_scan_stretches(sc) ?:
 	      read_each(sc, each_new, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
 	      read_each(sc, each, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
 	      read_each(sc, each_new, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
@@ -385,9 +401,9 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 		bus->scan_noted = true;
 		ec_event(bus->base, EC_EVENT_SCAN_START, count);
 	}
-	if (!ret && count)
-		ret = scan_look(&sc);
-	ret = ret ?: ec_scan_stretches(&sc) ?: ec_scan_proof(&sc) ?: ec_scan_publish(&sc);
+	if (!ret)
+		ret = count ? scan_look(&sc) : ec_scan_stretches(&sc);
+	ret = ret ?: ec_scan_proof(&sc) ?: ec_scan_publish(&sc);
 	if (!ret) {
 		result->changed = sc.changed;
 		result->again = sc.n_thrown;

@@ -21,7 +21,7 @@ struct regs {
 	bool there;		/* it answered when its address was read */
 	bool partial;		/* and not to each read after that */
 	bool gone;		/* when the number of slaves had changed */
-	bool ports;		/* a known slave whose ports have changed */
+	bool ports;		/* a known slave whose ports or place have changed */
 };
 
 /*

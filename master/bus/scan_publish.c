@@ -112,7 +112,17 @@ static bool differs(const struct scan *sc)
 	return sc->changed;
 }
 
-/* Ports of the known slaves, and where the new ones are. */
+/* Slaves that were moved, and those that hung at them, are hung anew. */
+static void leave_places(const struct scan *sc)
+{
+	unsigned int k, i;
+
+	for (k = 0; k < sc->n_stretches; k++)
+		for (i = 0; !sc->stretch[k].thrown && i < sc->stretch[k].n_new; i++)
+			ec_graph_leave(sc->slaves[sc->stretch[k].new + i]);
+}
+
+/* Ports of the known slaves, and the new ones. */
 static void take_ports(struct scan *sc, const struct list *l)
 {
 	unsigned int i, p;
@@ -221,6 +231,7 @@ static void set_list(struct scan *sc, struct list *l)
 	leave(sc, l);
 	for (i = 0; i < l->n; i++)
 		l->slaves[i]->position = i;
+	leave_places(sc);
 	take_ports(sc, l);
 	ec_known_update(bus, l->slaves, l->n, ec_scan_limit());
 	note_aliases(sc, l);

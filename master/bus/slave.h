@@ -68,6 +68,7 @@ struct ec_break {
  * @position: ring position
  * @regs: registers 0x0000-0x0009
  * @dl_status: register 0x0110
+ * @dl_seen: the same, read later than @dl_status because of an event; the monitor's
  * @alias: effective alias
  * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
  * @recv: receive times at the ports
@@ -161,6 +162,7 @@ struct ec_slave {
 	u16 position;
 	u8 regs[EC_INFO_SIZE];
 	u16 dl_status;
+	u16 dl_seen;
 	u16 alias;
 	u16 alias_first;
 	u32 recv[EC_MAX_PORT];

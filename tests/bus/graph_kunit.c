@@ -204,7 +204,7 @@ static void graph_random_events(struct kunit *test)
 	struct cyc *c;
 	struct watch w = { 0 };
 	struct rnd_state r;
-	u32 i, k, n = 200;
+	u32 i, k, n = 400;
 
 	bus_idle(b);
 	c = cyc_new(b, 1000);
