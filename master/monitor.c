@@ -8,6 +8,7 @@
 #include "monitor.h"
 #include "quiet.h"
 #include "base/once64.h"
+#include "bus/known.h"
 #include "bus/mailboxes.h"
 #include "bus/slave.h"
 #include "bus/survey.h"
@@ -514,6 +515,7 @@ static void maybe_scan(struct watch *w)
 		 */
 		smp_wmb();
 		WRITE_ONCE(m->bus.rescan, false);
+		ec_known_forget_images(&m->bus);
 		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT &&
 		    !READ_ONCE(m->sessions.session))
 			ec_scan(&m->bus, 0, &result);

@@ -26,6 +26,7 @@ static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int
 	l->station = s->station;
 	l->position = s->position;
 	strscpy(l->label, ec_slave_label(s), sizeof(l->label));
+	l->slave = s->sii ? ec_slave_ref(s) : NULL;
 	hlist_add_head(&l->by_number, head_of(k->lost, l->number));
 	hlist_add_head(&l->by_station, head_of(k->by_station, l->station));
 	if (l->serial)
@@ -92,6 +93,51 @@ static struct ec_lost *by_number(const struct ec_known *k, u64 number)
 		if (l->number == number)
 			return l;
 	return NULL;
+}
+
+/**
+ * ec_known_image() - look for a disconnected device with the same head of its EEPROM
+ * @bus: bus
+ * @station: station address that the slave has kept, 0: none
+ * @head: %EC_SII_HEAD bytes: checksum, identity, serial number
+ *
+ * Context: The monitor thread, which alone changes the numbers.
+ * Return: that device with its image, which is as long as the fixed area at least, with a reference
+ * for the caller; the one with the station address before others; NULL: there is none.
+ */
+struct ec_slave *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head)
+{
+	struct ec_slave *found = NULL;
+	const struct ec_lost *l;
+	bool kept = false;
+
+	list_for_each_entry(l, &bus->known.oldest, age) {
+		if (!l->slave || l->slave->sii_bytes < EC_SII_FIXED_SIZE ||
+		    memcmp(l->slave->sii, head, EC_SII_HEAD))
+			continue;
+		/* the one that was disconnected last, as its EEPROM may have been written */
+		if (!kept || l->station == station)
+			found = l->slave;
+		kept |= l->station == station;
+	}
+	return found ? ec_slave_ref(found) : NULL;
+}
+
+/**
+ * ec_known_forget_images() - all EEPROMs are to be read again, or their memory is needed
+ * @bus: bus
+ *
+ * Context: The monitor thread. May sleep.
+ */
+void ec_known_forget_images(struct ec_bus *bus)
+{
+	struct ec_lost *l;
+
+	list_for_each_entry(l, &bus->known.oldest, age) {
+		if (l->slave)
+			ec_slave_unref(l->slave);
+		l->slave = NULL;
+	}
 }
 
 /**

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "known_table.h"
+#include "slave.h"
 
 /**
  * ec_known_init() - no device has a number
@@ -27,6 +28,8 @@ void ec_known_drop(struct ec_known *k, struct ec_lost *l)
 	hlist_del_init(&l->by_serial);
 	list_del(&l->age);
 	k->n_lost--;
+	if (l->slave)
+		ec_slave_unref(l->slave);
 	kfree(l);
 }
 

@@ -6,6 +6,8 @@
 #include <linux/list.h>
 #include <linux/types.h>
 
+struct ec_slave;
+
 #define EC_KNOWN_BITS	5
 #define EC_KNOWN_HEADS	(1 << EC_KNOWN_BITS)
 
@@ -23,6 +25,7 @@
  * @station: its station address
  * @position: its ring position
  * @label: what people call it
+ * @slave: as it was, with its EEPROM image; NULL: none was read
  */
 struct ec_lost {
 	u64 number;
@@ -37,6 +40,7 @@ struct ec_lost {
 	u16 station;
 	u16 position;
 	char label[24];
+	struct ec_slave *slave;
 };
 
 /**

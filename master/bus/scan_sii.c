@@ -13,6 +13,7 @@
 #include "../base/limits.h"
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "known.h"
 #include "scan_int.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* of one access to the EEPROM */
@@ -25,6 +26,8 @@
 #define TAKE_OVER	3	/* datagrams to take over one EEPROM */
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
 #define FIRST_CAP	2048
+#define HEAD_BYTES	EC_SII_HEAD	/* checksum, identity, serial number */
+#define SIZE_WORD	0x3c	/* the access with size and version of the EEPROM */
 #define PART_BYTES	16384	/* a part has so many at least */
 #define PART_NS		(2ULL * NSEC_PER_SEC)	/* and may take so long */
 #define PART_MAX_NS	(10ULL * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
@@ -34,6 +37,9 @@ struct reader {
 	struct ec_slave *slave;
 	size_t need;
 	size_t began;	/* bytes of the parts before */
+	struct ec_slave *kept;	/* disconnected, with the same head: is it the same? */
+	u32 check;	/* word at which the two are compared */
+	bool looked;	/* for @kept */
 	u8 tries;
 	u8 len;		/* bytes of @reg that are of interest */
 	bool alone;	/* left the lockstep */
@@ -133,6 +139,13 @@ static bool scan_sii_count(struct ec_bus *bus, size_t bytes)
 	return false;
 }
 
+/* Images of disconnected devices only save time. */
+static bool count_without_kept(struct ec_bus *bus, size_t bytes)
+{
+	ec_known_forget_images(bus);
+	return scan_sii_count(bus, bytes);
+}
+
 /* Without memory the reader has failed. */
 static void enlarge(struct reader *r, size_t bytes)
 {
@@ -140,7 +153,7 @@ static void enlarge(struct reader *r, size_t bytes)
 	size_t more = bytes - s->sii_counted;
 	u8 *p;
 
-	if (!scan_sii_count(s->bus, more)) {
+	if (!scan_sii_count(s->bus, more) && !count_without_kept(s->bus, more)) {
 		scan_sii_fail(r, "the EEPROMs of all slaves exceed 64 MiB",
 			      "disconnect slaves with large EEPROMs");
 		return;
@@ -183,7 +196,59 @@ static void scan_sii_plan(struct reader *r)
 /* The word that the reader needs next. */
 static u32 next_word(const struct reader *r)
 {
-	return r->slave->part_bytes / 2;
+	return r->kept ? r->check : r->slave->part_bytes / 2;
+}
+
+/* Is it a device that was connected before? Then few words show whether its image is the same. */
+static void look_for_kept(struct reader *r)
+{
+	struct ec_slave *s = r->slave;
+
+	if (r->looked || r->began || s->part_bytes < HEAD_BYTES)
+		return;
+	r->looked = true;
+	r->kept = ec_known_image(s->bus, s->kept_station, s->part);
+	r->check = SIZE_WORD;
+}
+
+/* The last access that lies within the image */
+static u32 last_word(const struct ec_slave *s)
+{
+	return (s->sii_bytes - 8) / 2 & ~3u;
+}
+
+static void drop_kept(struct reader *r)
+{
+	if (r->kept)
+		ec_slave_unref(r->kept);
+	r->kept = NULL;
+}
+
+/* The device is the one that was disconnected: its image is taken, the rest is not read. */
+static void take_kept(struct reader *r)
+{
+	const struct ec_slave *kept = r->kept;
+	struct ec_slave *s = r->slave;
+
+	if (kept->sii_bytes > s->sii_counted)
+		enlarge(r, kept->sii_bytes);
+	if (!r->done) {
+		memcpy(s->part, kept->sii, kept->sii_bytes);
+		s->part_bytes = kept->sii_bytes;
+		s->flaw = kept->flaw;
+		scan_sii_finish(r);
+	}
+	drop_kept(r);
+}
+
+static void compare_kept(struct reader *r, const u8 *data, size_t len)
+{
+	if (memcmp(r->kept->sii + 2 * r->check, data, len))
+		drop_kept(r);
+	else if (r->check == SIZE_WORD && last_word(r->kept) != SIZE_WORD)
+		r->check = last_word(r->kept);
+	else
+		take_kept(r);
 }
 
 /* An access that ended without data; asking again does not help. */
@@ -207,11 +272,16 @@ static bool scan_sii_take(struct reader *r)
 	if (ctl & (EC_EEP_BUSY | EC_EEP_CMD_MASK) || ctl & EC_EEP_ERR_ACK ||
 	    (get_unaligned_le32(r->reg + 2) & mask) != word)
 		return false;
-	memcpy(s->part + s->part_bytes, r->reg + 6, got);
-	s->part_bytes += got;
 	r->len = 6 + got;
 	r->tries = 0;
+	if (r->kept) {
+		compare_kept(r, r->reg + 6, got);
+		return true;
+	}
+	memcpy(s->part + s->part_bytes, r->reg + 6, got);
+	s->part_bytes += got;
 	scan_sii_plan(r);
+	look_for_kept(r);
 	return true;
 }
 
@@ -523,6 +593,8 @@ void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 			enlarge(r, FIRST_CAP);
 	}
 	scan_sii_run(&j);
+	for (i = 0; i < n; i++)
+		drop_kept(&j.rd[i]);
 out:
 	kvfree(j.rd);
 	kvfree(j.dg);

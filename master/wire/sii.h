@@ -10,6 +10,7 @@
 #include "buf.h"
 
 #define EC_SII_FIXED_SIZE	128	/* bytes before the first category */
+#define EC_SII_HEAD		32	/* the first of them: checksum, identity, serial number */
 #define EC_SII_MAX_SIZE		(512 * 1024)	/* what is beyond is not read */
 #define EC_SII_MAX_CATS		256
 #define EC_SII_CAT_HDR		4

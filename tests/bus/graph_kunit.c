@@ -120,6 +120,37 @@ static void graph_moved_slave_is_not_read_again(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, c1->position, 3);
 }
 
+/* What is known of a device that comes back is not read again, unless its EEPROM is another one. */
+static void graph_eeprom_of_a_known_device(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	size_t bytes = bus_slave(b, N - 1)->sii_bytes;
+	u32 i;
+
+	bus_idle(b);
+	for (i = 0; i < 3; i++) {
+		u64 frames;
+
+		command(b, "off c2");
+		msleep(200);
+		KUNIT_EXPECT_EQ(test, bus_n_slaves(b), N - 1u);
+		if (i == 1)
+			bus_esc(b, C2)->eep.data[bytes - 3] ^= 1;
+		command(b, "on c2");
+		settle(b, 300);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, N - 1)->sii_bytes, bytes);
+		KUNIT_EXPECT_EQ(test, memcmp(bus_slave(b, N - 1)->sii,
+					     bus_esc(b, C2)->eep.data, bytes), 0);
+		frames = bus_table(b)->scan_frames;
+		bus_figure("device back, EEPROM %s: %llu frames",
+			   i == 1 ? "changed" : "as before", frames);
+		if (i == 1)
+			KUNIT_EXPECT_GT(test, frames, bytes / 8);
+		else
+			KUNIT_EXPECT_LT(test, frames, 50ull);
+	}
+}
+
 static void bounce(struct bus *b, int slave, int port, u64 t, u64 end, struct rnd_state *r)
 {
 	while (t < end) {
@@ -241,6 +272,7 @@ static void graph_random_events(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(graph_follows, step_gen_params),
 	KUNIT_CASE(graph_moved_slave_is_not_read_again),
+	KUNIT_CASE(graph_eeprom_of_a_known_device),
 	KUNIT_CASE(graph_found_beside_a_bouncing_contact),
 	KUNIT_CASE(graph_random_events),
 	{}
