@@ -10,6 +10,7 @@
 #include "base/once64.h"
 #include "bus/known.h"
 #include "bus/mailboxes.h"
+#include "bus/ports.h"
 #include "bus/slave.h"
 #include "bus/survey.h"
 #include "carry/xfer.h"
@@ -24,7 +25,8 @@
 #define SILENT_LOOKS	2	/* without an answer before a scan starts */
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define MOVING_NS	(100 * NSEC_PER_MSEC)	/* or so long: a contact may bounce all the time */
-#define PORTS_NS	(20 * NSEC_PER_MSEC)	/* between looks at all ports */
+#define PORTS_NS	(20 * NSEC_PER_MSEC)	/* between reads of all ports because of an event */
+#define UNASKED_NS	NSEC_PER_SEC	/* without an event, while ports are closed */
 #define TRIES		2	/* to poll all slaves */
 #define STAYS		5	/* looks that do not clear an event, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
@@ -58,7 +60,8 @@ struct watch {
 	u16 watched;		/* that are to wake it, until the next look */
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
-	u64 ports_ns;		/* last look at all ports */
+	u64 ports_ns;		/* last read of all ports */
+	bool door;		/* a closed port has a link */
 	unsigned int dl_stays;	/* looks in a row that did not clear the event of a port */
 	u64 event;		/* number of the next one for the kernel log */
 	struct ec_quiet quiet;	/* looks of the timer */
@@ -358,7 +361,7 @@ static void ride(struct watch *w)
 	w->riding = true;
 }
 
-/* Are there slaves that the monitor polls now? */
+/* Has the bus slaves that the monitor polls now? */
 static bool looks_after_list(const struct watch *w)
 {
 	return w->scanned || w->held || (w->count && w->m->bus.n_slaves);
@@ -370,18 +373,20 @@ static bool looks_after_list(const struct watch *w)
  */
 static void note_ports(struct watch *w)
 {
-	u64 now = ktime_get_ns();
+	u64 now = ktime_get_ns(), due = 0;
+	bool event = w->irq & EC_ECAT_EVENT_DL;
 
-	if (!(w->irq & EC_ECAT_EVENT_DL)) {
+	if (!event)
 		w->dl_stays = 0;
+	if (event && w->dl_stays < STAYS)
+		due = PORTS_NS;
+	else if (READ_ONCE(w->m->bus.guarded))
+		due = UNASKED_NS;
+	if (!due || !w->scanned || w->held || now - w->ports_ns < due)
 		return;
-	}
-	if (!w->scanned || w->held || w->dl_stays >= STAYS ||
-	    now - w->ports_ns < PORTS_NS)
-		return;
-	w->dl_stays++;
+	w->dl_stays += event;
 	w->ports_ns = now;
-	if (ec_scan_worth(&w->m->bus))
+	if (ec_scan_worth(&w->m->bus, event))
 		scan_next(w);
 }
 
@@ -472,6 +477,24 @@ static void monitor_try_again(struct watch *w)
 			scan_next(w);
 		else
 			ec_slave_retry(due[i], EC_PROBE_MAX_MS);
+	}
+}
+
+/* Slaves that were let in are found at once. */
+static void look_at_ports(struct watch *w)
+{
+	enum ec_ports_result result = EC_PORTS_QUIET;
+	int count;
+
+	if (w->link_up && w->count)
+		result = ec_ports_work(&w->m->bus);
+	w->door = result != EC_PORTS_QUIET;
+	if (result != EC_PORTS_FOUND)
+		return;
+	count = ec_scan_count(&w->m->bus);
+	if (count > 0 && believable(w, count)) {
+		w->count = count;
+		scan_next(w);
 	}
 }
 
@@ -598,7 +621,7 @@ static void stand_still(struct ec_master *m)
 static void quiet_sleep(struct watch *w)
 {
 	struct ec_quiet *q = &w->quiet;
-	bool quiet = w->riding && w->well && !w->woken;
+	bool quiet = w->riding && w->well && !w->woken && !w->door;
 	unsigned int ms = w->same < STABLE_LOOKS ? BOUNCE_MS : PERIOD_MS;
 
 	if (quiet) {
@@ -640,6 +663,7 @@ static int monitor(void *data)
 			if (!idle)
 				monitor_try_again(&w);
 			maybe_scan(&w);
+			look_at_ports(&w);
 			if (!idle)
 				read_pdos(&w);
 		} else {
@@ -664,6 +688,7 @@ static int monitor(void *data)
 	if (w.riding)
 		ec_rider_end(&m->rider);
 	ec_quiet_exit(&w.quiet);
+	ec_ports_open_all(&m->bus);
 	return 0;
 }
 

@@ -75,6 +75,8 @@ struct ec_bus {
 	bool looked;
 	/** @down: the computer reboots: no slave is brought beyond PREOP any more */
 	bool down;
+	/** @guarded: process data run: ports behind which nothing is known are closed */
+	bool guarded;
 	/** @scan_lock: no scan begins while an application reserves the master */
 	spinlock_t scan_lock;
 	/**

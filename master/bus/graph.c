@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The bus is a graph: slaves joined at their ports. Ring order and registers say where a slave hangs
- * that is new there; who hangs where it did is not asked again.
+ * The bus is a graph: slaves joined at their ports. Ring order and registers say where a new slave
+ * hangs; the neighbors of a slave whose place and ports are unchanged stay.
  */
 #include "../link/links.h"
 #include "graph.h"
@@ -36,7 +36,7 @@ u8 ec_graph_open_ports(u16 dl_status)
  * @s: slave
  * @port: port
  *
- * By its DL status as it was read last.
+ * By the DL status read last.
  *
  * Context: Any.
  * Return: whether they do.
@@ -171,6 +171,49 @@ static struct ec_slave *first_of(struct ec_slave *x)
 	return x;
 }
 
+/* the one of a branch that comes last in the ring */
+static const struct ec_slave *last_of(const struct ec_slave *x)
+{
+	unsigned int step = EC_MAX_PORT;
+
+	while (--step > unit_step(x)) {
+		const struct ec_slave *next = x->at[port_at(x, step)];
+
+		if (next) {
+			x = next;
+			step = EC_MAX_PORT;
+		}
+	}
+	return x;
+}
+
+/**
+ * ec_graph_place() - the ring position of the first slave that would be behind a port
+ * @s: slave of the list
+ * @port: its port, without a neighbor
+ *
+ * Context: Topo held, after ec_show_begin(), or the monitor thread.
+ * Return: ring position.
+ */
+unsigned int ec_graph_place(const struct ec_slave *s, unsigned int port)
+{
+	unsigned int unit = unit_step(s), step = 1, k;
+
+	while (port_at(s, step) != port)
+		step++;
+	if (step > unit) {
+		/* behind the slave, and what hangs at the ports in between */
+		while (--step > unit)
+			if (s->at[port_at(s, step)])
+				return last_of(s->at[port_at(s, step)])->position + 1;
+		return s->position + 1;
+	}
+	for (k = step + 1; k <= unit; k++)
+		if (s->at[port_at(s, k)])
+			return first_of(s->at[port_at(s, k)])->position;
+	return s->position;
+}
+
 static struct ec_slave *before(struct ec_slave **slaves, const struct ec_slave *s)
 {
 	return s->position ? slaves[s->position - 1] : NULL;
@@ -184,7 +227,7 @@ static void join(struct ec_slave *parent, u8 port, struct ec_slave *child)
 	child->hung = true;
 }
 
-/* The neighbor at @port is none any more; what hung at @s is to be hung anew. */
+/* The neighbor at @port is none any more; what hung at @s is to be hung again. */
 static void part(struct ec_slave *s, unsigned int port)
 {
 	struct ec_slave *next = s->at[port];
@@ -208,7 +251,7 @@ static void part(struct ec_slave *s, unsigned int port)
  * ec_graph_leave() - a slave has no neighbors any more
  * @s: slave
  *
- * Those that hung at it are hung anew by ec_graph_fit().
+ * Those that hung at it are hung again by ec_graph_fit().
  *
  * Context: Topo held for writing, or the slave is in no list.
  */
@@ -223,7 +266,7 @@ void ec_graph_leave(struct ec_slave *s)
 
 /**
  * ec_graph_note_ports() - take over DL status and receive times of a slave
- * @s: slave, with both as they were read
+ * @s: slave, with both as read
  *
  * A neighbor behind a port that is closed now is none any more; with another entry none is.
  *

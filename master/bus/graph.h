@@ -13,6 +13,7 @@ struct ec_slave *ec_graph_parent(const struct ec_slave *s);
 void ec_graph_leave(struct ec_slave *s);
 void ec_graph_note_ports(struct ec_slave *s);
 void ec_graph_make_room(struct ec_slave *last, struct ec_slave *next);
+unsigned int ec_graph_place(const struct ec_slave *s, unsigned int port);
 void ec_graph_fit(struct ec_slave **slaves, unsigned int n);
 unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n);
 

@@ -10,6 +10,13 @@ static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 	return &heads[hash_64(key, EC_KNOWN_BITS)];
 }
 
+static void known_forget(struct ec_known *k, struct ec_lost *l)
+{
+	if (l->slave)
+		ec_slave_unref(l->slave);
+	ec_known_drop(k, l);
+}
+
 /* Without memory the number is forgotten: the device gets another one when it reconnects. */
 static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int limit)
 {
@@ -33,7 +40,7 @@ static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int
 		hlist_add_head(&l->by_serial, head_of(k->by_serial, l->serial));
 	list_add_tail(&l->age, &k->oldest);
 	if (++k->n_lost > limit)
-		ec_known_drop(k, list_first_entry(&k->oldest, struct ec_lost, age));
+		known_forget(k, list_first_entry(&k->oldest, struct ec_lost, age));
 }
 
 static bool was_read(u32 vendor, u32 product)
@@ -95,6 +102,58 @@ static struct ec_lost *by_number(const struct ec_known *k, u64 number)
 	return NULL;
 }
 
+static bool is_present(const struct ec_bus *bus, u16 station)
+{
+	ec_for_each_slave(s, bus)
+		if (s->station == station)
+			return true;
+	return false;
+}
+
+static bool was_present(const struct ec_known *k, u16 station)
+{
+	struct ec_lost *l;
+
+	hlist_for_each_entry(l, head_of((struct hlist_head *)k->by_station, station), by_station)
+		if (l->station == station)
+			return true;
+	return false;
+}
+
+/**
+ * ec_known_was_there() - has a disconnected device a station address, and no other one has it?
+ * @bus: bus
+ * @station: station address
+ *
+ * Context: The monitor thread.
+ * Return: whether it is so.
+ */
+bool ec_known_was_there(const struct ec_bus *bus, u16 station)
+{
+	return was_present(&bus->known, station) && !is_present(bus, station);
+}
+
+/**
+ * ec_known_fresh_station() - a station address that no device has or had
+ * @bus: bus
+ *
+ * Context: The monitor thread.
+ * Return: the address, or 0 when all are in use.
+ */
+u16 ec_known_fresh_station(struct ec_bus *bus)
+{
+	u16 last = bus->next_station;
+	u32 i;
+
+	for (i = 0; i <= EC_MAX_SLAVES; i++)
+		if (++last && last != U16_MAX && !is_present(bus, last) &&
+		    !was_present(&bus->known, last)) {
+			bus->next_station = last;
+			return last;
+		}
+	return 0;
+}
+
 /**
  * ec_known_image() - look for a disconnected device with the same head of its EEPROM
  * @bus: bus
@@ -124,7 +183,7 @@ struct ec_slave *ec_known_image(const struct ec_bus *bus, u16 station, const u8 
 }
 
 /**
- * ec_known_forget_images() - all EEPROMs are to be read again, or their memory is needed
+ * ec_known_forget_images() - all EEPROMs are to be read again, or their memory is needed, or the bus ends
  * @bus: bus
  *
  * Context: The monitor thread. May sleep.
@@ -169,7 +228,7 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 		    by_station(k, s, true) ?: by_number(k, s->device);
 		if (l) {
 			s->device = l->number;
-			ec_known_drop(k, l);
+			known_forget(k, l);
 		} else {
 			s->device = ++k->last;
 		}

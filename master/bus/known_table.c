@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "known_table.h"
-#include "slave.h"
 
 /**
  * ec_known_init() - no device has a number
@@ -17,7 +16,7 @@ void ec_known_init(struct ec_known *k)
 /**
  * ec_known_drop() - forget a device that was disconnected
  * @k: numbers of a bus
- * @l: device
+ * @l: device, without its image
  *
  * Context: Process. The caller changes the table of slaves, or frees it.
  */
@@ -28,8 +27,6 @@ void ec_known_drop(struct ec_known *k, struct ec_lost *l)
 	hlist_del_init(&l->by_serial);
 	list_del(&l->age);
 	k->n_lost--;
-	if (l->slave)
-		ec_slave_unref(l->slave);
 	kfree(l);
 }
 

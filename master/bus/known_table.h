@@ -25,7 +25,7 @@ struct ec_slave;
  * @station: its station address
  * @position: its ring position
  * @label: what people call it
- * @slave: as it was, with its EEPROM image; NULL: none was read
+ * @slave: its object, with the EEPROM image; NULL: none was read
  */
 struct ec_lost {
 	u64 number;

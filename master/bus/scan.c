@@ -57,15 +57,16 @@ static bool is_other(struct ec_slave *s, u16 dl, u16 *reason)
 }
 
 /**
- * ec_scan_worth() - a slave has shown the event of its DL status: is a scan worth it?
+ * ec_scan_worth() - read all ports: is a scan worth it?
  * @bus: bus
+ * @event: a slave has shown the event of its DL status
  *
  * Reads the DL status of all, which clears the events.
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: false when it was the PDI of a slave.
+ * Return: whether ports have changed, or the event has no other reason.
  */
-bool ec_scan_worth(struct ec_bus *bus)
+bool ec_scan_worth(struct ec_bus *bus, bool event)
 {
 	struct ec_dg *dg = kvcalloc(bus->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
 	u8 (*dl)[2] = kvcalloc(bus->n_slaves + 1, sizeof(*dl), GFP_KERNEL);
@@ -88,7 +89,7 @@ bool ec_scan_worth(struct ec_bus *bus)
 	}
 	kvfree(dg);
 	kvfree(dl);
-	return other || !reason;
+	return other || (event && !reason);
 }
 
 /* which slaves a read is for */
@@ -102,7 +103,7 @@ static bool each_new(const struct scan *sc, unsigned int i)
 	return !ec_scan_is_known(sc, sc->slaves[i]) && !sc->regs[i].gone;
 }
 
-/* What has another neighbor tells where that is. */
+/* Receive times of slaves with another neighbor show where that is. */
 static bool each_changed(const struct scan *sc, unsigned int i)
 {
 	return each_new(sc, i) || sc->regs[i].ports;
@@ -196,6 +197,8 @@ static void take_regs(struct scan *sc)
 		memcpy(s->regs, r->info, sizeof(s->regs));
 		WRITE_ONCE(s->delay_only,
 			   r->delay_only && ec_slave_features(s) & EC_FEAT_DC);
+		s->ports.control = r->control[0];
+		s->ports.loops = r->control[1];
 		s->dl_status = get_unaligned_le16(r->dl);
 		s->al_status = get_unaligned_le16(r->al);
 		s->al_code = get_unaligned_le16(r->al + 4);
@@ -315,6 +318,7 @@ static int scan_look(struct scan *sc)
 		reset_bus(sc->bus);
 	ret = ec_scan_stations(sc) ?: ec_scan_stretches(sc) ?:
 	      read_each(sc, each_new, EC_REG_TYPE, offsetof(struct regs, info), EC_INFO_SIZE) ?:
+	      read_each(sc, each_new, EC_REG_DL_CONTROL, offsetof(struct regs, control), 2) ?:
 	      read_each(sc, each, EC_REG_DL_STATUS, offsetof(struct regs, dl), 2) ?:
 	      read_each(sc, each_new, EC_REG_AL_STATUS, offsetof(struct regs, al), 6);
 	if (ret)

@@ -20,7 +20,7 @@ struct ec_scan_result {
 
 int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *result);
 int ec_scan_count(struct ec_bus *bus);
-bool ec_scan_worth(struct ec_bus *bus);
+bool ec_scan_worth(struct ec_bus *bus, bool event);
 unsigned int ec_scan_limit(void);
 u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims);
 

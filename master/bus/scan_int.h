@@ -13,6 +13,7 @@ struct ec_dg;
 struct regs {
 	u8 info[EC_INFO_SIZE];
 	u8 station[4];		/* 0x0010 station, 0x0012 alias */
+	u8 control[2];		/* 0x0100, 0x0101 */
 	u8 dl[2];
 	u8 al[6];
 	u8 recv[16];
@@ -25,8 +26,8 @@ struct regs {
 };
 
 /*
- * A piece of the ring between two slaves that are where they were: what was there, what is there
- * now. Each is a step of its own: what contradicts one says nothing about another.
+ * A piece of the ring between two slaves that are where they were: the slaves of the list, and those
+ * found. Each is a step of its own: what contradicts one says nothing about another.
  */
 struct stretch {
 	unsigned int old;	/* the first slave of it in the list of the bus */

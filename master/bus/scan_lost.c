@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What was disconnected or connected: an event for each place, however many slaves are behind it. */
+/* Slaves that were disconnected or connected: one event for each place, for all behind it. */
 #include <linux/ktime.h>
 #include "../link/links.h"
 #include "graph.h"
+#include "ports.h"
 #include "scan_int.h"
 #include "scan_lost.h"
 
@@ -23,7 +24,7 @@ static u32 position_of(const struct ec_slave *s)
  */
 void ec_lost_note_place(struct ec_slave *s)
 {
-	const struct ec_slave *u = ec_graph_parent(s);
+	struct ec_slave *u = ec_graph_parent(s);
 
 	lockdep_assert_held_write(&s->bus->topo);
 	s->seen_ns = s->bus->complete_ns;
@@ -37,6 +38,8 @@ void ec_lost_note_place(struct ec_slave *s)
 				 u->position, ec_slave_label(u));
 		return;
 	}
+	if (u)
+		ec_ports_note_loss(u, s->parent_port, true);
 	s->lost_at = (struct ec_break){
 		.station = u ? u->station : 0, .position = position_of(u), .port = s->parent_port,
 	};
@@ -53,7 +56,7 @@ static bool same_break(const struct ec_slave *a, const struct ec_slave *b)
 	return a->lost_at.station == b->lost_at.station && a->lost_at.port == b->lost_at.port;
 }
 
-/* One that could not be read was not there for anybody. */
+/* No application could use a slave that was not read. */
 static bool counts(const struct ec_slave *s)
 {
 	return READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;

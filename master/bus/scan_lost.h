@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What was disconnected or connected, told by place. */
+/* Events of slaves that were disconnected or connected, by place. */
 #ifndef EC_SCAN_LOST_H
 #define EC_SCAN_LOST_H
 

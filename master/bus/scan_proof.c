@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * A scan takes many frames. What it has found in a stretch of the ring is valid only if that was the
- * same all the time: else it may be a list of slaves that never existed, in which one is missing
- * that never left.
+ * A scan takes many frames. What it has found in a stretch of the ring is valid only if that was
+ * the same all the time: else it may be a list of slaves that never existed, in which one is
+ * missing that never left.
  */
 #include <linux/slab.h>
 #include "../link/links.h"
@@ -39,8 +39,8 @@ static bool answers_as(const struct proof *p, unsigned int i, u16 station)
 }
 
 /*
- * Where the slaves of a stretch are by now: others may have come or gone before it. The slave before
- * it has kept its address; without one, or when it is silent, nothing has moved.
+ * Where the slaves of a stretch are by now: others may have come or gone before it. The slave
+ * before it has kept its address; without one, or when it is silent, nothing has moved.
  */
 static int moved_by(const struct proof *p, const struct stretch *t)
 {

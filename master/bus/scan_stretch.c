@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * What a scan has found differs from the list of the bus in some places. Between two slaves that are
- * where they were, each such place is a stretch of its own.
+ * What a scan has found differs from the list of the bus in some places. Between two slaves that
+ * are where they were, each such place is a stretch of its own.
  */
 #include <linux/slab.h>
 #include "scan_int.h"

@@ -13,6 +13,7 @@
 #include "names.h"
 #include "pdo.h"
 #include "pending.h"
+#include "ports_state.h"
 #include "../wire/al.h"
 #include "../wire/regs.h"
 #include "../wire/sii.h"
@@ -69,6 +70,7 @@ struct ec_break {
  * @regs: registers 0x0000-0x0009
  * @dl_status: register 0x0110
  * @dl_seen: the same, read later than @dl_status because of an event; the monitor's
+ * @ports: loop control; the monitor's
  * @alias: effective alias
  * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
  * @recv: receive times at the ports
@@ -163,6 +165,7 @@ struct ec_slave {
 	u8 regs[EC_INFO_SIZE];
 	u16 dl_status;
 	u16 dl_seen;
+	struct ec_ports ports;
 	u16 alias;
 	u16 alias_first;
 	u32 recv[EC_MAX_PORT];

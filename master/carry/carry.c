@@ -2,6 +2,7 @@
 #include <linux/ktime.h>
 #include <linux/sched.h>
 #include "carry.h"
+#include "post_int.h"
 
 #define URGENT_MORE	2	/* frames of the monitor beside those that have a place */
 
@@ -79,7 +80,7 @@ void ec_carry_changed(struct ec_links *l)
  */
 bool ec_carry_has_place(const struct ec_carry *c, u8 class)
 {
-	unsigned int more = class == EC_POST_URGENT ? URGENT_MORE : 0;
+	unsigned int more = ec_post_first(class) ? URGENT_MORE : 0;
 	unsigned long left;
 
 	for (left = c->links->sides; left; left &= left - 1) {

@@ -16,6 +16,7 @@
  * @repeat: may be sent again when its frame is lost (reads without side
  *	effect, writes that may be executed twice)
  * @keep: the reply leaves @data unchanged; only such datagrams in flight may share @data
+ * @last: of ec_xfer_train(): the next datagram is in another frame
  * @adp: low half of the address
  * @ado: high half of the address
  * @len: data bytes
@@ -33,6 +34,7 @@ struct ec_dg {
 	u8 cmd;
 	bool repeat : 1;
 	bool keep : 1;
+	bool last : 1;
 	u16 adp;
 	u16 ado;
 	u16 len;

@@ -10,7 +10,7 @@
 static bool next_class(struct ec_carry *c, enum ec_post_class *class)
 {
 	static const enum ec_post_class order[] = {
-		EC_POST_URGENT, EC_POST_NORMAL, EC_POST_CLOCK,
+		EC_POST_TRAIN, EC_POST_URGENT, EC_POST_NORMAL, EC_POST_CLOCK,
 	};
 	unsigned long flags;
 	unsigned int i;
@@ -49,7 +49,7 @@ static bool send_ready(struct ec_carry *c, bool hold)
 	while (ret != -EBUSY && next_class(c, &class)) {
 		const struct ec_flight_room room = {
 			.len = EC_FRAME_HDR + EC_FRAME_BODY_MAX,
-			.dgrams = class == EC_POST_CLOCK ? 0 : l->max_datagrams,
+			.dgrams = ec_post_alone(class) ? 0 : l->max_datagrams,
 		};
 
 		if (is_busy(c, class, hold)) {

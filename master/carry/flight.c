@@ -200,7 +200,7 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 		   const struct ec_flight_room *room, u64 sent_ns)
 {
 	struct ec_links *l = c->links;
-	struct ec_slot *slot = ec_slot_get(&l->slots, class == EC_POST_URGENT, sent_ns);
+	struct ec_slot *slot = ec_slot_get(&l->slots, ec_post_first(class), sent_ns);
 	struct ec_flight *f;
 	struct ec_post *first;
 	struct ec_tx tx;

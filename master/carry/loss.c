@@ -183,8 +183,8 @@ static void look_at_list(struct ec_carry *c, struct list_head *list, const struc
 
 		if (!err && stuck)
 			err = -EAGAIN;
-		/* only the first post is stuck */
-		stuck = false;
+		/* only the first post is stuck, or a train */
+		stuck &= post->class == EC_POST_TRAIN;
 		if (err)
 			ec_post_refuse(c, post, err, ended);
 	}

@@ -33,6 +33,7 @@ enum ec_post_class {
 	EC_POST_NORMAL,
 	EC_POST_URGENT,		/* of the monitor: before posts of other callers */
 	EC_POST_CLOCK,		/* sets clocks: they are many, others do not wait behind them */
+	EC_POST_TRAIN,		/* each in a frame of its own, in one send, before all others */
 	EC_POST_CLASSES
 };
 
@@ -66,6 +67,8 @@ struct ec_post {
 	u16 n;
 	/** @class: enum ec_post_class, which the user sets */
 	u8 class;
+	/** @train: of class EC_POST_TRAIN: posts that leave together, this one and those after it */
+	u8 train;
 	/** @sides: mask of the links on which it is sent, which the user sets; 0: all */
 	u8 sides;
 

@@ -87,6 +87,25 @@ static bool fits(const struct ec_carry *c, u32 used_ns, u32 frame_ns)
 	       2ull * (c->share.wire_ns + frame_ns) <= ec_access_slack_ns(c->links);
 }
 
+/* Posts of the train that is complete, and the wire time of its frames; 0: there is none. */
+static unsigned int next_train(struct ec_carry *c, u32 *wire_ns)
+{
+	unsigned int n = 0, train = 0;
+	const struct ec_post *post;
+	unsigned long flags;
+
+	*wire_ns = 0;
+	raw_spin_lock_irqsave(&c->lock, flags);
+	list_for_each_entry(post, &c->ready[EC_POST_TRAIN], list) {
+		train = n ? train : post->train;
+		*wire_ns += ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + post->len);
+		if (++n == train)
+			break;
+	}
+	raw_spin_unlock_irqrestore(&c->lock, flags);
+	return n == train ? n : 0;
+}
+
 /* Limits of a frame that posts share; a clock post is sent alone. */
 static struct ec_flight_room find_room(const struct ec_carry *c, enum ec_post_class class,
 				       u32 used_ns)
@@ -99,7 +118,7 @@ static struct ec_flight_room find_room(const struct ec_carry *c, enum ec_post_cl
 
 	return (struct ec_flight_room){
 		.len = min_t(u32, bytes, EC_FRAME_HDR + EC_FRAME_BODY_MAX),
-		.dgrams = class == EC_POST_CLOCK ? 0 : c->links->max_datagrams,
+		.dgrams = ec_post_alone(class) ? 0 : c->links->max_datagrams,
 	};
 }
 
@@ -144,6 +163,35 @@ static void note_stuck(struct ec_carry *c, enum ec_post_class class)
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 }
 
+/*
+ * The frames of a train have no limit in number, but fit into the free wire time together. Returns
+ * that of those sent.
+ */
+static u32 send_train(struct ec_carry *c, u32 used_ns)
+{
+	const struct ec_flight_room alone = { .len = 0 };
+	struct ec_links *l = c->links;
+	u32 need_ns, sent_ns = 0;
+	unsigned int n = next_train(c, &need_ns);
+
+	if (!n)
+		return 0;
+	if (n > ec_links_burst(l) || !fits(c, used_ns, need_ns)) {
+		note_stuck(c, EC_POST_TRAIN);
+		return 0;
+	}
+	for (; n; n--) {
+		int ret = ec_flight_send(c, EC_POST_TRAIN, &alone,
+					 ec_read64(&l->access.last_send_ns) + used_ns + sent_ns);
+
+		if (ret <= 0)
+			break;
+		share_count(c, EC_POST_TRAIN, ret);
+		sent_ns += ret;
+	}
+	return sent_ns;
+}
+
 /**
  * ec_share_send_left() - send posts that wait and fit before the next cycle; see
  *	ecrt_master_set_late_cycles() for posts that do not fit
@@ -158,6 +206,8 @@ void ec_share_send_left(struct ec_carry *c, u32 wire_ns)
 	unsigned int n, len, burst = ec_links_burst(l);
 	enum ec_post_class class;
 
+	if (unlikely(!list_empty(&c->ready[EC_POST_TRAIN])))
+		wire_ns += send_train(c, wire_ns);
 	/* the next cycle needs transmit buffers as well */
 	for (n = 0; n < burst && ec_carry_has_left(c) && next_post(c, &class, &len); n++) {
 		struct ec_flight_room room;

@@ -47,11 +47,15 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 		room = clamp_t(u16, ec_share_clock_bytes(l), EC_DGRAM_OVERHEAD + b->dg[first].len,
 			       room);
 	}
+	if (b->class == EC_POST_TRAIN)
+		room = EC_FRAME_BODY_MAX;
 	room = min_t(u16, room, EC_FRAME_BODY_MAX);
 	for (i = first; i < b->n && i - first < most && b->dg[i].err == -EAGAIN; i++) {
 		len += EC_DGRAM_OVERHEAD + b->dg[i].len;
 		if (len > room)
 			break;
+		if (b->class == EC_POST_TRAIN && b->dg[i].last)
+			return i + 1 - first;
 	}
 	return i - first;
 }
@@ -78,6 +82,8 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 	}
 	if (!h->n)
 		return first;
+	for (i = 0; b->class == EC_POST_TRAIN && i < h->n; i++)
+		h->post[i].train = h->n - i;
 	h->wait.pending = h->n;
 	init_completion(&h->wait.done);
 	for (i = 0; i < h->n; i++)
@@ -199,12 +205,15 @@ static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum e
 	b.most = n;
 	b.half[0].post = few;
 	if (n > FEW) {
-		b.most = DIV_ROUND_UP(min(n, window), 2);
+		/* a train is one half */
+		if (class != EC_POST_TRAIN)
+			b.most = DIV_ROUND_UP(min(n, window), 2);
 		more = kmalloc_array(2 * b.most, sizeof(*more), GFP_KERNEL);
 		if (!more)
 			return -ENOMEM;
 		b.half[0].post = more;
-		b.half[1].post = more + b.most;
+		if (class != EC_POST_TRAIN)
+			b.half[1].post = more + b.most;
 	}
 	for (try = 0; try < TRIES && has_to_go_again(&b); try++)
 		exchange(&b);
@@ -281,6 +290,28 @@ int ec_xfer_urgent(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n)
 {
 	return transfer(l, dg, n, EC_POST_CLOCK);
+}
+
+/**
+ * ec_xfer_train() - exchange datagrams in frames that leave together
+ * @l: links
+ * @dg: datagrams; results are in them; @last ends a frame
+ * @n: how many, in at most 16 frames
+ *
+ * Beside a cycle all frames are in one send, behind the process data, unless the device is full
+ * after some of them: then the others are the first ones of the next send. A cycle in whose free
+ * wire time they do not fit sends none of them. No frame is repeated.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer(); -ETIMEDOUT also when they do not fit.
+ */
+int ec_xfer_train(struct ec_links *l, struct ec_dg *dg, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		dg[i].repeat = false;
+	return transfer(l, dg, n, EC_POST_TRAIN);
 }
 
 /**

@@ -11,6 +11,7 @@ int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_all(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_urgent(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n);
+int ec_xfer_train(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_one(struct ec_links *l, u8 cmd, u16 adp, u16 ado, void *data, u16 len);
 int ec_xfer_fprd(struct ec_links *l, u16 station, u16 ado, void *data, u16 len);
 int ec_xfer_fpwr(struct ec_links *l, u16 station, u16 ado, const void *data, u16 len);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Begin and end of the cyclic exchange of a session. */
 #include <linux/slab.h>
+#include "../bus/ports.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
 #include "../cycle/cycle_stats.h"
@@ -150,6 +151,7 @@ int ec_session_activate(struct ec_session *s)
 	smp_store_release(&s->wanted.active, true);
 	activate_counts(s);
 	ec_bus_unhold(ss->bus);
+	ec_ports_guard(ss->bus, true);
 	activate_cycle(s);
 	activate_slaves(s);
 	ec_requests_kick(s);
@@ -184,6 +186,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_cycle_stats_end(&s->cycle);
 	s->wanted.active = false;
+	ec_ports_guard(ss->bus, false);
 	s->timeout_log.open = false;
 	ec_requests_end(s);
 	ec_session_clear(s);

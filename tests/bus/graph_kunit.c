@@ -69,7 +69,8 @@ static const struct step {
 	{ "two slaves added at an end", { "plug a2.1 x1.0" } },
 	{ "one added at each of two ends", { "plug b3.1 x1.0", "plug c2.1 x2.0" } },
 	{ "one inserted into a line", { "unplug b1.1", "plug b1.1 x2.0", "plug x2.1 b2.0" } },
-	{ "one inserted behind a branch", { "unplug hub.2", "plug hub.2 x2.0", "plug x2.1 mid.0" } },
+	{ "one inserted before a branch",
+	  { "unplug hub.2", "plug hub.2 x2.0", "plug x2.1 mid.0" } },
 	{ "one taken out of a line", { "unplug b2.0", "plug b1.1 b3.0" } },
 	{ "a branch moved to another port", { "plug a2.1 c1.0" } },
 	{ "a branch moved upstream", { "plug hub.1 c1.0", "plug c2.1 a1.0" } },
@@ -121,7 +122,7 @@ static void graph_moved_slave_is_not_read_again(struct kunit *test)
 }
 
 /* What is known of a device that comes back is not read again, unless its EEPROM is another one. */
-static void graph_eeprom_of_a_known_device(struct kunit *test)
+static void graph_eeprom_of_known_device(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, N);
 	size_t bytes = bus_slave(b, N - 1)->sii_bytes;
@@ -167,7 +168,7 @@ static void bounce(struct bus *b, int slave, int port, u64 t, u64 end, struct rn
 }
 
 /* A contact that never comes to rest does not keep slaves from being found elsewhere. */
-static void graph_found_beside_a_bouncing_contact(struct kunit *test)
+static void graph_found_beside_bouncing_contact(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, N);
 	struct rnd_state r;
@@ -272,8 +273,8 @@ static void graph_random_events(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(graph_follows, step_gen_params),
 	KUNIT_CASE(graph_moved_slave_is_not_read_again),
-	KUNIT_CASE(graph_eeprom_of_a_known_device),
-	KUNIT_CASE(graph_found_beside_a_bouncing_contact),
+	KUNIT_CASE(graph_eeprom_of_known_device),
+	KUNIT_CASE(graph_found_beside_bouncing_contact),
 	KUNIT_CASE(graph_random_events),
 	{}
 };

@@ -134,13 +134,13 @@ static u32 failed(struct bus *b)
 	return n;
 }
 
-/* wait for a scan that has begun to read EEPROMs */
+/* wait for a scan of all slaves that has begun to read EEPROMs */
 static void scan_begins(struct bus *b, struct cyc *c)
 {
 	u32 i;
 
 	for (i = 0; i < 10000; i++) {
-		if (bus_scan_busy(b))
+		if (bus_scan_busy(b) && bus_table(b)->scan_slaves == MANY)
 			break;
 		if (c)
 			cyc_run(c, 1);

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
+#include <linux/module.h>
+#include <linux/slab.h>
+#include "../link/links.h"
+#include "../carry/xfer.h"
+#include "graph.h"
+#include "ports.h"
+#include "slave.h"
+#include "trial.h"
+
+#define STABLE_NS	(100 * NSEC_PER_MSEC)	/* of link without loss, then a port is tried */
+#define WAIT_MIN_MS	1000	/* between trials at a port where no slave replies; doubles */
+#define WAIT_MAX_MS	60000
+#define LOSSES		3	/* of a port within LOSS_NS, then it stays closed for longer */
+#define LOSS_NS		(10 * (u64)NSEC_PER_SEC)
+#define LOSS_WAIT_MAX_S	60
+
+static bool guard = true;
+module_param_named(guard_ports, guard, bool, 0444);
+MODULE_PARM_DESC(guard_ports,
+		 "While process data run, close ports behind which no slave is known (Y)");
+
+/**
+ * ec_ports_guard() - process data begin or end
+ * @bus: bus
+ * @on: ports behind which nothing is known are closed from now on; else all open by themselves
+ *
+ * The monitor writes the registers.
+ *
+ * Context: Process.
+ */
+void ec_ports_guard(struct ec_bus *bus, bool on)
+{
+	WRITE_ONCE(bus->guarded, on && guard);
+	if (bus->ops && bus->ops->wake)
+		bus->ops->wake(bus);
+}
+
+/* A ring ends at a port without a slave. */
+static bool is_guarded(const struct ec_bus *bus)
+{
+	return READ_ONCE(bus->guarded) && !READ_ONCE(bus->down) && ec_links_n(bus->links) == 1;
+}
+
+static u16 dl_of(const struct ec_slave *s)
+{
+	return s->dl_seen ?: s->dl_status;
+}
+
+static bool has_port(const struct ec_slave *s, unsigned int port)
+{
+	return ec_slave_port_type(s, port) >= 2;
+}
+
+/* The value for a port of an ordinary slave while process data run. */
+static u8 wanted_loop(const struct ec_slave *s, unsigned int port)
+{
+	if (!port || port == s->upstream || !has_port(s, port))
+		return EC_LOOP_AUTO;
+	if (s->at[port])
+		return EC_LOOP_AUTO_CLOSE;
+	/* frames leave there although no slave is known: closing it could cut some off */
+	if (ec_graph_open_ports(dl_of(s)) & BIT(port))
+		return EC_LOOP_AUTO;
+	return EC_LOOP_CLOSED;
+}
+
+static u8 wanted_loops(const struct ec_slave *s)
+{
+	unsigned int p;
+	u8 loops = 0;
+
+	if (!is_guarded(s->bus) || s->ports.fixed)
+		return 0;
+	for (p = 0; p < EC_MAX_PORT; p++)
+		loops |= wanted_loop(s, p) << 2 * p;
+	return loops;
+}
+
+/* A write opens a port that has closed itself: not before its loss has been worked through. */
+static bool may_write(const struct ec_slave *s)
+{
+	unsigned int p;
+
+	if (READ_ONCE(s->silent) || READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		return false;
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (s->at[p] && p != s->upstream && !(ec_graph_open_ports(dl_of(s)) & BIT(p)))
+			return false;
+	return true;
+}
+
+static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, const u8 *is)
+{
+	if (dg[0].err || dg[0].wkc != 1 || dg[1].err || dg[1].wkc != 1)
+		return;
+	s->ports.control = is[0];
+	s->ports.loops = is[1];
+	if (is[1] == wrote || !wrote)
+		return;
+	s->ports.fixed = true;
+	ec_slave_warn(s, "register 0x0101 keeps 0x%02x, not 0x%02x: slaves connected here during operation get process data at once\n",
+		      is[1], wrote);
+}
+
+/* Write loop control where it is not what it has to be. */
+static void write_loops(struct ec_bus *bus)
+{
+	unsigned int n = 0, k = 0;
+	struct ec_dg *dg;
+	u8 (*v)[3];
+
+	ec_for_each_slave(s, bus)
+		n += wanted_loops(s) != s->ports.loops && may_write(s);
+	if (!n)
+		return;
+	dg = kvcalloc(2 * n, sizeof(*dg), GFP_KERNEL);
+	v = kvcalloc(n, sizeof(*v), GFP_KERNEL);
+	if (!dg || !v)
+		goto out;
+	ec_for_each_slave(s, bus) {
+		v[k][2] = wanted_loops(s);
+		if (v[k][2] == s->ports.loops || !may_write(s))
+			continue;
+		dg[2 * k] = EC_FPWR(s->station, EC_REG_DL_LOOPS, 1, &v[k][2]);
+		dg[2 * k + 1] = EC_FPRD(s->station, EC_REG_DL_CONTROL, 2, v[k]);
+		if (++k == n)
+			break;
+	}
+	ec_xfer(bus->links, dg, 2 * k);
+	k = 0;
+	ec_for_each_slave(s, bus) {
+		if (k == n || dg[2 * k].adp != s->station)
+			continue;
+		note_written(s, &dg[2 * k], v[k][2], v[k]);
+		k++;
+	}
+out:
+	kvfree(dg);
+	kvfree(v);
+}
+
+static bool is_door(const struct ec_slave *s, unsigned int port)
+{
+	u16 dl = dl_of(s);
+
+	return port && port != s->upstream && !s->at[port] && has_port(s, port) &&
+	       dl & EC_DLS_LINK(port) && dl & EC_DLS_LOOP(port) &&
+	       (s->ports.loops >> 2 * port & 3) == EC_LOOP_CLOSED;
+}
+
+static bool has_door(const struct ec_slave *s)
+{
+	unsigned int p;
+
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (is_door(s, p))
+			return true;
+	return false;
+}
+
+/* Has the link of a door been there without loss? Its counters show losses in between. */
+static bool is_stable(struct ec_slave *s, unsigned int port, u8 lost, u64 now)
+{
+	struct ec_door *d = &s->ports.door[port];
+
+	if (d->link_ns && lost != s->ports.lost[port]) {
+		ec_ports_note_loss(s, port, false);
+		d->link_ns = 0;
+	}
+	s->ports.lost[port] = lost;
+	d->link_ns = d->link_ns ?: now;
+	return now >= d->next_ns &&
+	       now - d->link_ns >= max(STABLE_NS, s->ports.loss[port].wait_s * (u64)NSEC_PER_SEC);
+}
+
+/* The port is in use, or has no link any more. */
+static void forget_door(struct ec_slave *s, unsigned int port)
+{
+	struct ec_door *d = &s->ports.door[port];
+
+	if (d->link_ns && !s->at[port])
+		ec_ports_note_loss(s, port, false);
+	*d = (struct ec_door){ 0 };
+}
+
+static void note_nobody(struct ec_slave *s, unsigned int port)
+{
+	struct ec_door *d = &s->ports.door[port];
+
+	d->wait_ms = clamp_t(u32, 2 * d->wait_ms, WAIT_MIN_MS, WAIT_MAX_MS);
+	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
+	if (d->told)
+		return;
+	d->told = true;
+	ec_slave_warn(s, "port %u has a link, but no slave replies behind it; it stays closed: connect port 0 (IN) of a slave there\n",
+		      port);
+}
+
+static bool try_door(struct ec_slave *s, unsigned int port)
+{
+	int ret = ec_trial(s, port);
+
+	if (ret > 0) {
+		s->ports.door[port] = (struct ec_door){ 0 };
+		ec_slave_info(s, "port %u: %d new slave(s), made harmless before process data reached them\n",
+			      port, ret);
+		return true;
+	}
+	if (ret == -ENXIO)
+		note_nobody(s, port);
+	else
+		s->ports.door[port].link_ns = 0;	/* the contact broke */
+	ec_slave_dbg(s, 1, "trial at port %u: %d\n", port, ret);
+	return false;
+}
+
+static bool work_at_doors_of(struct ec_slave *s)
+{
+	u64 now = ktime_get_ns();
+	u8 lost[EC_MAX_PORT];
+	unsigned int p;
+
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (s->ports.doors && !is_door(s, p))
+			forget_door(s, p);
+	s->ports.doors = has_door(s);
+	if (!s->ports.doors || ec_xfer_fprd(s->bus->links, s->station, EC_REG_ERR_LOST(0), lost,
+					    sizeof(lost)))
+		return false;
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (is_door(s, p) && is_stable(s, p, lost[p], now) && try_door(s, p))
+			return true;
+	return false;
+}
+
+/* Check the doors; at most one is opened in a pass, as positions change by it. */
+static enum ec_ports_result work_at_doors(struct ec_bus *bus)
+{
+	enum ec_ports_result result = EC_PORTS_QUIET;
+
+	ec_for_each_slave(s, bus) {
+		if (work_at_doors_of(s))
+			return EC_PORTS_FOUND;
+		if (s->ports.doors)
+			result = EC_PORTS_DOOR;
+	}
+	return result;
+}
+
+/**
+ * ec_ports_work() - bring loop control up to date, and look behind ports that have got a link
+ * @bus: bus
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: whether slaves were let in, or another look is due soon.
+ */
+enum ec_ports_result ec_ports_work(struct ec_bus *bus)
+{
+	write_loops(bus);
+	return is_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
+}
+
+/**
+ * ec_ports_note_loss() - a port has lost its link
+ * @s: slave
+ * @port: its port
+ * @open: it was open
+ *
+ * A contact that is lost again and again is left alone for a while.
+ *
+ * Context: The monitor thread.
+ */
+void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open)
+{
+	struct ec_loss *l = &s->ports.loss[port];
+	u64 now = ktime_get_ns();
+
+	if (!is_guarded(s->bus))
+		return;
+	if (now - l->since_ns > LOSS_NS + l->wait_s * (u64)NSEC_PER_SEC)
+		*l = (struct ec_loss){ .since_ns = now };
+	l->n = min(l->n + 1, LOSSES);
+	if (l->n < LOSSES)
+		return;
+	l->since_ns = now;
+	if (l->wait_s) {
+		l->wait_s = open ? min(2 * l->wait_s, LOSS_WAIT_MAX_S) : l->wait_s;
+		return;
+	}
+	l->wait_s = 1;
+	ec_slave_warn(s, "port %u has lost its link %u times in %llu s; opened after 1 s of link, then after up to %u s: check cable and plugs\n",
+		      port, LOSSES, LOSS_NS / NSEC_PER_SEC, LOSS_WAIT_MAX_S);
+}
+
+/**
+ * ec_ports_open_all() - let all ports open by themselves: the next master finds the whole bus
+ * @bus: bus
+ *
+ * Context: The monitor thread, at its end.
+ */
+void ec_ports_open_all(struct ec_bus *bus)
+{
+	WRITE_ONCE(bus->guarded, false);
+	write_loops(bus);
+}

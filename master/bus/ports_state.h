@@ -1,0 +1,55 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the monitor knows of the ports of a slave; see ports.h. */
+#ifndef EC_PORTS_STATE_H
+#define EC_PORTS_STATE_H
+
+#include <linux/types.h>
+#include "../wire/regs.h"
+
+/**
+ * struct ec_door - a port behind which nothing is known
+ * @link_ns: since when it has had a link without loss (ktime), 0: it has none
+ * @next_ns: no trial before (ktime)
+ * @wait_ms: distance of the last two trials in which no slave replied
+ * @told: that no slave replies is in the log
+ */
+struct ec_door {
+	u64 link_ns;
+	u64 next_ns;
+	u32 wait_ms;
+	bool told;
+};
+
+/**
+ * struct ec_loss - losses of the link of a port
+ * @since_ns: the first one that counts, once @wait_s is set the last one (ktime)
+ * @n: since then
+ * @wait_s: the port is opened after so much time of link without loss; 0: soon
+ */
+struct ec_loss {
+	u64 since_ns;
+	u8 n;
+	u8 wait_s;
+};
+
+/**
+ * struct ec_ports - loop control of a slave; the monitor's
+ * @control: register 0x0100, low byte, as read
+ * @loops: register 0x0101 as read or written last
+ * @fixed: the slave does not keep what is written there
+ * @doors: a port is a door
+ * @lost: its counters of lost links, 0x0310, as read last
+ * @door: by port
+ * @loss: by port
+ */
+struct ec_ports {
+	u8 control;
+	u8 loops;
+	bool fixed;
+	bool doors;
+	u8 lost[EC_MAX_PORT];
+	struct ec_door door[EC_MAX_PORT];
+	struct ec_loss loss[EC_MAX_PORT];
+};
+
+#endif

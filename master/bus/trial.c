@@ -1,0 +1,382 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * What is behind a closed port is made harmless before process data reach it. The port is open for
+ * the frames of a trial only, which leave in one send: open, work, close twice, as the reply of the
+ * first may be lost. The setting is temporary, so that the port closes itself if the master fails.
+ *
+ * By position nothing is written but a station address that no slave has: when the contact breaks
+ * between two frames, the next slave of the ring is at that position, and gets its own back.
+ */
+#include <linux/slab.h>
+#include "../link/links.h"
+#include "../carry/xfer.h"
+#include "graph.h"
+#include "known.h"
+#include "ports.h"
+#include "slave.h"
+#include "trial.h"
+
+#define TEMPORARY	BIT(1)	/* of register 0x0100: for a second */
+#define WORK		8	/* datagrams of the work, at most */
+#define TRIES		3
+#define DEPTH		64	/* slaves one behind the other at which a branch begins */
+
+/* a slave at whose port something is tried */
+struct host {
+	u16 station;
+	u8 control;
+	u8 loops;	/* with all ports closed behind which nothing is known */
+};
+
+/* a slave that was found there */
+struct guest {
+	u16 station;
+	u16 kept;	/* address that it had, 0: none that it may have again */
+	u8 entry;
+	u8 info[EC_INFO_SIZE];
+	u8 station_was[4];
+	u8 dl[2];
+	u8 control[2];
+	u8 times[16];
+};
+
+struct trial {
+	struct ec_bus *bus;
+	struct host host;
+	u8 port;
+	u16 position;	/* of the first slave behind the port */
+	u16 next;	/* station address of the slave after it, 0: there is none */
+	struct ec_dg work[WORK];
+	unsigned int n;
+};
+
+static u8 with_loop(u8 loops, unsigned int port, u8 value)
+{
+	return (loops & ~(3 << 2 * port)) | value << 2 * port;
+}
+
+static struct ec_dg *add(struct trial *t, struct ec_dg dg)
+{
+	t->work[t->n] = dg;
+	return &t->work[t->n++];
+}
+
+/* Close the port for good: the frames for that may be lost. */
+static void close_surely(const struct trial *t, const u8 *closed)
+{
+	unsigned int i;
+
+	for (i = 0; i < TRIES; i++)
+		if (!ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, closed, 2))
+			return;
+}
+
+/*
+ * A slave of the bus has the address of the guest, although the port is closed: the contact broke
+ * before the address was written.
+ */
+static void give_back(const struct trial *t, u16 station)
+{
+	u8 own[2];
+
+	put_unaligned_le16(t->next, own);
+	ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2);
+	ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
+		t->host.station, t->port, t->next);
+}
+
+/*
+ * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0; -EAGAIN:
+ * the contact broke, or frames were lost; -EIO: the port is not closed.
+ */
+static int run(struct trial *t, u16 station)
+{
+	const u8 opened[2] = { t->host.control | TEMPORARY,
+			       with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
+	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
+	struct ec_dg dg[WORK + 6], *close, *check;
+	u8 dl[2] = { 0 }, ghost[2], next[2];
+	unsigned int n = 0, i;
+
+	dg[n++] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, opened);
+	dg[0].last = true;
+	for (i = 0; i < t->n; i++)
+		dg[n++] = t->work[i];
+	dg[n - 1].last = true;
+	close = &dg[n];
+	for (i = 0; i < 2; i++) {
+		dg[n] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, closed);
+		dg[n++].last = true;
+	}
+	check = &dg[n];
+	dg[n++] = EC_FPRD(t->host.station, EC_REG_DL_STATUS, 2, dl);
+	dg[n++] = EC_FPRD(station, EC_REG_STATION, 2, ghost);
+	dg[n++] = EC_FPRD(t->next ?: t->host.station, EC_REG_STATION, 2, next);
+	ec_xfer_train(t->bus->links, dg, n);
+	for (i = 0; i < t->n; i++)
+		t->work[i] = dg[1 + i];
+	if (check[0].err || check[0].wkc != 1 ||
+	    !(get_unaligned_le16(dl) & EC_DLS_LOOP(t->port))) {
+		close_surely(t, closed);
+		check[1].repeat = true;
+		ec_xfer(t->bus->links, &check[1], 2);
+	}
+	if (!check[1].err && check[1].wkc == 1 && t->next &&
+	    !check[2].err && !check[2].wkc) {
+		give_back(t, station);
+		return -EAGAIN;
+	}
+	for (i = 0; i < t->n; i++)
+		if (t->work[i].err)
+			return -EAGAIN;
+	return close[0].wkc || close[1].wkc ? 0 : -EAGAIN;
+}
+
+/* The first slave behind the port gets an address; 0, -ENXIO: none replies, or as run(). */
+static int greet(struct trial *t, struct guest *g)
+{
+	u8 fresh[2];
+	const struct ec_dg *was;
+	int ret;
+
+	put_unaligned_le16(g->station, fresh);
+	t->n = 0;
+	was = add(t, EC_DG(EC_CMD_APRD, (u16)-t->position, EC_REG_STATION, 4, g->station_was));
+	add(t, EC_DG(EC_CMD_APWR, (u16)-t->position, EC_REG_STATION, 2, fresh));
+	ret = run(t, g->station);
+	if (was->err || !was->wkc)
+		return -ENXIO;
+	return ret;
+}
+
+static int ask(struct trial *t, struct guest *g)
+{
+	static const u8 latch[4];
+	unsigned int i;
+	int ret;
+
+	t->n = 0;
+	add(t, EC_FPWR(g->station, EC_REG_DC_RECV(0), 4, latch))->last = true;
+	add(t, EC_FPRD(g->station, EC_REG_TYPE, EC_INFO_SIZE, g->info));
+	add(t, EC_FPRD(g->station, EC_REG_DL_CONTROL, 2, g->control));
+	add(t, EC_FPRD(g->station, EC_REG_DL_STATUS, 2, g->dl));
+	add(t, EC_FPRD(g->station, EC_REG_DC_RECV(0), 16, g->times));
+	ret = run(t, g->station);
+	/* not every controller has receive times */
+	for (i = 1; i < 4 && !ret; i++)
+		ret = t->work[i].wkc == 1 ? 0 : -EAGAIN;
+	if (!ret && t->work[4].wkc != 1)
+		memset(g->times, 0, sizeof(g->times));
+	return ret;
+}
+
+/* The port by which frames come in: the open one that latched first. */
+static u8 entry_of(const struct guest *g)
+{
+	u8 open = ec_graph_open_ports(get_unaligned_le16(g->dl));
+	int best = -1;
+	unsigned int p;
+
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (open & BIT(p) &&
+		    (best < 0 || (s32)(get_unaligned_le32(g->times + 4 * p) -
+				       get_unaligned_le32(g->times + 4 * best)) < 0))
+			best = p;
+	return max(best, 0);
+}
+
+/* All ports of the guest but port 0 and its entry closed */
+static u8 guest_loops(const struct guest *g)
+{
+	u8 loops = 0;
+	unsigned int p;
+
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (p != g->entry)
+			loops = with_loop(loops, p, EC_LOOP_CLOSED);
+	return loops;
+}
+
+/* Nothing of an earlier configuration is left that process data or a cycle could reach. */
+static int tame(struct trial *t, struct guest *g)
+{
+	static const u8 zero[EC_MAX_FMMU * EC_FMMU_PAGE];
+	static const u8 init[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
+	u16 fmmus = min_t(u16, g->info[EC_REG_FMMUS], EC_MAX_FMMU) * EC_FMMU_PAGE;
+	u8 loops[1] = { guest_loops(g) }, is[1] = { 0 }, kept[2];
+	u8 left[EC_MAX_FMMU * EC_FMMU_PAGE] = { 0 };
+	unsigned int last;
+	int ret;
+
+	put_unaligned_le16(g->kept ?: g->station, kept);
+	t->n = 0;
+	add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops));
+	if (fmmus)
+		add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
+	add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
+	add(t, EC_FPWR(g->station, EC_REG_AL_CONTROL, 2, init));
+	add(t, EC_FPRD(g->station, EC_REG_DL_LOOPS, 1, is));
+	if (fmmus)
+		add(t, EC_FPRD(g->station, EC_REG_FMMU(0), fmmus, left));
+	last = t->n;
+	add(t, EC_FPWR(g->station, EC_REG_STATION, 2, kept));
+	ret = run(t, g->station);
+	if (t->work[last].wkc == 1)
+		g->station = get_unaligned_le16(kept);
+	if (ret)
+		return ret;
+	if (t->work[last - 1].wkc != 1 || memchr_inv(left, 0, sizeof(left)))
+		return -EAGAIN;
+	/* one that does not keep its loops lets in what is behind it */
+	return is[0] == loops[0] ? 0 : -EOPNOTSUPP;
+}
+
+static int try_often(struct trial *t, struct guest *g, int (*step)(struct trial *, struct guest *))
+{
+	int ret = -EAGAIN;
+	unsigned int i;
+
+	for (i = 0; i < TRIES && ret == -EAGAIN; i++)
+		ret = step(t, g);
+	return ret;
+}
+
+/* May a slave that comes have its address again? Only if it was one of this bus, and is no other. */
+static u16 kept_station(struct ec_bus *bus, const struct guest *g)
+{
+	u16 station = get_unaligned_le16(g->station_was);
+
+	return station && ec_known_was_there(bus, station) ? station : 0;
+}
+
+static u16 next_station(struct ec_bus *bus, u16 position)
+{
+	return position < bus->n_slaves ? bus->slaves[position]->station : 0;
+}
+
+/* Let the guest in: its port is open from now on. */
+static int let_in(struct trial *t)
+{
+	const u8 open[2] = { t->host.control & ~TEMPORARY,
+			     with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
+
+	t->host.loops = open[1];
+	return ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, open, 2);
+}
+
+/* One slave; -EALREADY: it is let in, but the slaves behind it are not. */
+static int trial_one(struct trial *t, struct guest *g)
+{
+	int ret;
+
+	*g = (struct guest){ .station = ec_known_fresh_station(t->bus) };
+	if (!g->station)
+		return -ENOSPC;
+	ret = try_often(t, g, greet) ?: try_often(t, g, ask);
+	if (ret)
+		return ret;
+	g->kept = kept_station(t->bus, g);
+	g->entry = entry_of(g);
+	ret = try_often(t, g, tame);
+	if (ret && ret != -EOPNOTSUPP)
+		return ret;
+	if (let_in(t))
+		return -EAGAIN;
+	return ret || g->entry ? -EALREADY : 0;
+}
+
+/* The port of the guest that the ring passes next, behind which there is a link; 0: none. */
+static unsigned int next_link(const struct guest *g, unsigned int after)
+{
+	static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
+	unsigned int k = 0;
+
+	while (order[k] != after)
+		k++;
+	for (k++; k < EC_MAX_PORT; k++)
+		if (get_unaligned_le16(g->dl) & EC_DLS_LINK(order[k]))
+			return order[k];
+	return 0;
+}
+
+/* a guest whose other ports are being tried */
+struct level {
+	struct host host;
+	struct guest guest;
+	unsigned int port;
+};
+
+/* What is behind the guests, slave by slave in the order of the ring. Returns their number. */
+static int trial_branch(struct trial *t, struct guest *first)
+{
+	struct level *stack = kvcalloc(DEPTH, sizeof(*stack), GFP_KERNEL);
+	struct guest g;
+	int depth = 0, n = 1;
+
+	if (!stack)
+		return n;
+	stack[0].guest = *first;
+	for (;;) {
+		struct level *l = &stack[depth];
+		int ret;
+
+		if (!l->port)
+			l->host = (struct host){ l->guest.station, l->guest.control[0],
+						 guest_loops(&l->guest) };
+		l->port = next_link(&l->guest, l->port);
+		if (!l->port || READ_ONCE(t->bus->base->stopping)) {
+			if (!depth--)
+				break;
+			continue;
+		}
+		t->host = l->host;
+		t->port = l->port;
+		t->position++;
+		ret = trial_one(t, &g);
+		l->host.loops = t->host.loops;
+		if (ret && ret != -EALREADY) {
+			t->position--;
+			continue;
+		}
+		n++;
+		if (ret)
+			continue;
+		/* a line of slaves needs no depth */
+		if (next_link(&l->guest, l->port) && ++depth == DEPTH)
+			break;
+		stack[depth] = (struct level){ .guest = g };
+	}
+	kvfree(stack);
+	return n;
+}
+
+/**
+ * ec_trial() - make the slaves behind a closed port harmless, and let them in
+ * @s: slave
+ * @port: its port, closed, with a link
+ *
+ * Afterwards the port is open, if a slave was found; those behind it are found by the next scan:
+ * in INIT, without FMMUs and SYNC signals.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -EAGAIN: the contact
+ * broke, or frames were lost; -ENOSPC: no free station address.
+ */
+int ec_trial(struct ec_slave *s, unsigned int port)
+{
+	struct trial t = {
+		.bus = s->bus,
+		.host = { s->station, s->ports.control, s->ports.loops },
+		.port = port,
+		.position = ec_graph_place(s, port),
+	};
+	struct guest g;
+	int ret;
+
+	t.next = next_station(s->bus, t.position);
+	ret = trial_one(&t, &g);
+	s->ports.loops = t.host.loops;
+	if (ret)
+		return ret == -EALREADY ? 1 : ret;
+	return trial_branch(&t, &g);
+}

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* While process data run, a slave gets none before it has been looked at. */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+
+static const char text[] =
+	"segment seed=7 response=100us transition=1ms\n"
+	"slave hub EK1100\n"
+	"slave a1 drive in=8 out=8\nslave a2 drive in=8 out=8\n"
+	"branch hub 2\nslave b1 drive in=8 out=8\nslave b2 drive in=8 out=8\n"
+	"branch none\nslave x1 drive in=8 out=8\nslave x2 drive in=8 out=8\n";
+
+enum { HUB, A1, A2, B1, B2, X1, X2 };
+
+#define N	5
+
+static void command(struct bus *b, const char *text)
+{
+	struct ec_sim_error err;
+	struct ec_sim_fault f;
+
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_sim_command(b->sim, &ec_sim_kernel_ops, text, strlen(text),
+						    &f, &err), 0, "%s: %s", text, err.text);
+	f.at_ns = ktime_get_ns();
+	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
+}
+
+static u8 *mem(struct bus *b, u32 index)
+{
+	return bus_esc(b, index)->mem;
+}
+
+static u8 loops(struct bus *b, u32 index)
+{
+	return mem(b, index)[EC_REG_DL_LOOPS];
+}
+
+/**
+ * struct watch - process data of the drives at port 1 of the hub
+ * @incomplete: cycles in which their domain was not complete
+ * @foreign: cycles in which a slave that does not belong to them took part
+ */
+struct watch {
+	u32 incomplete;
+	u32 foreign;
+};
+
+static void look(struct cyc *c)
+{
+	struct watch *w = c->ctx;
+	const struct ec_status_domain *d = cyc_state(c, 0);
+
+	w->incomplete += d->wc_state != 2;
+	w->foreign += d->working_counter > 6;
+}
+
+static struct cyc *in_op(struct kunit *test, struct watch *w)
+{
+	struct bus *b = bus_up(test, text, N);
+	struct cyc *c;
+
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	cyc_map_all(c, A1, 2, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
+	cyc_run(c, 100);
+	c->ctx = w;
+	c->each = look;
+	return c;
+}
+
+/* Ports with link and neighbor close themselves, free ones are closed, and all open at the end. */
+static void ports_closed_while_active(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	struct bus *b = c->b;
+	u32 i;
+
+	KUNIT_EXPECT_EQ(test, loops(b, HUB), 0x14);
+	KUNIT_EXPECT_EQ(test, loops(b, A1), 0x04);
+	KUNIT_EXPECT_EQ(test, loops(b, A2), 0x0c);
+	KUNIT_EXPECT_EQ(test, loops(b, B2), 0x0c);
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+	c->each = NULL;
+	cyc_release(c);
+	msleep(100);
+	for (i = 0; i < N; i++)
+		KUNIT_EXPECT_EQ_MSG(test, loops(b, i), 0, "slave %u", i);
+}
+
+/* FMMUs that another master has left, over the outputs and inputs of running drives */
+static void old_fmmus(struct bus *b, u32 index, u32 of)
+{
+	memcpy(mem(b, index) + EC_REG_FMMU(0), mem(b, of) + EC_REG_FMMU(0), 3 * EC_FMMU_PAGE);
+	memcpy(mem(b, index) + EC_REG_SM(0), mem(b, of) + EC_REG_SM(0), 4 * EC_SM_PAGE);
+	mem(b, index)[EC_REG_AL_STATUS] = EC_AL_OP;
+	ec_sim_rehash(bus_esc(b, index));
+}
+
+/* New slaves, even with the FMMUs of running ones, are let in, and no cycle is disturbed. */
+static void ports_new_slaves(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	struct bus *b = c->b;
+	u32 i;
+
+	command(b, "old x1 station=5 state=OP");
+	cyc_run(c, 5);
+	old_fmmus(b, X1, A1);
+	command(b, "plug a2.1 x1.0");
+	cyc_run(c, 50);
+	KUNIT_EXPECT_EQ_MSG(test, bus_n_slaves(b), N, "the link is not stable yet");
+	for (i = 0; i < 2000 && !(bus_n_slaves(b) == N + 2 &&
+				  READ_ONCE(bus_slave(b, 3)->al_status) == EC_AL_PREOP &&
+				  READ_ONCE(bus_slave(b, 4)->al_status) == EC_AL_PREOP); i++)
+		cyc_run(c, 1);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), N + 2u);
+	bus_figure("two new slaves in PREOP %u cycles after their link came", i + 50);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 3)->station,
+			get_unaligned_le16(mem(b, X1) + EC_REG_STATION));
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 4)->station,
+			get_unaligned_le16(mem(b, X2) + EC_REG_STATION));
+	KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, 2), 1), 3);
+	KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, 3), 1), 4);
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+	KUNIT_EXPECT_EQ(test, w.foreign, 0u);
+	KUNIT_EXPECT_EQ(test, loops(b, A2), 0x04);
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, loops(b, X2), 0x0c);
+}
+
+/* A branch that was away comes back: it has kept its addresses, and its drives return to OP. */
+static void ports_branch_returns(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	struct bus *b = c->b;
+	u16 station[2] = { bus_slave(b, 3)->station, bus_slave(b, 4)->station };
+	u32 i;
+
+	command(b, "unplug hub.2");
+	cyc_run(c, 300);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 3u);
+	KUNIT_EXPECT_EQ(test, loops(b, HUB), 0x34);
+	command(b, "plug hub.2 b1.0");
+	for (i = 0; i < 2000 && bus_n_slaves(b) < N; i++)
+		cyc_run(c, 1);
+	bus_figure("a branch of two back in the list %u cycles after its link came", i);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
+	cyc_run(c, 200);
+	for (i = 0; i < 2; i++)
+		KUNIT_EXPECT_EQ(test, bus_slave(b, 3 + i)->station, station[i]);
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+}
+
+/* The same at the drives of the application: back in OP. */
+static void ports_drives_return(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	struct bus *b = c->b;
+	u64 t0;
+
+	command(b, "unplug hub.1");
+	cyc_run(c, 300);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 3u);
+	command(b, "plug hub.1 a1.0");
+	t0 = ktime_get_ns();
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	bus_figure("two drives back in OP %llu ms after their link came",
+		   div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC));
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2u);
+}
+
+/* A PC or a cable between two free ports: said once, and no frame of the cycle is lost. */
+static void ports_nobody(struct kunit *test)
+{
+	static const char * const commands[] = {
+		"host b2.1 every=1ms", "plug a2.1 b2.1",
+	};
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(commands); i++) {
+		u32 lines = bus_log_lines("no slave replies behind it");
+
+		command(c->b, commands[i]);
+		cyc_run(c, 12000);
+		KUNIT_EXPECT_EQ_MSG(test, bus_log_lines("no slave replies behind it") - lines,
+				    i ? 2u : 1u, "%s", commands[i]);
+		KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
+		KUNIT_EXPECT_EQ(test, loops(c->b, B2), 0x0c);
+		command(c->b, "unplug b2.1");
+		cyc_run(c, 100);
+	}
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+}
+
+/* A contact that bounces costs the frames of the first bounce, and is left alone then. */
+static void ports_flapping(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i, lines = bus_log_lines("has lost its link 3 times");
+
+	for (i = 0; i < 8; i++) {
+		command(c->b, "cut hub.2");
+		cyc_run(c, 40);
+		command(c->b, "heal hub.2");
+		cyc_run(c, 400);
+	}
+	KUNIT_EXPECT_EQ(test, bus_log_lines("has lost its link 3 times") - lines, 1u);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), 3u);
+	cyc_run(c, 5000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
+	KUNIT_EXPECT_LE(test, w.incomplete, 3u);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(ports_closed_while_active),
+	KUNIT_CASE(ports_new_slaves),
+	KUNIT_CASE(ports_branch_returns),
+	KUNIT_CASE(ports_drives_return),
+	KUNIT_CASE(ports_nobody),
+	KUNIT_CASE(ports_flapping),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_ports", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
