@@ -3,6 +3,7 @@
 #include <linux/ktime.h>
 #include <linux/moduleparam.h>
 #include "../base/limits.h"
+#include "al.h"
 #include "slave.h"
 #include "../carry/xfer.h"
 
@@ -22,6 +23,12 @@ module_param_cb(state_timeout_ms, &timeout_ops, &ec_al_timeout, 0644);
 MODULE_PARM_DESC(state_timeout_ms,
 		 "Time limit of each AL state transition, up to 600000 ms; 0: 200 ms to 10 s by transition (0)");
 
+static void note_status(struct ec_slave *slave, const u8 *al)
+{
+	ec_slave_set_al(slave, get_unaligned_le16(al), get_unaligned_le16(al + 4), true);
+	WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
+}
+
 /**
  * ec_al_read() - read AL status and code, registers 0x0130-0x0135
  * @slave: slave
@@ -34,10 +41,8 @@ int ec_al_read(struct ec_slave *slave)
 	u8 b[6];
 	int ret = ec_xfer_fprd(slave->bus->links, slave->station, EC_REG_AL_STATUS, b, sizeof(b));
 
-	if (!ret) {
-		ec_slave_set_al(slave, get_unaligned_le16(b), get_unaligned_le16(b + 4), true);
-		WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
-	}
+	if (!ret)
+		note_status(slave, b);
 	return ret;
 }
 
@@ -61,29 +66,98 @@ static int request(struct ec_slave *slave, u16 control, u64 until_ns)
 	}
 }
 
-/* Poll (no slave reports by itself) until @mask of the status has @value or an error appears. */
-static int poll(struct ec_slave *slave, u16 mask, u16 value, bool errors, u64 until_ns)
+/* What the reply @dg means: -EINPROGRESS: poll again. */
+static int al_take(struct ec_al_poll *p, const struct ec_dg *dg, const struct ec_al_goal *goal)
 {
-	unsigned int wait_us = 50;
-	int ret;
+	u16 status;
 
-	for (;;) {
-		ret = ec_al_read(slave);
-		if (ret && ret != -ETIMEDOUT)
-			return ret;
-		if (!ret) {
-			if ((READ_ONCE(slave->al_status) & mask) == value)
-				return 0;
-			if (errors && READ_ONCE(slave->al_status) & EC_AL_ERROR)
-				return -EPROTO;
-		}
-		if (ec_stop_worker(&slave->stop))
-			return -ECANCELED;
-		if (ktime_get_ns() > until_ns)
-			return -ETIME;
-		usleep_range(wait_us, wait_us + wait_us / 4);
-		wait_us = min(wait_us * 2, 2000u);
+	/* also without memory for the frames of many slaves */
+	if (dg->err == -ETIMEDOUT || dg->err == -EAGAIN)
+		return -EINPROGRESS;
+	if (dg->err || dg->wkc != 1)
+		return dg->err ?: -EIO;
+	note_status(p->slave, p->al);
+	status = READ_ONCE(p->slave->al_status);
+	if ((status & goal->mask) == goal->value)
+		return 0;
+	return goal->mask & EC_AL_STATE_MASK && status & EC_AL_ERROR ? -EPROTO : -EINPROGRESS;
+}
+
+/* One poll. Return: slaves that have no result after it. */
+static unsigned int al_look(struct ec_al_poll *polls, unsigned int n, struct ec_dg *dg,
+			    const struct ec_al_goal *goal)
+{
+	struct ec_links *links = polls[0].slave->bus->links;
+	unsigned int i, k = 0, left = 0;
+
+	for (i = 0; i < n; i++)
+		if (polls[i].ret == -EINPROGRESS)
+			dg[k++] = EC_FPRD(polls[i].slave->station, EC_REG_AL_STATUS,
+					  sizeof(polls[i].al), polls[i].al);
+	ec_xfer(links, dg, k);
+	for (i = 0, k = 0; i < n; i++) {
+		if (polls[i].ret != -EINPROGRESS)
+			continue;
+		polls[i].ret = al_take(&polls[i], &dg[k++], goal);
+		left += polls[i].ret == -EINPROGRESS;
 	}
+	return left;
+}
+
+/* Those that must not be polled any more. Return: slaves that have no result after it. */
+static unsigned int al_end(struct ec_al_poll *polls, unsigned int n, u64 until_ns)
+{
+	bool over = ktime_get_ns() > until_ns;
+	unsigned int i, left = 0;
+
+	for (i = 0; i < n; i++) {
+		if (polls[i].ret != -EINPROGRESS)
+			continue;
+		if (ec_stop_worker(&polls[i].slave->stop))
+			polls[i].ret = -ECANCELED;
+		else if (over)
+			polls[i].ret = -ETIME;
+		else
+			left++;
+	}
+	return left;
+}
+
+/**
+ * ec_al_poll() - poll slaves together until they show an AL status, or an error instead
+ * @polls: slaves, of one bus
+ * @n: entries in @polls, 1 at least
+ * @dg: memory for as many datagrams
+ * @goal: what they are polled for, and how long
+ *
+ * No slave reports by itself. A lost frame is no result.
+ *
+ * Context: Process. Waits for bus traffic, until the time limit. Results are in @polls: 0;
+ * -EPROTO when a slave shows an error instead of the state; -ETIME; -EIO when it did not answer;
+ * -ECANCELED; or as in struct ec_dg.
+ */
+void ec_al_poll(struct ec_al_poll *polls, unsigned int n, struct ec_dg *dg,
+		const struct ec_al_goal *goal)
+{
+	unsigned int i, us = goal->first_us;
+
+	for (i = 0; i < n; i++)
+		polls[i].ret = -EINPROGRESS;
+	do {
+		if (us)
+			usleep_range(us, us + us / 4);
+		us = us ? min(us * 2, 2000u) : 50;
+	} while (al_look(polls, n, dg, goal) && al_end(polls, n, goal->until_ns));
+}
+
+static int poll_one(struct ec_slave *slave, u16 mask, u16 value, u64 until_ns)
+{
+	const struct ec_al_goal goal = { .mask = mask, .value = value, .until_ns = until_ns };
+	struct ec_al_poll p = { .slave = slave };
+	struct ec_dg dg;
+
+	ec_al_poll(&p, 1, &dg, &goal);
+	return p.ret;
 }
 
 /**
@@ -101,7 +175,7 @@ int ec_al_ack(struct ec_slave *slave)
 
 	/* device emulation copies AL control, so the acknowledge would show as an error */
 	ret = request(slave, slave->emulation ? state : state | EC_AL_ERROR, until);
-	return ret ? ret : poll(slave, EC_AL_ERROR, 0, false, until);
+	return ret ? ret : poll_one(slave, EC_AL_ERROR, 0, until);
 }
 
 /* The request of a tool comes first, then what the application allows. */
@@ -141,7 +215,7 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 		     ec_al_state_name(from), timeout_ms);
 	ret = request(slave, state, until);
 	if (!ret)
-		ret = poll(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, true, until);
+		ret = poll_one(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, until);
 	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x",
 			    READ_ONCE(slave->al_status), READ_ONCE(slave->al_code));
 	if (!ret || ret == -EPROTO)

@@ -260,13 +260,14 @@ void ec_slave_list(struct ec_slave *slave)
 }
 
 /**
- * ec_slave_set_al() - the AL status was read; a change is an event
+ * ec_slave_set_al() - the AL status was read; a change is an event, once it is in the list
  * @slave: slave
  * @status: register 0x0130
  * @code: register 0x0134
  * @requested: a change is what its worker, or a caller, has requested
  *
- * Context: The slave's worker, or the monitor while that does not work.
+ * Context: The slave's worker, or the monitor while that does not work, and before the slave is
+ * in the list.
  */
 void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requested)
 {
@@ -282,6 +283,8 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
 	ec_slave_changed(slave);
+	if (!slave->listed)
+		return;
 	if (moved && requested)
 		ec_pending_al(slave, was, state);
 	else if (moved)

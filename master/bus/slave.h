@@ -279,12 +279,6 @@ void ec_slave_read_coe_pdos(struct ec_slave *s);
 int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
 void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
 
-/* al.c */
-extern unsigned int ec_al_timeout;	/* ms, 0: by transition: state_timeout_ms of the module */
-int ec_al_read(struct ec_slave *slave);
-int ec_al_ack(struct ec_slave *slave);
-int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms);
-
 /**
  * ec_slave_changed() - what ec_survey() or ec_config_status() reads of a slave was written
  * @slave: slave

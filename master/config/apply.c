@@ -6,6 +6,7 @@
 #include "../mailbox/mailbox.h"
 #include "../link/links.h"
 #include "../base/once64.h"
+#include "../bus/al.h"
 #include "../bus/mailboxes.h"
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"

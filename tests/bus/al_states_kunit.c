@@ -2,6 +2,7 @@
 /* AL states on request, refusals, errors, and who notices them when. */
 #include "bus.h"
 #include "master/base/limits.h"
+#include "master/bus/al.h"
 #include "master/boundary/ioctl.h"
 #include "master/wire/al.h"
 
