@@ -7,6 +7,7 @@
 #include "../link/links.h"
 #include "../base/once64.h"
 #include "../carry/xfer.h"
+#include "leave_init.h"
 #include "scan_int.h"
 
 static void bwr(struct ec_bus *bus, u16 ado, const void *data, u16 len)
@@ -269,7 +270,7 @@ static int read_new(struct scan *sc)
 				      "SII content invalid (%zu bytes); write a valid image",
 				      s->sii_bytes);
 	}
-	ec_scan_preop(sc->bus, fresh, n, sc->fresh);
+	ec_leave_init_all(sc->bus, fresh, n, sc->fresh);
 	plan_retries(sc, fresh, n);
 	kvfree(fresh);
 	return 0;

@@ -28,7 +28,4 @@ u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims);
 void ec_scan_sii(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 		 unsigned int count, bool all);
 
-/* scan_preop.c */
-void ec_scan_preop(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool clean);
-
 #endif

@@ -7,7 +7,7 @@
 #include "../link/links.h"
 #include "../base/once64.h"
 #include "../bus/al.h"
-#include "../bus/mailboxes.h"
+#include "../bus/leave_init.h"
 #include "../bus/slave.h"
 #include "../wire/fmmu.h"
 #include "../carry/xfer.h"
@@ -101,7 +101,9 @@ static void apply_waits_for(struct ec_slave *s, const char *what)
 	WRITE_ONCE(ec_setup_of(s)->waits_for, what);
 }
 
-static int set_state(struct ec_slave *s, u8 state)
+/* Bring it to @state by ec_al_set() or ec_leave_init(). */
+static int set_state_by(struct ec_slave *s, u8 state,
+			int (*set)(struct ec_slave *s, u8 state, u32 timeout_ms))
 {
 	int ret;
 
@@ -111,10 +113,14 @@ static int set_state(struct ec_slave *s, u8 state)
 	apply_waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
 			   state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" :
 						   "the slave to change its state");
-	ret = ec_al_set(s, state,
-			apply_limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
+	ret = set(s, state, apply_limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
 	apply_waits_for(s, NULL);
 	return ret;
+}
+
+static int set_state(struct ec_slave *s, u8 state)
+{
+	return set_state_by(s, state, ec_al_set);
 }
 
 /*
@@ -208,24 +214,6 @@ static int to_init(struct ec_slave *s)
 	return 0;
 }
 
-/* INIT to PREOP or BOOT: SyncManagers of the mailbox, EEPROM to the PDI, then the request. */
-static int apply_enter(struct ec_slave *s, u8 state)
-{
-	static const u8 pdi[1] = { EC_EEP_OWNER_PDI };
-	u8 page[2 * EC_SM_PAGE];
-	unsigned int len = ec_mbox_sms(&s->mbox, state == EC_AL_BOOT, page);
-	int ret = 0;
-
-	/* a SyncManager that is active keeps its control byte */
-	if (len && s->mbox.strict)
-		ret = activate_sm(s, 0, 0) ?: activate_sm(s, 1, 0);
-	if (len && !ret)
-		ret = write_reg(s, EC_REG_SM(0), page, len);
-	if (!ret)
-		ret = write_reg(s, EC_REG_ECAT_MASK, ec_mailboxes_mask(len), 2);
-	return ret ?: write_reg(s, EC_REG_EEP_OWNER, pdi, 1) ?: set_state(s, state);
-}
-
 /* An error that stays in spite of acknowledges: INIT ends it, as a slave obeys that always. */
 static int acknowledge(struct ec_slave *s)
 {
@@ -266,11 +254,11 @@ static int leave_init(struct ec_slave *s, u8 state)
 		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
 				     "BOOT not possible: no bootstrap mailbox in the SII");
 	s->ours = false;
-	ret = apply_enter(s, state);
+	ret = set_state_by(s, state, ec_leave_init);
 	/* any AL status code may be due to the event of SM1: try again without */
 	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
 		s->mbox.strict = true;
-		ret = set_state(s, EC_AL_INIT) ?: apply_enter(s, state);
+		ret = set_state(s, EC_AL_INIT) ?: set_state_by(s, state, ec_leave_init);
 	}
 	if (!ret)
 		has_left_init(s, state);
