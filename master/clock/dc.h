@@ -14,6 +14,7 @@ struct ec_base;
 struct ec_bus;
 struct ec_ioc_send;
 struct ec_links;
+struct ec_result;
 
 /* choice of the reference clock that is no station address */
 #define EC_DC_ANY	0	/* the first one that has a clock */
@@ -319,8 +320,8 @@ void ec_dc_sync_again(struct ec_slave *s);
 int ec_dc_sync_stop(struct ec_slave *s);
 void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c);
 void ec_dc_sync_compare_cycle(struct ec_slave *s, const struct ec_dc_sync *c);
-int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c);
-int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c);
+struct ec_result ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c);
+struct ec_result ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c);
 
 /* clocks of the bus that a slave is on */
 static inline struct ec_dc *ec_dc_of(const struct ec_slave *s)

@@ -3,7 +3,7 @@
 #include <linux/ktime.h>
 #include "../link/links.h"
 #include "dc.h"
-#include "../bus/slave.h"
+#include "../bus/result.h"
 #include "../wire/dc.h"
 #include "../carry/xfer.h"
 
@@ -265,10 +265,9 @@ void ec_dc_sync_compare_cycle(struct ec_slave *s, const struct ec_dc_sync *c)
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; -ERANGE when the cycle times are 0 or too long, -EOPNOTSUPP when the
- * start time had always passed (both noted as the slave's error); -ECANCELED;
- * or as ec_xfer_fpwr().
+ * start time had always passed (both reported); -ECANCELED; or as ec_xfer_all().
  */
-int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
+struct ec_result ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 {
 	struct ec_clock *clock = ec_clock_of(s);
 	u32 period = c->period[0] + c->period[1];
@@ -276,17 +275,15 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 	int ret = -EAGAIN;
 
 	lockdep_assert_held(&s->lock);
-	if (period < c->period[0] || !period) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SYNC),
-			      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
-			      c->period[0], c->period[1], c->assign);
-		return -ERANGE;
-	}
+	if (period < c->period[0] || !period)
+		return ec_result_fail(s, -ERANGE, EC_CAUSE(SYNC),
+				      "SYNC0 %u ns + SYNC1 %u ns with AssignActivate 0x%04x: the sum must be 1 to 4294967295 ns",
+				      c->period[0], c->period[1], c->assign);
 	for (try = 0; try < STARTS && (ret == -EAGAIN || ret == -ETIMEDOUT); try++) {
 		bool set = ec_clock_is_set(s);
 
 		if (dc_sync_canceled(s, EC_AL_SAFEOP))
-			return -ECANCELED;
+			return EC_RESULT(-ECANCELED);
 		clock->sync_due_ns = 0;
 		WRITE_ONCE(clock->sync_unsynchronized, !set);
 		/* the clock worker sees that, or it is seen below that the clock is set */
@@ -295,13 +292,11 @@ int ec_dc_sync_start(struct ec_slave *s, const struct ec_dc_sync *c)
 		if (!ret && !set && ec_clock_is_set(s))
 			ret = -EAGAIN;
 	}
-	if (ret == -EAGAIN) {
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SYNC),
-			      "SYNC0 start time had passed on arrival, %d attempts; configure fewer slaves at once or allow more delayed cycles",
-			      STARTS);
-		ret = -EOPNOTSUPP;
-	}
-	return ret;
+	if (ret == -EAGAIN)
+		return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(SYNC),
+				      "SYNC0 start time had passed on arrival, %d attempts; configure fewer slaves at once or allow more delayed cycles",
+				      STARTS);
+	return EC_RESULT(ret);
 }
 
 static int dc_sync_wait_until(struct ec_slave *s, u64 ns)
@@ -329,14 +324,14 @@ static u8 missing(const struct ec_dc_sync *c, u8 status)
  * missing. A controller without that register may return any value: only a warning.
  *
  * Context: Process. Waits for bus traffic, and for the start time.
- * Return: 0; -EOPNOTSUPP when they do not run (noted as the slave's error);
- * -ECANCELED; or as ec_dc_sync_start().
+ * Return: 0; -EOPNOTSUPP when they do not run (reported); -ECANCELED; or as ec_dc_sync_start().
  */
-int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
+struct ec_result ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 {
 	struct ec_clock *clock = ec_clock_of(s);
 	bool known = ec_slave_features(s) & EC_FEAT_DC_ENHANCED;
 	u8 status[1] = { 0 };
+	struct ec_result r;
 	unsigned int try;
 	int ret;
 
@@ -346,7 +341,7 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 		ret = ret ?: ec_xfer_fprd(s->bus->links, s->station, EC_REG_DC_ACT_STATUS, status,
 					  1);
 		if (ret && (ret != -EIO || known))
-			return ret;
+			return EC_RESULT(ret);
 		if (!missing(c, status[0]))
 			break;
 		if (!known) {
@@ -355,19 +350,17 @@ int ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c)
 				      status[0]);
 			break;
 		}
-		if (try == CHECKS) {
-			ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SYNC),
-				      "SYNC signals started but not running (0x0984 = 0x%02x); check AssignActivate 0x%04x against the ESI",
-				      status[0], c->assign);
-			return -EOPNOTSUPP;
-		}
-		ret = ec_dc_sync_start(s, c);
-		if (ret) {
+		if (try == CHECKS)
+			return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(SYNC),
+					      "SYNC signals started but not running (0x0984 = 0x%02x); check AssignActivate 0x%04x against the ESI",
+					      status[0], c->assign);
+		r = ec_dc_sync_start(s, c);
+		if (r.err) {
 			/* SYNC may be off now; the configuration starts it again */
 			WRITE_ONCE(s->reconfigure, true);
-			return ret;
+			return r;
 		}
 	}
 	clock->sync_due_ns = 0;
-	return 0;
+	return EC_RESULT(0);
 }

@@ -8,7 +8,7 @@
 #include "../base/once64.h"
 #include "../bus/al.h"
 #include "../bus/leave_init.h"
-#include "../bus/slave.h"
+#include "../bus/result.h"
 #include "../wire/fmmu.h"
 #include "../carry/xfer.h"
 #include "apply.h"
@@ -22,69 +22,86 @@ static int write_reg(struct ec_slave *s, u16 ado, const void *data, u16 len)
 	return ec_xfer_fpwr(s->bus->links, s->station, ado, data, len);
 }
 
-static int apply_failed(struct ec_slave *s, u8 state, int ret)
+/* No failure: the step is obsolete, or waits for a cycle. */
+static bool is_aborted(int err)
+{
+	return err == -ECANCELED || err == -EINTR || err == -EAGAIN;
+}
+
+/* Note why @state was not reached. */
+static void note_cause(struct ec_slave *s, u8 state, int err)
 {
 	const struct ec_setup *setup = ec_setup_of(s);
 	const char *refusal = setup->pdo_refusal;
 	u16 code = READ_ONCE(s->al_code);
 
-	/* another state is asked for meanwhile: this says nothing of the way there */
-	if (setup->heading != ec_slave_wanted(s))
-		return ret;
-	if (ret == -EPROTO && state == EC_AL_SAFEOP && refusal[0])
+	if (err == -EPROTO && state == EC_AL_SAFEOP && refusal[0])
 		/* the first cause, not only what follows from it */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, &setup->pdo_cause,
 			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", refusal,
 			      code, ec_al_code_text(code));
-	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (ret == -EPROTO || ret == -ETIME))
+	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (err == -EPROTO || err == -ETIME))
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(EEPROM, .state = state),
 			      "%.170s; then PREOP %s", s->sii_flaw,
-			      ret == -ETIME ? "not reached in time" : "refused");
-	else if (ret == -EPROTO)
+			      err == -ETIME ? "not reached in time" : "refused");
+	else if (err == -EPROTO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 			      EC_CAUSE(REFUSED, .state = state, .code = code),
 			      "%s refused: AL status code 0x%04x (%s)", ec_al_state_name(state),
 			      code, ec_al_code_text(code));
-	else if (ret == -ETIME)
+	else if (err == -ETIME)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SLOW, .state = state),
 			      "%s not reached in time, AL state %s", ec_al_state_name(state),
 			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
-	else if (ret == -ENOMEM)
+	else if (err == -ENOMEM)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(MEMORY, .state = state),
 			      "no memory before %s, the master tries again; free memory of this computer",
 			      ec_al_state_name(state));
-	else if (ret != -ECANCELED && ret != -ENOSPC && ret != -EOPNOTSUPP &&
-		 ret != -EOVERFLOW && ret != -ERANGE)	/* reported already */
+	else
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(FRAMES, .state = state),
 			      "communication failed before %s (%pe)", ec_al_state_name(state),
-			      ERR_PTR(ret));
+			      ERR_PTR(err));
+}
+
+/* The result of the way to @state: its failure is reported if that was not done yet. */
+static struct ec_result apply_report(struct ec_slave *s, u8 state, struct ec_result r)
+{
+	const struct ec_setup *setup = ec_setup_of(s);
+
+	if (!r.err || (!r.reported && is_aborted(r.err)))
+		return r;
+	/* another state is asked for meanwhile: this says nothing of the way there */
+	if (!r.reported && setup->heading == ec_slave_wanted(s)) {
+		note_cause(s, state, r.err);
+		r.reported = true;
+	}
 	/* ec_slave_request_anew() came in between, and has forgiven too early */
-	if (setup->heading != ec_slave_wanted(s))
+	if (r.reported && setup->heading != ec_slave_wanted(s))
 		ec_slave_forgive(s);
-	return ret;
+	return r;
 }
 
 /*
  * Frames were lost, the device hung, memory ran out, or the slave needs more time than usual:
  * worth another try. A refusal is not, unless the slave missed the outputs.
  */
-static bool apply_is_transient(const struct ec_slave *s, int ret)
+static bool apply_is_transient(const struct ec_slave *s, int err)
 {
 	u16 code = READ_ONCE(s->al_code);
 
-	if (ret == -EPROTO)
+	if (err == -EPROTO)
 		return code == EC_AL_CODE_NO_OUTPUTS || code == EC_AL_CODE_SM_WATCHDOG;
-	return ret == -EIO || ret == -ETIMEDOUT || ret == -ETIME || ret == -ENETDOWN ||
-	       ret == -EBUSY || ret == -ENOTRECOVERABLE || ret == -ENOMEM;
+	return err == -EIO || err == -ETIMEDOUT || err == -ETIME || err == -ENETDOWN ||
+	       err == -EBUSY || err == -ENOTRECOVERABLE || err == -ENOMEM;
 }
 
 /*
  * An attempt after a failure that was aborted, or found no cycle, has no result. The monitor
  * has removed the slave from its plan, so the worker must plan the next attempt.
  */
-static bool is_undecided(const struct ec_slave *s, int ret)
+static bool is_undecided(const struct ec_slave *s, int err)
 {
-	return s->retry_ms && (!ret || ret == -ECANCELED || ret == -EAGAIN);
+	return s->retry_ms && (!err || is_aborted(err));
 }
 
 /* What the application allows for a transition, ms; 0: the default. */
@@ -201,21 +218,20 @@ static void in_init(struct ec_slave *s)
 }
 
 /* Any state to INIT (ETG.1000.6 clause 6.4.1). */
-static int to_init(struct ec_slave *s)
+static struct ec_result to_init(struct ec_slave *s)
 {
 	int ret;
 
 	hold_mailbox(s);
 	op_only_off(s);
 	ret = set_state(s, EC_AL_INIT);
-	if (ret)
-		return apply_failed(s, EC_AL_INIT, ret);
-	in_init(s);
-	return 0;
+	if (!ret)
+		in_init(s);
+	return apply_report(s, EC_AL_INIT, EC_RESULT(ret));
 }
 
 /* An error that stays in spite of acknowledges: INIT ends it, as a slave obeys that always. */
-static int acknowledge(struct ec_slave *s)
+static struct ec_result acknowledge(struct ec_slave *s)
 {
 	u8 state = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
 	u16 code = READ_ONCE(s->al_code);
@@ -227,7 +243,7 @@ static int acknowledge(struct ec_slave *s)
 		ret = ec_al_ack(s);
 		apply_waits_for(s, NULL);
 		if (ret != -ETIME)
-			return ret ? apply_failed(s, state, ret) : 0;
+			return apply_report(s, state, EC_RESULT(ret));
 	}
 	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
 		      EC_CAUSE(AL_ERROR, .state = state, .code = code),
@@ -245,14 +261,14 @@ static void has_left_init(struct ec_slave *s, u8 state)
 }
 
 /* From INIT to PREOP or BOOT with the mailbox of that state. */
-static int leave_init(struct ec_slave *s, u8 state)
+static struct ec_result leave_init(struct ec_slave *s, u8 state)
 {
 	bool boot = state == EC_AL_BOOT;
 	int ret;
 
 	if (boot && !(s->info.boot.rx_size && s->info.boot.tx_size))
-		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
-				     "BOOT not possible: no bootstrap mailbox in the SII");
+		return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
+				      "BOOT not possible: no bootstrap mailbox in the SII");
 	s->ours = false;
 	ret = set_state_by(s, state, ec_leave_init);
 	/* any AL status code may be due to the event of SM1: try again without */
@@ -264,7 +280,7 @@ static int leave_init(struct ec_slave *s, u8 state)
 		has_left_init(s, state);
 	else if (!boot)
 		release_mailbox(s);
-	return ret ? apply_failed(s, state, ret) : 0;
+	return apply_report(s, state, EC_RESULT(ret));
 }
 
 /* Does it have a SyncManager whose PDOs the application has not configured? */
@@ -279,23 +295,23 @@ static bool uses_found_pdos(const struct ec_slave *s, const struct ec_config *c)
 }
 
 /* SYNC signals, as soon as the clocks of the whole segment are set */
-static int start_sync(struct ec_slave *s, const struct ec_config *c)
+static struct ec_result start_sync(struct ec_slave *s, const struct ec_config *c)
 {
 	int ret;
 
 	if (!c || !c->sync.assign)
-		return 0;
+		return EC_RESULT(0);
 	if (!ec_slave_has_clock(s)) {
 		ec_slave_warn(s, "no distributed clock; DC settings ignored\n");
 		ec_slave_event(s, EC_EVENT_NO_CLOCK);
-		return 0;
+		return EC_RESULT(0);
 	}
 	ec_dc_sync_compare(s, &c->sync);
 	apply_waits_for(s, "the clocks of the segment to be synchronized");
 	ret = ec_dc_wait(s);
 	apply_waits_for(s, NULL);
 	if (ret == -ECANCELED)
-		return ret;
+		return EC_RESULT(ret);
 	if (ret)
 		ec_slave_warn(s, "SYNC signals started, but the clock is not %s (%pe)\n",
 			      ec_clock_is_set(s) ? "inside the sync window yet" :
@@ -317,9 +333,9 @@ static int wait_flag(struct ec_slave *s, s32 ms)
 }
 
 /* PREOP to SAFEOP: startup commands, PDOs, registers, SYNC signals, then the request. */
-static int to_safeop(struct ec_slave *s, const struct ec_config *c)
+static struct ec_result to_safeop(struct ec_slave *s, const struct ec_config *c)
 {
-	int ret = 0;
+	struct ec_result r = { 0 };
 
 	s->clean = false;
 	ec_setup_of(s)->pdo_refusal[0] = '\0';
@@ -328,22 +344,23 @@ static int to_safeop(struct ec_slave *s, const struct ec_config *c)
 		ec_slave_read_coe_pdos(s);
 	if (c) {
 		apply_waits_for(s, "mailbox replies to its configuration");
-		ret = ec_startup_run(s, c, EC_TRANSITION_PS) ?: ec_apply_pdos(s, c);
+		r = ec_startup_run(s, c, EC_TRANSITION_PS);
+		if (!r.err)
+			r = ec_apply_pdos(s, c);
 		apply_waits_for(s, NULL);
-		if (ret)
-			return ret;
 	}
-	ret = ec_apply_regs(s, c);
-	if (!ret && c) {
+	if (!r.err)
+		r = ec_apply_regs(s, c);
+	if (!r.err && c) {
 		apply_waits_for(s, "the time in flag " EC_FLAG_WAIT_SAFEOP);
-		ret = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
+		r.err = wait_flag(s, ec_config_flag(c, EC_FLAG_WAIT_SAFEOP));
 		apply_waits_for(s, NULL);
 	}
-	if (!ret)
-		ret = start_sync(s, c);
-	if (!ret)
-		ret = set_state(s, EC_AL_SAFEOP);
-	return ret ? apply_failed(s, EC_AL_SAFEOP, ret) : 0;
+	if (!r.err)
+		r = start_sync(s, c);
+	if (!r.err)
+		r.err = set_state(s, EC_AL_SAFEOP);
+	return apply_report(s, EC_AL_SAFEOP, r);
 }
 
 /* Cycles after which all domains of a slave have been sent twice. */
@@ -387,29 +404,28 @@ static int wait_outputs(struct ec_slave *s)
 }
 
 /* SAFEOP to OP: outputs, startup commands, clocks, SyncManagers of OP, then the request. */
-static int to_op(struct ec_slave *s)
+static struct ec_result to_op(struct ec_slave *s)
 {
 	const struct ec_config *c = ec_setup_of(s)->active_config;
+	struct ec_result r;
 	int ret;
 
 	apply_waits_for(s, "two cycles of its domains");
-	ret = wait_outputs(s);
+	r = EC_RESULT(wait_outputs(s));
 	apply_waits_for(s, NULL);
-	if (!ret && c)
-		ret = ec_startup_run(s, c, EC_TRANSITION_SO);
-	if (ret)
-		return ret;
-	ret = c ? ec_dc_sync_check(s, &c->sync) : 0;
-	if (!ret)
-		ret = op_only_on(s);
+	if (!r.err && c)
+		r = ec_startup_run(s, c, EC_TRANSITION_SO);
+	if (!r.err && c)
+		r = ec_dc_sync_check(s, &c->sync);
+	if (r.err)
+		return apply_report(s, EC_AL_OP, r);
+	ret = op_only_on(s);
 	if (ret > 0)
 		ret = wait_outputs(s);
-	if (ret == -EAGAIN)
-		return ret;
 	ret = ret ?: set_state(s, EC_AL_OP);
 	if (ret == -EPROTO)
 		op_only_off(s);
-	return ret ? apply_failed(s, EC_AL_OP, ret) : 0;
+	return apply_report(s, EC_AL_OP, EC_RESULT(ret));
 }
 
 /*
@@ -423,7 +439,7 @@ static void back_in_preop(struct ec_slave *s)
 	s->clean = !ec_apply_clear_pdos(s) && !ret;
 }
 
-static int step_down(struct ec_slave *s, u8 want)
+static struct ec_result step_down(struct ec_slave *s, u8 want)
 {
 	int ret = op_only_off(s) ?: set_state(s, want);
 
@@ -437,15 +453,13 @@ static int step_down(struct ec_slave *s, u8 want)
 			      ec_al_code_text(READ_ONCE(s->al_code)));
 		return to_init(s);
 	}
-	if (ret)
-		return apply_failed(s, want, ret);
-	if (want == EC_AL_PREOP)
+	if (!ret && want == EC_AL_PREOP)
 		back_in_preop(s);
-	return 0;
+	return apply_report(s, want, EC_RESULT(ret));
 }
 
 /* What was asked for has come after its time limit: the rest of that step. */
-static int arrived(struct ec_slave *s, u8 state)
+static void arrived(struct ec_slave *s, u8 state)
 {
 	WRITE_ONCE(s->awaited, 0);
 	if (state == EC_AL_INIT)
@@ -454,7 +468,6 @@ static int arrived(struct ec_slave *s, u8 state)
 		has_left_init(s, state);
 	else if (state == EC_AL_PREOP)
 		back_in_preop(s);
-	return 0;
 }
 
 /* Before activation the application may change its configuration at any time. */
@@ -488,37 +501,38 @@ static int start_clean(struct ec_slave *s)
 	return 0;
 }
 
-/* One step towards the requested state; 1: there, 0: again, -errno. */
-static int apply_step(struct ec_slave *s)
+/* One step towards the requested state. @there: result: it is in that state. */
+static struct ec_result apply_step(struct ec_slave *s, bool *there)
 {
 	struct ec_setup *setup = ec_setup_of(s);
 	u8 want = ec_slave_wanted(s), cur;
+	struct ec_result r = EC_RESULT(ec_al_read(s));
 	bool anew;
-	int ret = ec_al_read(s);
 
 	lockdep_assert_held(&s->lock);
 	setup->heading = want;
-	if (ret)
-		return ret;
-	if (READ_ONCE(s->al_status) & EC_AL_ERROR && !s->emulation) {
-		ret = acknowledge(s);
-		if (ret)
-			return ret;
-	}
+	if (!r.err && READ_ONCE(s->al_status) & EC_AL_ERROR && !s->emulation)
+		r = acknowledge(s);
+	if (r.err)
+		return r;
 	cur = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
-	if (cur == READ_ONCE(s->awaited))
-		return arrived(s, cur);
+	if (cur == READ_ONCE(s->awaited)) {
+		arrived(s, cur);
+		return r;
+	}
 	anew = READ_ONCE(s->reconfigure) && want > EC_AL_PREOP;
 	if (cur == EC_AL_PREOP && s->clean && s->ours && anew)
-		return start_clean(s);
+		return EC_RESULT(start_clean(s));
 	if (cur != EC_AL_INIT && (!s->ours || anew))
 		return to_init(s);
 	if (setup->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
-		return ec_apply_clear_fmmus(s);
+		return EC_RESULT(ec_apply_clear_fmmus(s));
 	if (setup->op_only && cur != EC_AL_OP)
-		return op_only_off(s);
-	if (cur == want)
-		return want == EC_AL_OP && op_only_on(s) < 0 ? -EIO : 1;
+		return EC_RESULT(op_only_off(s));
+	if (cur == want) {
+		*there = want != EC_AL_OP || op_only_on(s) >= 0;
+		return EC_RESULT(*there ? 0 : -EIO);
+	}
 	if (want == EC_AL_BOOT)
 		return cur == EC_AL_INIT ? leave_init(s, EC_AL_BOOT) : to_init(s);
 	if (cur > want || cur == EC_AL_BOOT) {
@@ -558,30 +572,31 @@ static void log_return(struct ec_slave *s)
  */
 void ec_apply(struct ec_slave *s)
 {
+	struct ec_result r = { 0 };
+	bool there = false;
 	unsigned int i;
-	int ret = 0;
 
 	mutex_lock(&s->lock);
 	WRITE_ONCE(s->stop.worker, current);
-	for (i = 0; i < 16 && !ret && !ec_stop_worker(&s->stop); i++) {
+	for (i = 0; i < 16 && !there && !r.err && !ec_stop_worker(&s->stop); i++) {
 		take_plan(s);
-		ret = apply_step(s);
+		r = apply_step(s, &there);
 	}
 	release_mailbox(s);
-	if (ret == 1 && ec_slave_set_ok(s, false)) {
+	if (there && ec_slave_set_ok(s, false)) {
 		s->retry_ms = 0;
 		log_return(s);
 	}
-	if (READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
-	    (apply_is_transient(s, ret) || is_undecided(s, ret))) {
+	if (!there && READ_ONCE(s->error) == EC_SLAVE_CONFIG_FAILED &&
+	    (apply_is_transient(s, r.err) || is_undecided(s, r.err))) {
 		/* wait that limit once more: another request may restart the transition */
-		if (ret == -ETIME && READ_ONCE(s->awaited))
+		if (r.err == -ETIME && READ_ONCE(s->awaited))
 			s->retry_ms = max(s->retry_ms, s->awaited_ms / 2);
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	}
-	if (ret == 1 && READ_ONCE(s->read_pdos) && ec_slave_pdos_pending(s))
+	if (there && READ_ONCE(s->read_pdos) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
-	if (ret == 1 && READ_ONCE(s->read_pdos) && ec_names_pending(s))
+	if (there && READ_ONCE(s->read_pdos) && ec_names_pending(s))
 		ec_names_read(s);
 	WRITE_ONCE(s->stop.worker, NULL);
 	mutex_unlock(&s->lock);

@@ -5,7 +5,7 @@
 #include "config.h"
 #include "../mailbox/mailbox.h"
 #include "../link/links.h"
-#include "../bus/slave.h"
+#include "../bus/result.h"
 #include "../wire/coe.h"
 #include "apply.h"
 
@@ -196,20 +196,21 @@ static const struct ec_pdo_entry *first_wrong(const struct ec_pdo_list *want,
  * @have is what the slave has, and it will not change it. Process data of other objects
  * than the registered ones would be exchanged with a full working counter.
  */
-static int apply_pdo_compare(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
-			     const char *cause)
+static struct ec_result apply_pdo_compare(struct ec_slave *s, const struct ec_config *c,
+					  unsigned int sm, const char *cause)
 {
 	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
 	const struct ec_pdo_entry *e, *h;
 	const struct ec_setup *setup = ec_setup_of(s);
 	bool refused = cause == setup->pdo_refusal;
 	char has[32] = "nothing";
+	struct ec_result r;
 	u32 bit;
 
 	lockdep_assert_held(&s->lock);
 	e = first_wrong(want, have, &bit);
 	if (!e)
-		return 0;
+		return EC_RESULT(0);
 	h = ec_pdo_list_at(have, bit);
 	if (h)
 		snprintf(has, sizeof(has), "0x%04x:%02x, %u bit", h->index, h->sub, h->bits);
@@ -219,13 +220,13 @@ static int apply_pdo_compare(struct ec_slave *s, const struct ec_config *c, unsi
 			     sm, bit, e->index, e->sub, e->bits, has, cause);
 	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
 		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
-		return 0;
+		return EC_RESULT(0);
 	}
-	ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-		      EC_CAUSE(PDO, .sm = sm, .object = refused ? setup->pdo_cause.object : 0,
-			       .code = refused ? setup->pdo_cause.code : 0), "%s", s->warning);
+	r = ec_result_fail(s, -EOPNOTSUPP,
+			   EC_CAUSE(PDO, .sm = sm, .object = refused ? setup->pdo_cause.object : 0,
+				    .code = refused ? setup->pdo_cause.code : 0), "%s", s->warning);
 	ec_slave_set_warning(s, "%s", "");
-	return -EOPNOTSUPP;
+	return r;
 }
 
 static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
@@ -236,61 +237,63 @@ static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
 }
 
 /* The slave refused: what does it have instead? */
-static int apply_pdo_check(struct ec_slave *s, const struct ec_config *c, unsigned int sm)
+static struct ec_result apply_pdo_check(struct ec_slave *s, const struct ec_config *c,
+					unsigned int sm)
 {
 	const char *refusal = ec_setup_of(s)->pdo_refusal;
 	char text[160], why[96];
 	int ret = ec_slave_read_sm_pdos(s, sm);
 
 	if (ret == -ECANCELED || ret == -EINTR)
-		return ret;
+		return EC_RESULT(ret);
 	if (!ret)
 		return apply_pdo_compare(s, c, sm, refusal);
 	snprintf(text, sizeof(text), "%.80s; its PDOs cannot be read (%s)", refusal,
 		 ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	not_certain(s, sm, text);
-	return 0;
+	return EC_RESULT(0);
 }
 
 /* Do the PDOs that startup SDOs have made still fit the layout? The last one is @u. */
-static int check_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
-		      const struct ec_startup *u)
+static struct ec_result check_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+				   const struct ec_startup *u)
 {
 	u32 bytes = ec_pdo_list_bytes(&s->sm_pdos[sm]);
+	struct ec_result r;
 	char sdo[80];
 	unsigned int i;
-	int ret;
 
 	snprintf(sdo, sizeof(sdo), "startup SDO 0x%04x:%02x changes it; register entries after all startup SDOs",
 		 u->index, u->sub);
-	ret = apply_pdo_compare(s, c, sm, sdo);
-	for (i = 0; i < c->n_fmmus && !ret; i++)
+	r = apply_pdo_compare(s, c, sm, sdo);
+	for (i = 0; i < c->n_fmmus && !r.err; i++)
 		if (c->fmmus[i].sm == sm && c->fmmus[i].size != bytes)
-			ret = ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT, .sm = sm),
-					    "SM%u registered with %u byte(s), slave has %u; %s",
-					    sm, c->fmmus[i].size, bytes, sdo);
-	return ret;
+			r = ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT, .sm = sm),
+					   "SM%u registered with %u byte(s), slave has %u; %s",
+					   sm, c->fmmus[i].size, bytes, sdo);
+	return r;
 }
 
 /* The application lets startup SDOs make the PDOs of a SyncManager: what are they now? */
-static int take_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
-		     const struct ec_startup *u)
+static struct ec_result take_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
+				  const struct ec_startup *u)
 {
 	char text[160], why[96];
+	struct ec_result r;
 	int ret = ec_slave_read_sm_pdos(s, sm);
 
 	if (ret == -ECANCELED || ret == -EINTR)
-		return ret;
+		return EC_RESULT(ret);
 	if (!ret) {
-		ret = check_made(s, c, sm, u);
-		if (!ret)
+		r = check_made(s, c, sm, u);
+		if (!r.err)
 			ec_setup_of(s)->made |= BIT(sm);
-		return ret;
+		return r;
 	}
 	snprintf(text, sizeof(text), "startup SDO 0x%04x:%02x changes it; its PDOs cannot be read (%s)",
 		 u->index, u->sub, ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
 	not_certain(s, sm, text);
-	return 0;
+	return EC_RESULT(0);
 }
 
 static bool has_entry(const struct ec_pdo_list *l, const struct ec_pdo_entry *e)
@@ -357,25 +360,25 @@ static void note_names(struct ec_slave *s, unsigned int sm, const struct ec_pdo_
 }
 
 /* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
-static int check_fixed(struct ec_slave *s, const struct ec_config *c)
+static struct ec_result check_fixed(struct ec_slave *s, const struct ec_config *c)
 {
 	static const struct ec_pdo_list nothing;
+	struct ec_result r = { 0 };
 	unsigned int sm;
-	int ret = 0;
 	u32 bit;
 
-	for (sm = 0; sm < s->n_sms && !ret; sm++) {
+	for (sm = 0; sm < s->n_sms && !r.err; sm++) {
 		if (!c->sm[sm].explicit || !first_wrong(&c->sm[sm].pdos, &nothing, &bit))
 			continue;
 		if (s->sm_pdos[sm].n && same_direction(s, c, sm) &&
 		    names_differ(&c->sm[sm].pdos, &s->sm_pdos[sm]))
 			note_names(s, sm, &c->sm[sm].pdos, &s->sm_pdos[sm]);
 		else if (s->sm_pdos[sm].n)
-			ret = apply_pdo_compare(s, c, sm, "without CoE its PDOs cannot be changed");
+			r = apply_pdo_compare(s, c, sm, "without CoE its PDOs cannot be changed");
 		else
 			not_certain(s, sm, "the slave has no CoE, and its EEPROM lists no PDOs");
 	}
-	return ret;
+	return r;
 }
 
 /**
@@ -408,25 +411,25 @@ const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struc
  * still be in their place. In a SoE drive the IDNs decide.
  *
  * Context: The slave's worker. Waits for bus traffic.
- * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data,
- * reported already.
+ * Return: 0; -ECANCELED, -EINTR; -EOPNOTSUPP when the slave has other process data, reported.
  */
-int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
+struct ec_result ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 {
+	struct ec_result r = { 0 };
 	unsigned int sm;
-	int ret = 0;
+	int ret;
 
 	lockdep_assert_held(&s->lock);
 	if (!ec_mbox_present(&s->mbox) || !(s->info.protocols & EC_SII_PROTO_COE))
-		return s->info.protocols & EC_SII_PROTO_SOE ? 0 : check_fixed(s, c);
+		return s->info.protocols & EC_SII_PROTO_SOE ? r : check_fixed(s, c);
 	ec_setup_of(s)->made = 0;
-	for (sm = 2; sm < EC_MAX_SM && !ret; sm++) {
+	for (sm = 2; sm < EC_MAX_SM && !r.err; sm++) {
 		const struct ec_pdo_list *l = ec_apply_pdos_of(s, c, sm);
 		const struct ec_startup *u =
 			c->sm[sm].explicit || sm >= s->n_sms ? NULL : ec_startup_changes(c, s, sm);
 
 		if (u) {
-			ret = take_made(s, c, sm, u);
+			r = take_made(s, c, sm, u);
 			continue;
 		}
 		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->sm_pdos[sm]))
@@ -435,7 +438,9 @@ int ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 		if (!ret)
 			ec_slave_set_sm_pdos(s, sm, l);
 		else if (ret == REFUSED)
-			ret = apply_pdo_check(s, c, sm);
+			r = apply_pdo_check(s, c, sm);
+		else
+			r = EC_RESULT(ret);
 	}
-	return ret;
+	return r;
 }

@@ -3,7 +3,7 @@
 #include "config.h"
 #include "domain.h"
 #include "../link/links.h"
-#include "../bus/slave.h"
+#include "../bus/result.h"
 #include "../wire/fmmu.h"
 #include "../carry/xfer.h"
 #include "apply.h"
@@ -59,7 +59,7 @@ static void sm_page(const struct ec_slave *s, const struct ec_config *c, unsigne
 	ec_sm_encode(&v, page);
 }
 
-static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *c)
+static struct ec_result add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *c)
 {
 	unsigned int sm;
 	u32 bytes;
@@ -69,13 +69,13 @@ static int add_sms(struct batch *b, struct ec_slave *s, const struct ec_config *
 			continue;
 		bytes = ec_pdo_list_bytes(ec_apply_pdos_of(s, c, sm));
 		if (bytes > EC_MAX_SM_BYTES)
-			return ec_apply_fail(s, -EOVERFLOW, EC_CAUSE(LAYOUT),
-					     "SM%u needs %u bytes, limit %u; map fewer entries",
-					     sm, bytes, EC_MAX_SM_BYTES);
+			return ec_result_fail(s, -EOVERFLOW, EC_CAUSE(LAYOUT),
+					      "SM%u needs %u bytes, limit %u; map fewer entries",
+					      sm, bytes, EC_MAX_SM_BYTES);
 		sm_page(s, c, sm, b->sm[sm]);
 		apply_regs_add(b, s, EC_REG_SM(sm), b->sm[sm], EC_SM_PAGE);
 	}
-	return 0;
+	return EC_RESULT(0);
 }
 
 /*
@@ -89,37 +89,37 @@ static bool holds_pdos(const struct ec_slave *s, unsigned int sm)
 }
 
 /* Can the slave serve the layout of the session? */
-static int check_fmmus(struct ec_slave *s, const struct ec_config *c)
+static struct ec_result check_fmmus(struct ec_slave *s, const struct ec_config *c)
 {
 	unsigned int i;
 
 	if (c->n_fmmus > count_fmmus(s))
-		return ec_apply_fail(s, -ENOSPC, EC_CAUSE(LAYOUT),
-				     "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
-				     c->n_fmmus, s->regs[EC_REG_FMMUS]);
+		return ec_result_fail(s, -ENOSPC, EC_CAUSE(LAYOUT),
+				      "%u FMMUs needed, slave has %u; put the SyncManagers into fewer domains",
+				      c->n_fmmus, s->regs[EC_REG_FMMUS]);
 	if (c->lrw && ec_slave_no_lrw(s))
-		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
-				     "slave without LRW support attached to a layout with LRW; restart the application");
+		return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
+				      "slave without LRW support attached to a layout with LRW; restart the application");
 	if (c->in_ring && s->position != c->ring_position)
-		return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
-				     "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
-				     s->position, c->ring_position);
+		return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
+				      "ring position %u, was %u at activation, and the layout overlaps with other slaves; restart the application, or overlap within the slave only",
+				      s->position, c->ring_position);
 	for (i = 0; i < c->n_fmmus; i++)
 		if (!holds_pdos(s, c->fmmus[i].sm))
-			return ec_apply_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
-					     "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
-					     c->fmmus[i].sm);
-	return 0;
+			return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(LAYOUT),
+					      "SM%u is not a process data SyncManager in the SII; map its PDOs elsewhere",
+					      c->fmmus[i].sm);
+	return EC_RESULT(0);
 }
 
 /* All FMMUs: this clears what an earlier configuration has left in the unused ones. */
-static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config *c)
+static struct ec_result add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config *c)
 {
+	struct ec_result r = check_fmmus(s, c);
 	unsigned int i;
-	int ret = check_fmmus(s, c);
 
-	if (ret)
-		return ret;
+	if (r.err)
+		return r;
 	for (i = 0; i < c->n_fmmus; i++) {
 		const struct ec_config_fmmu *f = &c->fmmus[i];
 		struct ec_fmmu v = {
@@ -134,7 +134,7 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
 	ec_setup_of(s)->mapped = c->n_fmmus;
 	for (i = 0; i < count_fmmus(s); i++)
 		apply_regs_add(b, s, EC_REG_FMMU(i), b->fmmu[i], EC_FMMU_PAGE);
-	return 0;
+	return r;
 }
 
 /**
@@ -143,24 +143,24 @@ static int add_fmmus(struct batch *b, struct ec_slave *s, const struct ec_config
  * @c: its configuration; NULL: SyncManagers as the EEPROM has them
  *
  * Context: The slave's worker. Waits for bus traffic.
- * Return: 0; -EOVERFLOW, -ENOSPC, -EOPNOTSUPP when it cannot serve the configuration, noted
- * as its error; -ENOMEM; -EIO when it did not execute the writes; or as ec_xfer().
+ * Return: 0; -EOVERFLOW, -ENOSPC, -EOPNOTSUPP when it cannot serve the configuration, reported;
+ * -ENOMEM; -EIO when it did not execute the writes; or as ec_xfer().
  */
-int ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
+struct ec_result ec_apply_regs(struct ec_slave *s, const struct ec_config *c)
 {
 	struct batch *b = kzalloc(sizeof(*b), GFP_KERNEL);
-	int ret;
+	struct ec_result r;
 
 	lockdep_assert_held(&s->lock);
 	if (!b)
-		return -ENOMEM;
-	ret = add_sms(b, s, c);
-	if (!ret && c)
-		ret = add_fmmus(b, s, c);
-	if (!ret)
-		ret = ec_xfer_all(s->bus->links, b->dg, b->n);
+		return EC_RESULT(-ENOMEM);
+	r = add_sms(b, s, c);
+	if (!r.err && c)
+		r = add_fmmus(b, s, c);
+	if (!r.err)
+		r = EC_RESULT(ec_xfer_all(s->bus->links, b->dg, b->n));
 	kfree(b);
-	return ret;
+	return r;
 }
 
 static const u8 zero[MAX_FMMU * EC_FMMU_PAGE];

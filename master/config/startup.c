@@ -3,7 +3,7 @@
 #include "config.h"
 #include "startup.h"
 #include "../base/limits.h"
-#include "../bus/slave.h"
+#include "../bus/result.h"
 #include "../carry/xfer.h"
 #include "../mailbox/coe.h"
 #include "../mailbox/eoe.h"
@@ -164,34 +164,34 @@ static void why(char *text, size_t size, const struct ec_startup *u, int ret, u3
 				  text, size);
 }
 
-static void startup_failed(struct ec_slave *s, const struct ec_startup *u, int ret, u32 code)
+static struct ec_result startup_failed(struct ec_slave *s, const struct ec_startup *u, int ret,
+				       u32 code)
 {
 	char name[12], text[96];
+	int err = code ? -EREMOTEIO : ret;
 
 	why(text, sizeof(text), u, ret, code);
 	if (u->type == EC_STARTUP_SDO)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      EC_CAUSE(SDO, .object = u->index, .subindex = u->sub, .code = code),
-			      "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s", u->index, u->sub,
-			      u->size, text);
-	else if (u->type == EC_STARTUP_IDN)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
-			      EC_CAUSE(IDN, .object = u->index, .subindex = u->sub, .code = code),
-			      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
-			      ec_soe_idn_text(u->index, name), u->sub, u->size, text);
-	else if (u->type == EC_STARTUP_REG)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(REGISTER, .object = u->index),
-			      "startup register 0x%04x failed: %s", u->index, text);
-	else if (ret == -EREMOTEIO)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(IP, .code = code),
-			      "IP parameters refused: EoE result 0x%04x (%s)", code,
-			      ec_eoe_result_text(code));
-	else if (ret == -EPROTONOSUPPORT)
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(IP),
-			      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
-	else
-		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(IP), "IP parameters failed: %s",
-			      text);
+		return ec_result_fail(s, err, EC_CAUSE(SDO, .object = u->index, .subindex = u->sub,
+						       .code = code),
+				      "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s", u->index,
+				      u->sub, u->size, text);
+	if (u->type == EC_STARTUP_IDN)
+		return ec_result_fail(s, err, EC_CAUSE(IDN, .object = u->index, .subindex = u->sub,
+						       .code = code),
+				      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
+				      ec_soe_idn_text(u->index, name), u->sub, u->size, text);
+	if (u->type == EC_STARTUP_REG)
+		return ec_result_fail(s, err, EC_CAUSE(REGISTER, .object = u->index),
+				      "startup register 0x%04x failed: %s", u->index, text);
+	if (ret == -EREMOTEIO)
+		return ec_result_fail(s, err, EC_CAUSE(IP, .code = code),
+				      "IP parameters refused: EoE result 0x%04x (%s)", code,
+				      ec_eoe_result_text(code));
+	if (ret == -EPROTONOSUPPORT)
+		return ec_result_fail(s, err, EC_CAUSE(IP),
+				      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
+	return ec_result_fail(s, err, EC_CAUSE(IP), "IP parameters failed: %s", text);
 }
 
 /**
@@ -201,10 +201,10 @@ static void startup_failed(struct ec_slave *s, const struct ec_startup *u, int r
  * @transition: EC_TRANSITION()
  *
  * Context: The slave's worker. Waits for bus traffic.
- * Return: 0; -ECANCELED, -EINTR; else an error, noted as the slave's: -EREMOTEIO when the
- * slave refused a command with an error number, or as its protocol has it.
+ * Return: 0; -ECANCELED, -EINTR; else an error, reported: -EREMOTEIO when the slave refused a
+ * command with an error number, or as its protocol has it.
  */
-int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
+struct ec_result ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
 {
 	const struct ec_startup *u;
 	u32 code;
@@ -217,11 +217,9 @@ int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
 		code = 0;
 		ret = startup_run(s, u, &code);
 		if (ret == -ECANCELED || ret == -EINTR)
-			return ret;
-		if (ret) {
-			startup_failed(s, u, ret, code);
-			return code ? -EREMOTEIO : ret;
-		}
+			return EC_RESULT(ret);
+		if (ret)
+			return startup_failed(s, u, ret, code);
 	}
-	return 0;
+	return EC_RESULT(0);
 }

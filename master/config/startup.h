@@ -8,6 +8,7 @@
 #include "../wire/al.h"
 
 struct ec_config;
+struct ec_result;
 struct ec_slave;
 
 /* protocols, in the order in which a transition runs their commands */
@@ -53,6 +54,6 @@ struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index
 void ec_startup_del(struct ec_config *c, struct ec_startup *u);
 const struct ec_startup *ec_startup_changes(const struct ec_config *c, const struct ec_slave *s,
 					    unsigned int sm);
-int ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition);
+struct ec_result ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition);
 
 #endif
