@@ -531,7 +531,7 @@ void ec_slave_request(struct ec_slave *slave, u8 state)
 void ec_slave_request_anew(struct ec_slave *slave, u8 state, u32 limit_ms)
 {
 	want(slave, state, limit_ms);
-	/* after it: a worker that notes a failure just now sees it there, see apply_report() */
+	/* after it: a worker that notes a failure just now sees it there, see ec_apply_report() */
 	ec_slave_forgive(slave);
 	ec_slave_kick(slave);
 }

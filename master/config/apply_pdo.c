@@ -7,7 +7,7 @@
 #include "../link/links.h"
 #include "../bus/result.h"
 #include "../wire/coe.h"
-#include "apply.h"
+#include "apply_pdo.h"
 
 #define REFUSED		1
 #define LIST_TEXT	160	/* characters of PDOs in a line of the log */

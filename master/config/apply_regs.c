@@ -6,7 +6,8 @@
 #include "../bus/result.h"
 #include "../wire/fmmu.h"
 #include "../carry/xfer.h"
-#include "apply.h"
+#include "apply_pdo.h"
+#include "apply_regs.h"
 
 #define MAX_FMMU	16
 
@@ -224,4 +225,62 @@ int ec_apply_clear(struct ec_slave *s)
 		ret = ec_xfer_fpwr(s->bus->links, s->station, EC_REG_SM(0), zero,
 				   EC_SM_PAGE * n) ?: ret;
 	return ret;
+}
+
+static int activate_sm(struct ec_slave *s, unsigned int sm, u8 active)
+{
+	return ec_xfer_fpwr(s->bus->links, s->station, EC_REG_SM(sm) + EC_SM_OFS_ACTIVATE,
+			    &active, 1);
+}
+
+/**
+ * ec_apply_op_only_on() - enable the SyncManagers that the SII enables in OP only
+ * @s: slave in SAFEOP or OP
+ *
+ * Before OP is requested, as some slaves need outputs first.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: how many were off, -EIO, or as ec_xfer().
+ */
+int ec_apply_op_only_on(struct ec_slave *s)
+{
+	struct ec_setup *setup = ec_setup_of(s);
+	unsigned int sm, n = 0;
+	int ret;
+
+	lockdep_assert_held(&s->lock);
+	for (sm = 0; sm < s->n_sms; sm++) {
+		if (!(s->sms[sm].enable & EC_SII_SM_OP_ONLY) || setup->op_only & BIT(sm) ||
+		    !ec_pdo_list_bytes(ec_apply_pdos_of(s, setup->active_config, sm)))
+			continue;
+		ret = activate_sm(s, sm, EC_SM_ACT_ENABLE);
+		if (ret)
+			return ret;
+		setup->op_only |= BIT(sm);
+		n++;
+	}
+	return n;
+}
+
+/**
+ * ec_apply_op_only_off() - disable them
+ * @s: slave that leaves OP
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: 0, -EIO, or as ec_xfer().
+ */
+int ec_apply_op_only_off(struct ec_slave *s)
+{
+	struct ec_setup *setup = ec_setup_of(s);
+	unsigned int sm;
+	int ret;
+
+	lockdep_assert_held(&s->lock);
+	for (sm = 0; setup->op_only; sm++) {
+		ret = setup->op_only & BIT(sm) ? activate_sm(s, sm, 0) : 0;
+		if (ret)
+			return ret;
+		setup->op_only &= ~BIT(sm);
+	}
+	return 0;
 }
