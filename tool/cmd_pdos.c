@@ -162,7 +162,7 @@ const struct cmd cmd_pdos = {
 	.opts = "mapsqvO",
 	.summary = "Show SyncManagers, PDOs and PDO entries",
 	.help = "The master writes RxPDOs and reads TxPDOs. An entry 0x0000:00 is a gap. Names are\n"
-		"those of the SII, otherwise of the object dictionary, which the command reads while\n"
+		"those of the SII, otherwise of the object dictionary, which the master reads while\n"
 		"no application is active. --quiet omits the entries. The skin etherlab prints a\n"
 		"MATLAB function for each slave. --coe reads assignment (0x1c12...) and mapping (0x1600...,\n"
 		"0x1a00...) from the slave at this call, names from the SII, and marks a PDO whose\n"
