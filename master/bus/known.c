@@ -183,8 +183,10 @@ struct ec_slave *ec_known_image(const struct ec_bus *bus, u16 station, const u8 
 }
 
 /**
- * ec_known_forget_images() - all EEPROMs are to be read again, or their memory is needed, or the bus ends
+ * ec_known_forget_images() - forget the EEPROM images of disconnected devices
  * @bus: bus
+ *
+ * All are to be read again, their memory is needed, or the bus ends.
  *
  * Context: The monitor thread. May sleep.
  */

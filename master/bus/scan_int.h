@@ -26,8 +26,8 @@ struct regs {
 };
 
 /*
- * A piece of the ring between two slaves that are where they were: the slaves of the list, and those
- * found. Each is a step of its own: what contradicts one says nothing about another.
+ * A piece of the ring between two slaves that are where they were: the slaves of the list, and
+ * those found. Each is a step of its own: what contradicts one says nothing about another.
  */
 struct stretch {
 	unsigned int old;	/* the first slave of it in the list of the bus */
