@@ -124,7 +124,7 @@ static u32 away(const struct ec_slave *s, unsigned int step, bool all)
  * ec_graph_parent() - the neighbor of a slave towards the main device
  * @s: slave of the list
  *
- * Context: Topo held, or after ec_show_begin().
+ * Context: The monitor thread, or as for ec_bus_assert_stays().
  * Return: that slave, or NULL.
  */
 struct ec_slave *ec_graph_parent(const struct ec_slave *s)
@@ -192,7 +192,7 @@ static const struct ec_slave *last_of(const struct ec_slave *x)
  * @s: slave of the list
  * @port: its port, without a neighbor
  *
- * Context: Topo held, after ec_show_begin(), or the monitor thread.
+ * Context: The monitor thread, or as for ec_bus_assert_stays().
  * Return: ring position.
  */
 unsigned int ec_graph_place(const struct ec_slave *s, unsigned int port)
@@ -253,7 +253,7 @@ static void part(struct ec_slave *s, unsigned int port)
  *
  * Those that hung at it are hung again by ec_graph_fit().
  *
- * Context: Topo held for writing, or the slave is in no list.
+ * Context: The monitor thread, while no reader uses the list, or for a slave in no list.
  */
 void ec_graph_leave(struct ec_slave *s)
 {

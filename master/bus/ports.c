@@ -2,6 +2,7 @@
 #include <linux/ktime.h>
 #include <linux/module.h>
 #include <linux/slab.h>
+#include <linux/sysfs.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "graph.h"
@@ -16,10 +17,32 @@
 #define LOSS_NS		(10 * (u64)NSEC_PER_SEC)
 #define LOSS_WAIT_MAX_S	60
 
-static bool guard = true;
-module_param_named(guard_ports, guard, bool, 0444);
-MODULE_PARM_DESC(guard_ports,
-		 "While process data run, close ports behind which no slave is known (Y)");
+static bool closes = true;
+
+static int set_loops(const char *value, const struct kernel_param *kp)
+{
+	if (sysfs_streq(value, "closed"))
+		closes = true;
+	else if (sysfs_streq(value, "auto"))
+		closes = false;
+	else
+		return -EINVAL;
+	return 0;
+}
+
+static int get_loops(char *buf, const struct kernel_param *kp)
+{
+	return sysfs_emit(buf, "%s\n", closes ? "closed" : "auto");
+}
+
+static const struct kernel_param_ops loops_ops = {
+	.set = set_loops,
+	.get = get_loops,
+};
+
+module_param_cb(loops, &loops_ops, NULL, 0444);
+MODULE_PARM_DESC(loops,
+		 "Ports without a known slave while process data run: closed (default) or auto");
 
 /**
  * ec_ports_guard() - process data begin or end
@@ -32,7 +55,7 @@ MODULE_PARM_DESC(guard_ports,
  */
 void ec_ports_guard(struct ec_bus *bus, bool on)
 {
-	WRITE_ONCE(bus->guarded, on && guard);
+	WRITE_ONCE(bus->guarded, on && closes);
 	if (bus->ops && bus->ops->wake)
 		bus->ops->wake(bus);
 }

@@ -258,13 +258,13 @@ static struct ec_slave **swap_list(struct scan *sc, struct list *l)
 }
 
 /**
- * ec_scan_publish() - change the list of the bus, unless it is held by now
+ * ec_scan_publish() - change the list of the bus, unless an application keeps it by now
  * @sc: scan that was proved
  *
  * Slaves missing in the new list are disconnected.
  *
  * Context: The monitor thread. May sleep.
- * Return: 0, -EAGAIN: the list is held, or -ENOMEM.
+ * Return: 0, -EAGAIN: an application keeps the list, or -ENOMEM.
  */
 int ec_scan_publish(struct scan *sc)
 {

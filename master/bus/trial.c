@@ -86,8 +86,8 @@ static void give_back(const struct trial *t, u16 station)
 }
 
 /*
- * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0; -EAGAIN:
- * the contact broke, or frames were lost; -EIO: the port is not closed.
+ * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0, or
+ * -EAGAIN: the contact broke, or frames were lost.
  */
 static int run(struct trial *t, u16 station)
 {
@@ -241,7 +241,7 @@ static int try_often(struct trial *t, struct guest *g, int (*step)(struct trial 
 	return ret;
 }
 
-/* May a slave that comes have its address again? Only if it was one of this bus, and is no other. */
+/* The address that a slave may have again: of this bus, and of no other slave now */
 static u16 kept_station(struct ec_bus *bus, const struct guest *g)
 {
 	u16 station = get_unaligned_le16(g->station_was);

@@ -67,7 +67,7 @@ struct ec_post {
 	u16 n;
 	/** @class: enum ec_post_class, which the user sets */
 	u8 class;
-	/** @train: of class EC_POST_TRAIN: posts that leave together, this one and those after it */
+	/** @train: of class EC_POST_TRAIN: posts that leave together, from this one on */
 	u8 train;
 	/** @sides: mask of the links on which it is sent, which the user sets; 0: all */
 	u8 sides;
