@@ -91,6 +91,22 @@ static void ports_closed_while_active(struct kunit *test)
 		KUNIT_EXPECT_EQ_MSG(test, loops(b, i), 0, "slave %u", i);
 }
 
+/* The same if the master is unloaded as soon as the application has exited. */
+static void ports_open_after_unload(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	struct bus *b = c->b;
+	u32 i;
+
+	KUNIT_EXPECT_EQ(test, loops(b, HUB), 0x14);
+	c->each = NULL;
+	bus_end(b);
+	ec_masters_destroy();
+	for (i = 0; i < N; i++)
+		KUNIT_EXPECT_EQ_MSG(test, loops(b, i), 0, "slave %u", i);
+}
+
 /* FMMUs that another master has left, over the outputs and inputs of running drives */
 static void old_fmmus(struct bus *b, u32 index, u32 of)
 {
@@ -224,6 +240,7 @@ static void ports_flapping(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_closed_while_active),
+	KUNIT_CASE(ports_open_after_unload),
 	KUNIT_CASE(ports_new_slaves),
 	KUNIT_CASE(ports_branch_returns),
 	KUNIT_CASE(ports_drives_return),

@@ -79,6 +79,7 @@ static void reboot_application_active_slaves_in_preop(struct kunit *test)
 	}
 	KUNIT_EXPECT_TRUE(test, bus_wanted(b)->active);
 	KUNIT_EXPECT_GE(test, kcyc_status(a)->cycle, cycle + 900);
+	KUNIT_EXPECT_EQ_MSG(test, bus_esc(b, 1)->mem[EC_REG_DL_LOOPS], 0, "ports open again");
 }
 
 /* The application has stopped: frames get out after the cycle timeout only. */
