@@ -370,6 +370,7 @@ struct ec_app {
  * @no_ack: only INIT clears its error indication
  * @own_eeprom: no PREOP unless the EEPROM is assigned to it
  * @no_lrw: its controller does not process LRW
+ * @loops_fixed: its controller does not keep what is written to 0x0101
  * @response_ns: time from mailbox request to response
  * @op_timeout_ns: time limit from SAFEOP to OP
  * @process_ns: delay through the controller, 0: default
@@ -394,6 +395,7 @@ struct ec_app_config {
 	bool no_ack;
 	bool own_eeprom;
 	bool no_lrw;
+	bool loops_fixed;
 	u64 response_ns;
 	u64 op_timeout_ns;
 	u32 process_ns;

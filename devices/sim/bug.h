@@ -73,6 +73,9 @@ enum ec_sim_bug {
 	EC_SIM_BUG_EEP_PDI_HIDDEN,	/* emulated EEPROM: 0x0502 bit 5 not set */
 	EC_SIM_BUG_SYNC_NO_ACK,		/* SYNC not held until acknowledged */
 	EC_SIM_BUG_UDP_CHECKSUM,	/* checksum kept in a frame that changed */
+	EC_SIM_BUG_AUTO_CLOSE,		/* auto close opens with the link */
+	EC_SIM_BUG_LOOPS_STAY,		/* temporary loop settings stay */
+	EC_SIM_BUG_DL_SILENT,		/* links and loops change without DL event */
 	EC_SIM_BUGS
 };
 

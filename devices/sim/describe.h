@@ -23,6 +23,7 @@
  *		fixed=N,N... (PDOs and assignments)  dc_modes=N,N... (AssignActivate)
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
  *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
+ *		loops=fixed (0x0101 does not keep what is written)
  *	branch NAME PORT		the next slave hangs there
  *	branch none			the next slave hangs nowhere, until it is plugged
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too

@@ -175,3 +175,20 @@ int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f)
 		return -EINVAL;
 	return f->type == EC_SIM_FAULT_BOUNCE ? bounce(d, f) : 0;
 }
+
+/**
+ * ec_desc_own_ports() - how the ports of a slave behave
+ * @d: description, a slave statement
+ * @c: result
+ *
+ * Context: Process. May sleep.
+ * Return: 0, or -EINVAL.
+ */
+int ec_desc_own_ports(struct ec_desc *d, struct ec_app_config *c)
+{
+	struct ec_desc_word w = ec_desc_value(d, "loops");
+
+	c->loops_fixed = ec_desc_is(&w, "fixed");
+	return !w.s || c->loops_fixed ? 0 :
+		ec_desc_fail(d, "invalid loops '", &w, "': expected fixed");
+}

@@ -127,6 +127,8 @@ int ec_desc_config(struct ec_desc *d, struct ec_app_config *c, struct ec_desc_ca
 		ret = ec_desc_foe(d, c);
 	if (!ret)
 		ret = ec_desc_steps(d, c);
+	if (!ret)
+		ret = ec_desc_own_ports(d, c);
 	if (ret)
 		return ret;
 	w = ec_desc_value(d, "eeprom");

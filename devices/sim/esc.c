@@ -235,7 +235,8 @@ static void dl_control(struct ec_esc *esc, u16 ado, u32 len, u8 old_loops,
 		ec_sim_rehash(esc);
 	if (!ec_range_hit(ado, len, EC_REG_DL_LOOPS, 1))
 		return;
-	if (m[EC_REG_DL_CONTROL] & 0x02) {	/* for one second */
+	if (m[EC_REG_DL_CONTROL] & 0x02 && !ec_esc_bug(esc, EC_SIM_BUG_LOOPS_STAY)) {
+		/* for one second */
 		if (esc->loop_restore == EC_ESC_NEVER)
 			esc->loop_saved = old_loops;
 		esc->loop_restore = now + 1000000000;
@@ -490,7 +491,7 @@ void ec_esc_run(struct ec_esc *esc, u64 now)
 		esc->loop_restore = EC_ESC_NEVER;
 		esc->mem[EC_REG_DL_LOOPS] = esc->loop_saved;
 		esc->mem[EC_REG_DL_CONTROL] &= (u8)~0x02;
-		ec_sim_loops(esc, true, now);
+		ec_sim_loops(esc, false, now);		/* the master wrote nothing */
 	}
 	if (esc->wd_due <= now)
 		ec_esc_wd_expire(esc, now);

@@ -51,6 +51,7 @@ struct ec_esc;
  * @dc_noise_ns: jitter of the receive times, 0 = exact
  * @refuse_unwritten: an input SM is not readable before the PDI wrote it once
  * @dc_delay_only: with EC_FEAT_DC: receive times, but no clock that can be set
+ * @loops_fixed: 0x0101 does not keep what is written: it stays 0, auto
  *
  * ec_esc_config_init() gives a complete set; change what differs.
  * A 32-bit clock is one without EC_FEAT_DC64.
@@ -78,6 +79,7 @@ struct ec_esc_config {
 	u32 dc_noise_ns;
 	bool refuse_unwritten;
 	bool dc_delay_only;
+	bool loops_fixed;
 };
 
 /**
@@ -134,7 +136,8 @@ struct ec_esc_app_ops {
  * @cut: the cable is cut (kept on both ends)
  * @link: physical link as of now
  * @open: loop open: frames leave here
- * @auto_closed: loop mode "auto close" keeps the port shut after link down
+ * @auto_closed: the link was lost since a write, a frame or mode "auto" opened the loop;
+ *               mode "auto close" keeps it shut then
  */
 struct ec_esc_port {
 	int peer;

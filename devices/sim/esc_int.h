@@ -153,6 +153,18 @@ static inline u64 ec_esc_next(const struct ec_esc *esc)
 	return min(t, esc->dc.sync_wake);
 }
 
+static inline u32 ec_esc_loop_mode(const struct ec_esc *esc, int p)
+{
+	return esc->mem[EC_REG_DL_LOOPS] >> 2 * p & 3;
+}
+
+/* port @p closed itself, has a link again, and opens with the next frame it receives */
+static inline bool ec_esc_port_waits(const struct ec_esc *esc, int p)
+{
+	return esc->port[p].auto_closed && esc->port[p].link &&
+	       ec_esc_loop_mode(esc, p) == EC_LOOP_AUTO_CLOSE;
+}
+
 /* what the slave adds to the IRQ field of each datagram */
 static inline u16 ec_esc_irq(const struct ec_esc *esc)
 {

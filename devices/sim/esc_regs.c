@@ -92,7 +92,7 @@ bool ec_esc_reg_plain(const struct ec_esc *esc, u32 a)
 	       in(a, 0x0f00, 4) || in(a, 0x0f10, 8) || a >= EC_REG_USER_RAM;
 }
 
-/* bits of pages which a controller with fixed use of them (bit 11) has built in */
+/* what a controller has built in: loops, and pages with fixed use of them (bit 11) */
 void ec_esc_regs_fixed(struct ec_esc *esc)
 {
 	static const u8 fmmu[3] = { EC_FMMU_WRITE, EC_FMMU_READ, EC_FMMU_READ };
@@ -103,6 +103,8 @@ void ec_esc_regs_fixed(struct ec_esc *esc)
 	u8 *m = esc->mem;
 	u32 i;
 
+	if (esc->cfg.loops_fixed)
+		m[EC_REG_DL_LOOPS] = 0;
 	if (!(esc->cfg.features & EC_FEAT_FIXED_FMMU_SM))
 		return;
 	for (i = 0; i < ARRAY_SIZE(fmmu) && i < esc->cfg.fmmus; i++)

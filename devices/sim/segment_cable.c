@@ -187,7 +187,7 @@ bool ec_sim_host(struct ec_sim *sim, struct ec_sim_fault *f, u64 now)
 		port->peer = EC_ESC_PEER_HOST;
 		look(sim, a, now);
 		f->arg2 = 1;
-	} else if (port->peer == EC_ESC_PEER_HOST && port->link && port->auto_closed) {
+	} else if (port->peer == EC_ESC_PEER_HOST && ec_esc_port_waits(esc, f->port)) {
 		port->auto_closed = false;
 		ec_sim_loops(esc, false, now);
 	}

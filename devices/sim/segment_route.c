@@ -22,27 +22,33 @@ bool ec_sim_link(const struct ec_sim *sim, int port)
 	return m->peer >= 0 && !m->cut && sim->esc[m->peer]->powered;
 }
 
+static void dl_event(struct ec_esc *esc)
+{
+	if (!ec_esc_bug(esc, EC_SIM_BUG_DL_SILENT))
+		ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
+}
+
 /* loop settings or links changed; @written: by a write to 0x0101 */
 void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
 {
-	u8 loops = esc->mem[EC_REG_DL_LOOPS];
 	int p;
 
 	(void)now;
 	for (p = 0; p < EC_MAX_PORT; p++) {
 		struct ec_esc_port *port = &esc->port[p];
+		u32 mode = ec_esc_loop_mode(esc, p);
 		bool open = port->link;
 
-		switch (loops >> 2 * p & 3) {
-		case EC_LOOP_AUTO:
+		if (!port->link)
+			port->auto_closed = true;
+		else if (written || mode == EC_LOOP_AUTO ||
+			 ec_esc_bug(esc, EC_SIM_BUG_AUTO_CLOSE))
 			port->auto_closed = false;
+		switch (mode) {
+		case EC_LOOP_AUTO:
 			open |= port->open && ec_esc_bug(esc, EC_SIM_BUG_CUT_OPEN);
 			break;
 		case EC_LOOP_AUTO_CLOSE:
-			if (!port->link)
-				port->auto_closed = true;
-			else if (written)
-				port->auto_closed = false;
 			open = !port->auto_closed;
 			break;
 		case EC_LOOP_OPEN:
@@ -57,7 +63,7 @@ void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
 		port->open = open;
 		esc->sim->dirty = true;
 		if (esc->powered)
-			ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
+			dl_event(esc);
 	}
 }
 
@@ -82,7 +88,7 @@ void ec_sim_ports(struct ec_esc *esc, u64 now)
 		if (!link && *lost != 0xff &&
 		    !ec_esc_bug(esc, EC_SIM_BUG_LOST_UNCOUNTED))
 			++*lost;
-		ec_esc_event(esc, EC_ECAT_EVENT_DL, 0);
+		dl_event(esc);
 	}
 	ec_sim_loops(esc, false, now);
 }
@@ -158,7 +164,7 @@ static void walk(struct ec_sim *sim, int mport)
 
 		t += cable->cable_ns;
 		if (!esc->port[p].open) {	/* no slave listens */
-			if (esc->port[p].auto_closed && esc->port[p].link) {
+			if (ec_esc_port_waits(esc, p)) {
 				r->opens = esc->index;
 				r->opens_port = p;
 			}

@@ -1,50 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Cables that come and go, and what the registers of both ends say. */
-#include "sim_app_kunit.h"
-#include "../../devices/sim/esc_int.h"
-
-#define DL_EVENT	EC_ECAT_EVENT_DL
-
-static void command(struct kunit *test, struct bed *b, const char *text)
-{
-	struct ec_sim_error err;
-	struct ec_sim_fault f;
-
-	KUNIT_ASSERT_EQ_MSG(test, ec_sim_command(b->sim, &bed_ops, text, strlen(text), &f, &err),
-			    0, "%s: %s", text, err.text);
-	ec_sim_advance(b->sim, b->now);
-	KUNIT_ASSERT_EQ(test, ec_sim_add_fault(b->sim, &f), 0);
-	ec_sim_advance(b->sim, b->now);
-}
-
-static int count(struct bed *b, int port)
-{
-	u8 v[2] = {};
-
-	return bed_tx_port(b, port, EC_CMD_BRD, 0, 0, v, 2);
-}
-
-/* registers of a slave, reached or not */
-static u32 dl(struct bed *b, u32 slave)
-{
-	return ec_esc_dl_status(ec_sim_slave(b->sim, slave));
-}
-
-/* one byte for each port */
-static u32 lost(struct bed *b, u32 slave)
-{
-	return get_unaligned_le32(ec_sim_slave(b->sim, slave)->mem + EC_REG_ERR_LOST(0));
-}
-
-static void forget_dl_event(struct bed *b, u32 slave)
-{
-	ec_esc_event(ec_sim_slave(b->sim, slave), 0, DL_EVENT);
-}
-
-static bool dl_event(struct bed *b, u32 slave)
-{
-	return ec_sim_slave(b->sim, slave)->ecat_event & DL_EVENT;
-}
+#include "sim_cable_kunit.h"
 
 #define LINE	"slave a EK1100\nslave b EL2008\nslave c EL2008\n" \
 		"branch none\nslave x EL1008\nslave y EL1008\n"

@@ -71,6 +71,7 @@ static const struct {
 	{ "slave a EL2008\nfault latch a 2", 2, "fault latch NAME 0|1" },
 	{ "slave a EL2008\nfault latch a 1 edge=up", 2, "invalid edge 'up': expected rising, falling or pulse" },
 	{ "slave a EL2008 dc=16", 1, "invalid dc '16': expected 64, 32, delay or none" },
+	{ "slave a EL2008 loops=open", 1, "invalid loops 'open': expected fixed" },
 	{ "slave a EL2008 delay=5parsec", 1, "'5parsec' is not a time" },
 	{ "slave a drive mapping=none", 1, "rewritable" },
 	{ "slave a drive in=5000", 1, "at most 1486" },
