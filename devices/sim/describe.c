@@ -26,7 +26,7 @@ static int do_segment(struct ec_desc *d)
 		ret = ec_desc_time(d, "transition", EC_DESC_TIME_MAX, &d->transition_ns);
 	if (!ret)
 		ret = ec_desc_time(d, "op_timeout", EC_DESC_TIME_MAX, &d->op_timeout_ns);
-	return ret;
+	return ret ? ret : ec_desc_under_way(d);
 }
 
 static bool name_ok(const struct ec_desc_word *w)

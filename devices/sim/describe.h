@@ -5,6 +5,7 @@
  * bare number is in ns.
  *
  *	segment [seed=N] [response=TIME] [transition=TIME] [op_timeout=TIME]
+ *		[under_way=back|lost|random] (frames that come back to a closed loop)
  *	slave NAME DEVICE|file=IMAGE [OPTION...]
  *	repeat N slave NAME DEVICE [OPTION...]	NAME1, NAME2...; the alias counts up
  *		alias=N serial=N id=N vendor=N product=N revision=N

@@ -192,3 +192,28 @@ int ec_desc_own_ports(struct ec_desc *d, struct ec_app_config *c)
 	return !w.s || c->loops_fixed ? 0 :
 		ec_desc_fail(d, "invalid loops '", &w, "': expected fixed");
 }
+
+/**
+ * ec_desc_under_way() - fate of frames that come back to a closed loop
+ * @d: description, a segment statement
+ *
+ * Context: Process. May sleep.
+ * Return: 0, or -EINVAL.
+ */
+int ec_desc_under_way(struct ec_desc *d)
+{
+	static const char * const fates[] = {
+		[EC_SIM_UNDER_WAY_BACK] = "back", [EC_SIM_UNDER_WAY_LOST] = "lost",
+		[EC_SIM_UNDER_WAY_RANDOM] = "random",
+	};
+	struct ec_desc_word w = ec_desc_value(d, "under_way");
+
+	for (u32 i = 0; w.s && i < ARRAY_SIZE(fates); i++) {
+		if (!ec_desc_is(&w, fates[i]))
+			continue;
+		ec_sim_set_under_way(d->sim, i);
+		return 0;
+	}
+	return !w.s ? 0 : ec_desc_fail(d, "invalid under_way '", &w,
+				       "': expected back, lost or random");
+}

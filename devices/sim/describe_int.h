@@ -116,6 +116,7 @@ int ec_desc_slave(struct ec_desc *d, const struct ec_desc_word *w);
 /* describe_cable.c */
 int ec_desc_end_of_wire(struct ec_desc *d, const struct ec_desc_word *w, int *slave, int *port);
 int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f);
+int ec_desc_under_way(struct ec_desc *d);
 int ec_desc_own_ports(struct ec_desc *d, struct ec_app_config *c);
 
 /* describe_slave.c */

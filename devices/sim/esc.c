@@ -240,6 +240,7 @@ static void dl_control(struct ec_esc *esc, u16 ado, u32 len, u8 old_loops,
 		if (esc->loop_restore == EC_ESC_NEVER)
 			esc->loop_saved = old_loops;
 		esc->loop_restore = now + 1000000000;
+		ec_sim_port_due(esc->sim, esc->loop_restore);
 		ec_sim_touch(esc);
 	} else {
 		esc->loop_restore = EC_ESC_NEVER;

@@ -128,6 +128,16 @@ struct ec_esc_app_ops {
 #define EC_ESC_PEER_HOST	(-100)	/* a PC or a switch: no EtherCAT */
 
 /**
+ * struct ec_esc_transit - the last frame that passed a cable in one direction
+ * @number: its number
+ * @until: when its last bit has arrived at the other end
+ */
+struct ec_esc_transit {
+	u64 number;
+	u64 until;
+};
+
+/**
  * struct ec_esc_port - one port and what hangs on it
  * @peer: index of the slave at the other end; -1 nothing, -2 - n master port n,
  *        EC_ESC_PEER_HOST
@@ -138,6 +148,10 @@ struct ec_esc_app_ops {
  * @open: loop open: frames leave here
  * @auto_closed: the link was lost since a write, a frame or mode "auto" opened the loop;
  *               mode "auto close" keeps it shut then
+ * @lost_at: number of the event by which the link was lost the last time, 0: never was
+ * @closed_at: and the loop closed
+ * @sent: last frame that left here
+ * @received: last frame that came here from a master
  */
 struct ec_esc_port {
 	int peer;
@@ -147,6 +161,10 @@ struct ec_esc_port {
 	bool link;
 	bool open;
 	bool auto_closed;
+	u64 lost_at;
+	u64 closed_at;
+	struct ec_esc_transit sent;
+	struct ec_esc_transit received;
 };
 
 /**
@@ -370,6 +388,8 @@ struct ec_esc_late {
  * @wd_pdi_expired: it has, and the PDI was not accessed since
  * @loop_restore: time at which temporary loop settings end
  * @loop_saved: loop settings to restore
+ * @loop_frame: last frame that changed loops by a write
+ * @loop_before: ports that were open before it
  * @reset_step: letters of the reset sequence seen
  * @open_regs: last frame that opened the protected registers, 0: none
  * @open_all: last frame that opened the whole controller
@@ -415,6 +435,8 @@ struct ec_esc {
 	bool wd_pdi_expired;
 	u64 loop_restore;
 	u8 loop_saved;
+	u64 loop_frame;
+	u8 loop_before;
 	u8 reset_step;
 	u64 open_regs;
 	u64 open_all;

@@ -9,6 +9,7 @@
 #define EC_DC_FIRST		0x0900	/* registers of the clock */
 #define EC_DC_SIZE		0x0100
 #define EC_SIM_SCRATCH		2048	/* >= the longest datagram */
+#define EC_SIM_LEN_CIRCULATING	0x40	/* in the high byte of the length word */
 #define EC_SIM_HITS		16	/* logical datagrams of a cycle, power of two */
 
 /* one passage of a frame through a processing unit */
@@ -24,6 +25,7 @@ struct ec_sim_step {
  * @step: processing units in order
  * @steps: how many
  * @delay_ns: from master port to master port without the frame's own length
+ * @span_ns: until it comes out or is lost
  * @out_port: where it comes out, -1: lost
  * @circ: step whose port 0 is closed for want of a link, -1: none
  * @repeats: a slave is passed twice; no shortcuts
@@ -34,6 +36,7 @@ struct ec_sim_route {
 	struct ec_sim_step *step;
 	u32 steps;
 	u64 delay_ns;
+	u64 span_ns;
 	int out_port;
 	int circ;
 	bool repeats;
@@ -79,6 +82,7 @@ struct ec_sim {
 	u64 rng;
 	u64 now;
 	u64 frames;			/* sent so far */
+	u64 frame;			/* number of the one being processed */
 	enum ec_sim_bug bug;
 	bool slow;
 	u32 max;
@@ -91,7 +95,12 @@ struct ec_sim {
 	u64 wd_next;			/* no process data watchdog expires earlier */
 	u32 wd_slave;			/* whose it is, if it is that exactly */
 	u32 irqs;			/* slaves with esc->irq */
-	bool passing;			/* a frame is in the segment */
+	bool passing;			/* a frame is being processed */
+	enum ec_sim_under_way under_way;
+	struct ec_sim_flight *flights;	/* frames on their way, by the time of their next step */
+	u64 port_events;		/* links lost and loops closed */
+	u64 port_next;			/* no port changes by itself earlier */
+	u64 disturbed;			/* frames on their way when a link changed */
 	int pend_head;
 	int pend_tail;
 
@@ -151,6 +160,16 @@ static inline u64 ec_esc_next(const struct ec_esc *esc)
 
 	t = min(t, esc->loop_restore);
 	return min(t, esc->dc.sync_wake);
+}
+
+/* a bit for each port whose loop is open */
+static inline u8 ec_esc_open_ports(const struct ec_esc *esc)
+{
+	u8 v = 0;
+
+	for (int p = 0; p < EC_MAX_PORT; p++)
+		v |= (u8)(esc->port[p].open << p);
+	return v;
 }
 
 static inline u32 ec_esc_loop_mode(const struct ec_esc *esc, int p)
@@ -289,6 +308,12 @@ static inline void ec_sim_touch(struct ec_esc *esc)
 		ec_sim_key(esc, t);
 }
 
+/* a port changes by itself at @t */
+static inline void ec_sim_port_due(struct ec_sim *sim, u64 t)
+{
+	sim->port_next = min(sim->port_next, t);
+}
+
 void ec_sim_rehash(struct ec_esc *esc);
 
 /* segment_route.c */
@@ -316,10 +341,25 @@ const struct ec_sim_hits *ec_sim_spans_hit(struct ec_sim *sim, int mport, u32 st
 int ec_sim_spans_init(struct ec_sim *sim);
 void ec_sim_spans_exit(struct ec_sim *sim);
 
+int ec_sim_next_port(const struct ec_sim *sim, int port);
+
 /* segment_frame.c */
-s64 ec_sim_pass(struct ec_sim *sim, int port, u8 *frame, size_t len, size_t eth_len,
-		u64 now_ns, struct ec_sim_result *res);
+void ec_sim_start(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u64 now_ns);
 void ec_esc_pend(struct ec_esc *esc, u64 at_ns);
+void ec_sim_deliver(struct ec_sim *sim);
+bool ec_sim_datagrams(struct ec_frame_iter *it, u8 *frame, size_t len);
+
+/* segment_eth.c */
+void ec_sim_eth_mark(const struct ec_sim *sim, struct ec_sim_flight *fl);
+
+/* segment_flight.c */
+bool ec_sim_must_fly(struct ec_sim *sim, u64 until);
+void ec_sim_fly(struct ec_sim *sim, struct ec_sim_flight *fl);
+void ec_sim_step(struct ec_sim *sim);
+void ec_sim_arrive(struct ec_sim *sim, struct ec_sim_flight *fl, int out_port, u64 delay_ns);
+void ec_sim_lose(struct ec_sim_flight *fl);
+void ec_sim_link_changed(struct ec_esc *esc, int port, u64 now);
+void ec_sim_finish(struct ec_sim *sim, struct ec_sim_flight *fl);
 
 /* fault.c */
 int ec_sim_faults_init(struct ec_sim *sim);

@@ -14,7 +14,7 @@ static bool locked(const struct ec_esc *esc, u16 protect, u64 open)
 	if (!(esc->mem[protect] & 1) || ec_esc_bug(esc, EC_SIM_BUG_PROTECT))
 		return false;
 	return ec_esc_bug(esc, EC_SIM_BUG_PROTECT_OPEN) ?
-		!open : open != esc->sim->frames;
+		!open : open != esc->sim->frame;
 }
 
 /* may this frame not write to the RAM */
@@ -27,7 +27,7 @@ static void take_enable(struct ec_esc *esc, u16 reg, u64 *open, u16 ado,
 			const u8 *buf, u32 len)
 {
 	if (ec_range_hit(ado, len, reg, 1) && !(buf[reg - ado] & 1))
-		*open = esc->sim->frames;
+		*open = esc->sim->frame;
 }
 
 /*

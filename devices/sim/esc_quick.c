@@ -294,7 +294,7 @@ void ec_esc_settle(struct ec_esc *esc)
 	esc->late.stale = false;
 	if (!(esc->pend.sm_written | esc->pend.sm_read))
 		return;
-	if (esc->sim->passing && esc->late.frame == esc->sim->frames)
+	if (esc->sim->passing && esc->late.frame == esc->sim->frame)
 		ec_esc_pend(esc, esc->pend_ns);	/* its turn is after the frame */
 	else
 		ec_esc_deliver(esc);

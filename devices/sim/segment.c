@@ -118,6 +118,8 @@ u64 ec_sim_next_event(struct ec_sim *sim)
 	u64 a = slaves_next(sim), b = ec_sim_faults_next(sim);
 
 	a = min(a, b);
+	b = ec_sim_next_step(sim);
+	a = min(a, b);
 	b = watchdogs_next(sim, a);
 	return min(a, b);
 }
@@ -127,8 +129,8 @@ u64 ec_sim_next_event(struct ec_sim *sim)
  * @sim: segment
  * @now_ns: until when; going back does nothing
  *
- * Faults, watchdogs, pulses and applications due until then act, in the
- * order of their times.
+ * Faults, watchdogs, pulses, applications and frames on their way that are due
+ * until then act, in the order of their times.
  *
  * Context: Any. RT-safe: bounded by what is due, no sleep, no allocation.
  */
@@ -136,8 +138,9 @@ void ec_sim_advance(struct ec_sim *sim, u64 now_ns)
 {
 	for (;;) {
 		u64 a = slaves_next(sim), b = ec_sim_faults_next(sim);
-		u64 t = min(a, b), wd;
+		u64 c = ec_sim_next_step(sim), t = min(a, b), wd;
 
+		t = min(t, c);
 		wd = watchdogs_next(sim, min(t, now_ns));
 		t = min(t, wd);
 		if (t > now_ns || t == EC_ESC_NEVER)
@@ -147,8 +150,10 @@ void ec_sim_advance(struct ec_sim *sim, u64 now_ns)
 			ec_sim_faults_run(sim, sim->now);
 		else if (wd <= t)
 			ec_esc_run(sim->esc[sim->wd_slave], sim->now);
-		else
+		else if (a <= t)
 			ec_esc_run(sim->esc[sim->heap[0]], sim->now);
+		else
+			ec_sim_step(sim);
 	}
 	sim->now = max(sim->now, now_ns);
 }
@@ -218,6 +223,7 @@ struct ec_sim *ec_sim_new(const struct ec_sim_ops *ops, u32 max_slaves,
 	sim->seed = ec_sim_hash(seed);
 	sim->pend_head = -1;
 	sim->wd_next = EC_ESC_NEVER;
+	sim->port_next = EC_ESC_NEVER;
 	sim->dirty = true;
 	sim->buckets = 16;
 	while (sim->buckets < max_slaves)

@@ -59,6 +59,45 @@ bool ec_sim_eth_is_ethercat(const u8 *eth, size_t len)
 	return find(eth, len, &ip);
 }
 
+/* what a slave that processed the frame changed outside of its EtherCAT part */
+void ec_sim_eth_mark(const struct ec_sim *sim, struct ec_sim_flight *fl)
+{
+	if (!fl->eth || !fl->res.processed)
+		return;
+	fl->eth[6] |= 2;
+	if (fl->ip && sim->bug != EC_SIM_BUG_UDP_CHECKSUM)
+		memset(fl->eth + fl->ip + IP_HDR + UDP_CHECKSUM, 0, 2);
+}
+
+/**
+ * ec_sim_send() - send one Ethernet frame into the segment
+ * @sim: segment
+ * @fl: state of the frame; belongs to the model until @fl->done
+ * @port: master port at which it is sent, 0 or 1
+ * @eth: Ethernet frame, stays the model's as long as @fl; see ec_sim_eth()
+ * @len: bytes at @eth, padding included, without FCS
+ * @now_ns: when the first bit is sent
+ *
+ * Mostly the fate of a frame is known at once. It is on its way while a port may change
+ * before it is back: then ec_sim_advance() takes it on, step by step at the times of
+ * ec_sim_next_step(), together with all that happens in between.
+ *
+ * Context: Any. RT-safe: bounded by datagrams times slaves.
+ */
+void ec_sim_send(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u8 *eth, size_t len,
+		 u64 now_ns)
+{
+	size_t ip, at = find(eth, len, &ip);
+
+	*fl = (struct ec_sim_flight){
+		.eth = eth, .ip = ip, .frame = eth + at, .len = len - at, .eth_len = len,
+	};
+	if (at)
+		ec_sim_start(sim, fl, port, now_ns);
+	else
+		ec_sim_lose(fl);
+}
+
 /**
  * ec_sim_eth() - pass one Ethernet frame through the segment and back
  * @sim: segment
@@ -77,18 +116,10 @@ bool ec_sim_eth_is_ethercat(const u8 *eth, size_t len)
 s64 ec_sim_eth(struct ec_sim *sim, int port, u8 *eth, size_t len, u64 now_ns,
 	       struct ec_sim_result *res)
 {
-	size_t ip, at = find(eth, len, &ip);
-	s64 delay;
+	struct ec_sim_flight fl;
 
-	if (!at) {
-		*res = (struct ec_sim_result){ .out_port = -1, .delay_ns = -ENOLINK };
-		return -ENOLINK;
-	}
-	delay = ec_sim_pass(sim, port, eth + at, len - at, len, now_ns, res);
-	if (delay < 0 || !res->processed)
-		return delay;
-	eth[6] |= 2;
-	if (ip && sim->bug != EC_SIM_BUG_UDP_CHECKSUM)
-		memset(eth + ip + IP_HDR + UDP_CHECKSUM, 0, 2);
-	return delay;
+	ec_sim_send(sim, &fl, port, eth, len, now_ns);
+	ec_sim_finish(sim, &fl);
+	*res = fl.res;
+	return res->delay_ns;
 }

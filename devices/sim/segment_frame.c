@@ -9,8 +9,6 @@
  */
 #include "esc_int.h"
 
-#define LEN_CIRCULATING	0x40	/* in the high byte of the length word */
-
 /* the application is notified at the end of the frame */
 void ec_esc_pend(struct ec_esc *esc, u64 at_ns)
 {
@@ -27,7 +25,8 @@ void ec_esc_pend(struct ec_esc *esc, u64 at_ns)
 	sim->pend_tail = esc->index;
 }
 
-static void deliver(struct ec_sim *sim)
+/* reports what frames have done */
+void ec_sim_deliver(struct ec_sim *sim)
 {
 	while (sim->pend_head >= 0) {
 		struct ec_esc *esc = sim->esc[sim->pend_head];
@@ -139,7 +138,7 @@ static void by_logical(const struct pass *ps, struct ec_dgram *d)
 	const struct ec_quick k = {
 		.data = d->data, .first = first, .len = d->len, .cmd = d->cmd,
 		.count = d->cmd == EC_CMD_LRW ? 2 : 1,
-		.frame = sim->frames, .wire_ns = ps->wire_ns,
+		.frame = sim->frame, .wire_ns = ps->wire_ns,
 	};
 	u16 wkc = 0;
 
@@ -270,7 +269,7 @@ static void datagram(const struct pass *ps, struct ec_dgram *d)
  * and their "more" bits up to the end of the frame, never by the length in the
  * EtherCAT header. Returns false: not of the type that is processed.
  */
-static bool datagrams(struct ec_frame_iter *it, u8 *frame, size_t len)
+bool ec_sim_datagrams(struct ec_frame_iter *it, u8 *frame, size_t len)
 {
 	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD ||
 	    get_unaligned_le16(frame) >> 12 != EC_FRAME_TYPE_DGRAM)
@@ -292,11 +291,11 @@ static bool circulating(struct pass *ps, u8 *frame, size_t len)
 	bool had = false;
 
 	if (ps->r->circ < 0 || ps->sim->bug == EC_SIM_BUG_CIRCULATING ||
-	    !datagrams(&it, frame, len))
+	    !ec_sim_datagrams(&it, frame, len))
 		return true;
 	while (it.more && ec_frame_iter_next(&it, &d) > 0) {
 		had |= d.circulating;
-		d.hdr[7] |= LEN_CIRCULATING;
+		d.hdr[7] |= EC_SIM_LEN_CIRCULATING;
 	}
 	if (had)
 		ps->steps = (u32)ps->r->circ;
@@ -309,7 +308,7 @@ static void process(struct pass *ps, u8 *frame, size_t len)
 	struct ec_dgram d;
 	int ret = 1;
 
-	if (!datagrams(&it, frame, len))
+	if (!ec_sim_datagrams(&it, frame, len))
 		return;				/* forwarded as it is */
 	while (it.more && (ret = ec_frame_iter_next(&it, &d)) > 0)
 		datagram(ps, &d);
@@ -321,58 +320,54 @@ static void process(struct pass *ps, u8 *frame, size_t len)
 	}
 }
 
-/*
- * One frame through the segment and back: @len bytes from the EtherCAT header on,
- * in an Ethernet frame of @eth_len bytes without FCS.
- */
-s64 ec_sim_pass(struct ec_sim *sim, int port, u8 *frame, size_t len, size_t eth_len,
-		u64 now_ns, struct ec_sim_result *res)
+/* the whole way at once, as it is now */
+static void pass(struct ec_sim *sim, struct ec_sim_flight *fl)
 {
-	struct pass ps = { .sim = sim, .now = now_ns, .mport = port };
-	bool lose_out = false, lose_back = false, lost;
-	u64 extra_ns = 0;
+	const struct ec_sim_route *r = &sim->route[fl->mport];
+	struct pass ps = {
+		.sim = sim, .r = &sim->route[fl->mport], .steps = r->steps,
+		.now = fl->start_ns, .wire_ns = fl->wire_ns, .mport = fl->mport,
+	};
+	bool lost = !circulating(&ps, fl->frame, fl->len);
 
-	sim->frames++;
-	memset(res, 0, sizeof(*res));
-	res->out_port = -1;
-	res->delay_ns = -ENOLINK;
+	fl->res.processed = r->steps;
+	sim->passing = true;
+	process(&ps, fl->frame, fl->len);
+	sim->passing = false;
+	if (r->opens >= 0) {		/* heard at an auto-closed port */
+		struct ec_esc *esc = sim->esc[r->opens];
+
+		esc->port[r->opens_port].auto_closed = false;
+		ec_sim_loops(esc, false, fl->start_ns);
+	}
+	ec_sim_deliver(sim);
+
+	if (lost || fl->lose_back || r->out_port < 0)
+		ec_sim_lose(fl);
+	else
+		ec_sim_arrive(sim, fl, r->out_port, r->delay_ns + fl->wire_ns);
+}
+
+/* a frame, of which eth, frame and their lengths are given, is sent at a master port */
+void ec_sim_start(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u64 now_ns)
+{
+	bool lose_out = false;
+
+	fl->number = ++sim->frames;
+	fl->mport = port;
+	fl->start_ns = now_ns;
+	fl->wire_ns = ec_frame_wire_ns(fl->eth_len) - 12 * 80;
 	ec_sim_advance(sim, now_ns);
-	ec_sim_faults_frame(sim, port, &lose_out, &lose_back, res, &extra_ns);
+	sim->frame = fl->number;
+	ec_sim_faults_frame(sim, port, &lose_out, &fl->lose_back, &fl->res, &fl->extra_ns);
 	if (sim->dirty)
 		ec_sim_routes(sim);
-	ps.r = &sim->route[port];
-	if (lose_out || !ec_sim_link(sim, port)) {
-		res->copies = 0;
-		res->mangled = false;
-		return -ENOLINK;
-	}
-
-	ps.steps = ps.r->steps;
-	res->processed = ps.steps;
-	ps.wire_ns = ec_frame_wire_ns(eth_len) - 12 * 80;
-	lost = !circulating(&ps, frame, len);
-	sim->passing = true;
-	process(&ps, frame, len);
-	sim->passing = false;
-	if (ps.r->opens >= 0) {		/* heard at an auto-closed port */
-		struct ec_esc *esc = sim->esc[ps.r->opens];
-
-		esc->port[ps.r->opens_port].auto_closed = false;
-		ec_sim_loops(esc, false, now_ns);
-	}
-	deliver(sim);
-
-	if (lost || lose_back || ps.r->out_port < 0) {
-		res->copies = 0;
-		res->mangled = false;
-		return -ENOLINK;
-	}
-	if (res->mangled)
-		ec_sim_faults_mangle(sim, frame, len);
-	res->copies++;
-	res->out_port = ps.r->out_port;
-	res->delay_ns = (s64)(ps.r->delay_ns + ps.wire_ns + extra_ns);
-	return res->delay_ns;
+	if (lose_out || !ec_sim_link(sim, port))
+		ec_sim_lose(fl);
+	else if (ec_sim_must_fly(sim, now_ns + sim->route[port].span_ns + fl->wire_ns))
+		ec_sim_fly(sim, fl);
+	else
+		pass(sim, fl);
 }
 
 /**
@@ -390,7 +385,12 @@ s64 ec_sim_pass(struct ec_sim *sim, int port, u8 *frame, size_t len, size_t eth_
 s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 			u64 now_ns, struct ec_sim_result *res)
 {
-	return ec_sim_pass(sim, port, frame, len, EC_ETH_HDR + len, now_ns, res);
+	struct ec_sim_flight fl = { .frame = frame, .len = len, .eth_len = EC_ETH_HDR + len };
+
+	ec_sim_start(sim, &fl, port, now_ns);
+	ec_sim_finish(sim, &fl);
+	*res = fl.res;
+	return res->delay_ns;
 }
 
 /**

@@ -31,9 +31,9 @@ static void dl_event(struct ec_esc *esc)
 /* loop settings or links changed; @written: by a write to 0x0101 */
 void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
 {
+	u8 before = ec_esc_open_ports(esc);
 	int p;
 
-	(void)now;
 	for (p = 0; p < EC_MAX_PORT; p++) {
 		struct ec_esc_port *port = &esc->port[p];
 		u32 mode = ec_esc_loop_mode(esc, p);
@@ -61,9 +61,15 @@ void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
 		if (open == port->open)
 			continue;
 		port->open = open;
+		if (!open)
+			port->closed_at = ++esc->sim->port_events;
 		esc->sim->dirty = true;
 		if (esc->powered)
 			dl_event(esc);
+	}
+	if (esc->sim->passing && esc->loop_frame != esc->sim->frame) {
+		esc->loop_frame = esc->sim->frame;
+		esc->loop_before = before;
 	}
 }
 
@@ -83,6 +89,7 @@ void ec_sim_ports(struct ec_esc *esc, u64 now)
 		if (link == port->link)
 			continue;
 		port->link = link;
+		ec_sim_link_changed(esc, p, now);
 		if (!esc->powered)
 			continue;
 		if (!link && *lost != 0xff &&
@@ -145,11 +152,17 @@ static bool add_step(struct ec_sim *sim, struct ec_sim_route *r, int mport,
 	return true;
 }
 
-static void walk(struct ec_sim *sim, int mport)
+/* in which order frames leave */
+int ec_sim_next_port(const struct ec_sim *sim, int port)
 {
 	static const u8 right[EC_MAX_PORT] = { 3, 2, 0, 1 };
 	static const u8 wrong[EC_MAX_PORT] = { 1, 2, 3, 0 };
-	const u8 *next_port = sim->bug == EC_SIM_BUG_PORT_ORDER ? wrong : right;
+
+	return sim->bug == EC_SIM_BUG_PORT_ORDER ? wrong[port] : right[port];
+}
+
+static void walk(struct ec_sim *sim, int mport)
+{
 	struct ec_sim_route *r = &sim->route[mport];
 	const struct ec_esc_port *cable = &sim->mport[mport];
 	u32 guard = 8 * sim->count + 16;
@@ -163,6 +176,7 @@ static void walk(struct ec_sim *sim, int mport)
 		bool processed = false;
 
 		t += cable->cable_ns;
+		r->span_ns = t;
 		if (!esc->port[p].open) {	/* no slave listens */
 			if (ec_esc_port_waits(esc, p)) {
 				r->opens = esc->index;
@@ -180,7 +194,7 @@ static void walk(struct ec_sim *sim, int mport)
 					return;
 				processed = true;
 			}
-			p = next_port[p];
+			p = (u8)ec_sim_next_port(sim, p);
 		} while (!esc->port[p].open);
 		if (sim->bug != EC_SIM_BUG_NO_DELAY)
 			t += processed ? esc->cfg.process_ns : esc->cfg.forward_ns;
@@ -193,6 +207,7 @@ static void walk(struct ec_sim *sim, int mport)
 		if (cable->peer < 0) {
 			r->out_port = -2 - cable->peer;
 			r->delay_ns = t + cable->cable_ns;
+			r->span_ns = r->delay_ns;
 			return;
 		}
 	}
@@ -208,6 +223,7 @@ void ec_sim_routes(struct ec_sim *sim)
 
 		r->steps = 0;
 		r->delay_ns = 0;
+		r->span_ns = 0;
 		r->out_port = -1;
 		r->circ = -1;
 		r->repeats = false;

@@ -200,6 +200,77 @@ struct ec_sim_result {
 	bool processed;
 };
 
+/**
+ * enum ec_sim_under_way - fate of a frame that comes back to a port whose loop was closed meanwhile
+ * @EC_SIM_UNDER_WAY_BACK: the port lets it in
+ * @EC_SIM_UNDER_WAY_LOST: it is destroyed there
+ * @EC_SIM_UNDER_WAY_RANDOM: one of the two, by chance
+ */
+enum ec_sim_under_way {
+	EC_SIM_UNDER_WAY_BACK,
+	EC_SIM_UNDER_WAY_LOST,
+	EC_SIM_UNDER_WAY_RANDOM
+};
+
+/**
+ * struct ec_sim_flight - a frame in the segment
+ * @done: it is back or lost: the next two are valid
+ * @due_ns: when its last bit is back
+ * @res: what became of it
+ * @next: next one on its way
+ * @eth: Ethernet frame, NULL: @frame is all there is
+ * @ip: where the IP header is in @eth, 0: none
+ * @frame: EtherCAT header and datagrams
+ * @len: bytes there
+ * @eth_len: bytes of the Ethernet frame, without FCS
+ * @number: its number
+ * @mport: master port that sent it
+ * @lose_back: to be lost on the way back
+ * @circulating: it has passed a slave without upstream link
+ * @disturbed: a link changed while it was on its way
+ * @hops: slaves entered so far
+ * @wire_ns: from its first to its last bit
+ * @start_ns: when the first bit was sent
+ * @extra_ns: to be added to its delay
+ * @at_ns: when its first bit reaches @to; the last bit at a master
+ * @to: slave, or -2 - n for master port n
+ * @to_port: port of the slave
+ * @from: where it left, as @to
+ * @from_port: port of the slave
+ * @left_at: number of the last event of a port then
+ * @started_at: and when it was sent
+ *
+ * All but the first three is private to the model.
+ */
+struct ec_sim_flight {
+	bool done;
+	u64 due_ns;
+	struct ec_sim_result res;
+
+	struct ec_sim_flight *next;
+	u8 *eth;
+	size_t ip;
+	u8 *frame;
+	size_t len;
+	size_t eth_len;
+	u64 number;
+	int mport;
+	bool lose_back;
+	bool circulating;
+	bool disturbed;
+	u32 hops;
+	u32 wire_ns;
+	u64 start_ns;
+	u64 extra_ns;
+	u64 at_ns;
+	int to;
+	u8 to_port;
+	int from;
+	u8 from_port;
+	u64 left_at;
+	u64 started_at;
+};
+
 /* building */
 struct ec_sim *ec_sim_new(const struct ec_sim_ops *ops, u32 max_slaves,
 			  u64 seed);
@@ -220,6 +291,12 @@ s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 s64 ec_sim_eth(struct ec_sim *sim, int port, u8 *eth, size_t len, u64 now_ns,
 	       struct ec_sim_result *res);
 bool ec_sim_eth_is_ethercat(const u8 *eth, size_t len);
+void ec_sim_send(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u8 *eth, size_t len,
+		 u64 now_ns);
+u64 ec_sim_next_step(const struct ec_sim *sim);
+void ec_sim_recall(struct ec_sim *sim, struct ec_sim_flight *fl);
+void ec_sim_set_under_way(struct ec_sim *sim, enum ec_sim_under_way how);
+u64 ec_sim_disturbed(const struct ec_sim *sim);
 void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
 u64 ec_sim_next_event(struct ec_sim *sim);
 bool ec_sim_link(const struct ec_sim *sim, int port);

@@ -13,6 +13,7 @@
 /* a frame on its way */
 struct ec_sim_flying {
 	struct list_head list;
+	struct ec_sim_flight flight;
 	u64 due_ns;
 	int port;
 	size_t len;
@@ -64,11 +65,13 @@ static struct ec_sim_flying *unused(struct ec_sim_wire *w)
 static void arm(struct ec_sim_wire *w)
 {
 	struct ec_sim_flying *f = list_first_entry_or_null(&w->flying, struct ec_sim_flying, list);
+	u64 next = ec_sim_next_step(w->sim);
 
 	lockdep_assert_held(&w->lock);
-	if (f && !w->polled && w->running)
-		hrtimer_start(&w->timer, ns_to_ktime(w->start_ns + f->due_ns),
-			      HRTIMER_MODE_ABS_SOFT);
+	if (f)
+		next = min(next, f->due_ns);
+	if (next != EC_ESC_NEVER && !w->polled && w->running)
+		hrtimer_start(&w->timer, ns_to_ktime(w->start_ns + next), HRTIMER_MODE_ABS_SOFT);
 }
 
 static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)
@@ -80,6 +83,61 @@ static struct ec_sim_flying *due(struct ec_sim_wire *w, u64 now)
 		return NULL;
 	list_del(&f->list);
 	return f;
+}
+
+/* Copies of a frame follow one another. */
+static void copies(struct ec_sim_wire *w, const struct ec_sim_flying *f, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 1; i < n; i++) {
+		struct ec_sim_flying *g = unused(w);
+
+		if (!g)
+			return;
+		g->due_ns = f->due_ns + i * ec_frame_wire_ns(f->len);
+		g->port = f->port;
+		g->len = f->len;
+		memcpy(g->eth, f->eth, f->len);
+		insert(w, g);
+	}
+}
+
+/* The segment knows what becomes of a frame. */
+static void decided(struct ec_sim_wire *w, struct ec_sim_flying *f)
+{
+	const struct ec_sim_result *res = &f->flight.res;
+
+	lockdep_assert_held(&w->lock);
+	if (res->delay_ns < 0 || !res->copies) {
+		list_add(&f->list, &w->free);
+		return;
+	}
+	f->port = res->out_port;
+	f->due_ns = f->flight.due_ns;
+	insert(w, f);
+	copies(w, f, res->copies);
+}
+
+/* Frames of which it was not known yet. */
+static void collect(struct ec_sim_wire *w)
+{
+	struct ec_sim_flying *f, *next;
+
+	list_for_each_entry_safe(f, next, &w->under_way, list) {
+		if (!f->flight.done)
+			continue;
+		list_del(&f->list);
+		decided(w, f);
+	}
+}
+
+/* The time of the segment is the kernel's. */
+static void advance(struct ec_sim_wire *w)
+{
+	lockdep_assert_held(&w->lock);
+	ec_sim_advance(w->sim, now_ns(w));
+	collect(w);
 }
 
 /**
@@ -94,6 +152,8 @@ void ec_sim_wire_poll(struct ec_sim_wire *w)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
+	if (!list_empty(&w->under_way))
+		advance(w);
 	while ((f = due(w, now_ns(w)))) {
 		raw_spin_unlock_irqrestore(&w->lock, flags);
 		w->deliver(w, f->port, f->eth, f->len);
@@ -119,12 +179,17 @@ static enum hrtimer_restart timeout(struct hrtimer *timer)
  */
 void ec_sim_wire_run(struct ec_sim_wire *w, bool on)
 {
+	struct ec_sim_flying *f;
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
 	w->running = on;
-	if (!on)
+	if (!on) {
+		list_for_each_entry(f, &w->under_way, list)
+			ec_sim_recall(w->sim, &f->flight);
+		list_splice_init(&w->under_way, &w->free);
 		list_splice_init(&w->flying, &w->free);
+	}
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 	if (!on)
 		hrtimer_cancel(&w->timer);
@@ -147,30 +212,10 @@ void ec_sim_wire_set_polled(struct ec_sim_wire *w, bool on)
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 }
 
-/* Copies of a frame follow one another. */
-static void copies(struct ec_sim_wire *w, const struct ec_sim_flying *f, unsigned int n)
-{
-	unsigned int i;
-
-	for (i = 1; i < n; i++) {
-		struct ec_sim_flying *g = unused(w);
-
-		if (!g)
-			return;
-		g->due_ns = f->due_ns + i * ec_frame_wire_ns(f->len);
-		g->port = f->port;
-		g->len = f->len;
-		memcpy(g->eth, f->eth, f->len);
-		insert(w, g);
-	}
-}
-
 static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
 	struct ec_sim_flying *f = unused(w);
-	struct ec_sim_result res;
 	u64 start;
-	s64 delay;
 
 	lockdep_assert_held(&w->lock);
 	if (!f)
@@ -179,15 +224,9 @@ static void launch(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 	w->wire_free_ns[port] = start + ec_frame_wire_ns(len);
 	f->len = len;
 	memcpy(f->eth, eth, len);
-	delay = ec_sim_eth(w->sim, port, f->eth, len, start, &res);
-	if (delay < 0 || !res.copies) {
-		list_add(&f->list, &w->free);
-		return;
-	}
-	f->port = res.out_port;
-	f->due_ns = start + delay;
-	insert(w, f);
-	copies(w, f, res.copies);
+	ec_sim_send(w->sim, &f->flight, port, f->eth, len, start);
+	list_add_tail(&f->list, &w->under_way);
+	collect(w);		/* mostly this one */
 }
 
 /**
@@ -229,9 +268,9 @@ int ec_sim_wire_fault(struct ec_sim_wire *w, const struct ec_sim_fault *f)
 	int ret;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
-	ec_sim_advance(w->sim, now_ns(w));	/* it begins now, not with the last frame */
+	advance(w);		/* it begins now, not with the last frame */
 	ret = ec_sim_add_fault(w->sim, f);
-	ec_sim_advance(w->sim, now_ns(w));
+	advance(w);
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 	return ret;
 }
@@ -251,7 +290,7 @@ void ec_sim_wire_show(struct ec_sim_wire *w, u32 index, char *buf, size_t size)
 
 	raw_spin_lock_irqsave(&w->lock, flags);
 	/* faults whose time has come */
-	ec_sim_advance(w->sim, now_ns(w));
+	advance(w);
 	ec_sim_show(w->sim, index, buf, size);
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 }
@@ -269,7 +308,7 @@ bool ec_sim_wire_up(struct ec_sim_wire *w)
 	bool up;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
-	ec_sim_advance(w->sim, now_ns(w));
+	advance(w);
 	up = ec_sim_link(w->sim, 0);
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 	return up;
@@ -299,6 +338,7 @@ int ec_sim_wire_init(struct ec_sim_wire *w, struct ec_sim *sim, u64 start_ns,
 	raw_spin_lock_init(&w->lock);
 	hrtimer_setup(&w->timer, timeout, CLOCK_MONOTONIC, HRTIMER_MODE_ABS_SOFT);
 	INIT_LIST_HEAD(&w->flying);
+	INIT_LIST_HEAD(&w->under_way);
 	INIT_LIST_HEAD(&w->free);
 	for (i = 0; i < FRAMES; i++)
 		list_add(&w->frames[i].list, &w->free);

@@ -18,7 +18,8 @@ struct ec_sim_flying;
  *	softirq or from ec_sim_wire_poll(); no lock is held
  * @lock: protects everything below and @sim
  * @timer: delivers unless @polled
- * @flying: frames on their way, by arrival
+ * @flying: frames that come back, by arrival
+ * @under_way: frames of which it is not known yet
  * @free: unused frames
  * @frames: all of them
  * @wire_free_ns: when the last frame sent has left the master, by port
@@ -32,6 +33,7 @@ struct ec_sim_wire {
 	raw_spinlock_t lock;
 	struct hrtimer timer;
 	struct list_head flying;
+	struct list_head under_way;
 	struct list_head free;
 	struct ec_sim_flying *frames;
 	u64 wire_free_ns[EC_SIM_PORTS];

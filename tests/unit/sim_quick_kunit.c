@@ -261,7 +261,11 @@ static void registers(struct twin *t)
 
 static void both_fault(struct twin *t, enum ec_sim_fault_type type, int slave, u32 arg)
 {
-	struct ec_sim_fault f = { .type = type, .slave = slave, .port = 1, .arg = arg };
+	struct ec_sim_fault f = {
+		.at_ns = t->b->now + 20000, .type = type, .slave = slave, .port = 1, .arg = arg,
+	};
+
+	t->b->now += 40000;	/* no frame is on its way */
 
 	KUNIT_ASSERT_EQ(t->test, ec_sim_add_fault(t->b->sim, &f), 0);
 	KUNIT_ASSERT_EQ(t->test, ec_sim_add_fault(t->slow, &f), 0);
@@ -375,10 +379,8 @@ static void sim_quick_channels(struct kunit *test)
 	}
 }
 
-static void sim_quick_cycles_with_events(struct kunit *test)
+static void cycles_with_events(struct twin *t)
 {
-	struct twin *t = twin_new(test);
-
 	for (u32 i = 0; i < 12000; i++) {
 		begin(t);
 		cyclic(t);
@@ -401,6 +403,20 @@ static void sim_quick_cycles_with_events(struct kunit *test)
 	compare(t);
 }
 
+static void sim_quick_cycles_with_events(struct kunit *test)
+{
+	cycles_with_events(twin_new(test));
+}
+
+/* the other segment moves its frames from slave to slave */
+static void sim_quick_cycles_step_by_step(struct kunit *test)
+{
+	struct twin *t = twin_new(test);
+
+	ec_sim_set_under_way(t->slow, EC_SIM_UNDER_WAY_LOST);
+	cycles_with_events(t);
+}
+
 static void twin_exit(struct kunit *test)
 {
 	struct twin *t = test->priv;
@@ -415,6 +431,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_quick_quiet_cycles),
 	KUNIT_CASE(sim_quick_channels),
 	KUNIT_CASE(sim_quick_cycles_with_events),
+	KUNIT_CASE(sim_quick_cycles_step_by_step),
 	{}
 };
 

@@ -23,6 +23,7 @@
 /* a frame that returns to the master */
 struct flying {
 	struct flying *next;
+	struct ec_sim_flight flight;
 	u64 due_ns;
 	int port;
 	size_t len;
@@ -36,6 +37,7 @@ struct flying {
  * @n_ports: how many
  * @control: socket of control_open(), -1: none
  * @flying: by time of arrival
+ * @under_way: frames of which it is not known yet whether and when they return
  * @free: unused frames
  * @wire_free_ns: when the last frame has left the master, by port
  * @start_ns: time of the clock at model time 0
@@ -50,6 +52,7 @@ struct run {
 	int n_ports;
 	int control;
 	struct flying *flying;
+	struct flying *under_way;
 	struct flying *free;
 	u64 wire_free_ns[EC_SIM_PORTS];
 	u64 start_ns;
@@ -117,24 +120,55 @@ static void copies(struct run *r, const struct flying *f, unsigned int n)
 	}
 }
 
-/* One frame through the segment. */
-static void launch(struct run *r, int port, struct flying *f)
+/* The segment knows what becomes of a frame. */
+static void decided(struct run *r, struct flying *f)
 {
-	struct ec_sim_result res;
-	u64 start = max(now_ns(r), r->wire_free_ns[port]);
-	s64 delay;
+	const struct ec_sim_result *res = &f->flight.res;
 
-	r->wire_free_ns[port] = start + ec_frame_wire_ns(f->len);
-	delay = ec_sim_eth(r->sim, port, f->data, f->len, start, &res);
-	if (delay < 0 || !res.copies || res.out_port >= r->n_ports) {
+	if (res->delay_ns < 0 || !res->copies || res->out_port >= r->n_ports) {
 		r->lost++;
 		give(r, f);
 		return;
 	}
-	f->port = res.out_port;
-	f->due_ns = start + (u64)delay;
+	f->port = res->out_port;
+	f->due_ns = f->flight.due_ns;
 	insert(r, f);
-	copies(r, f, res.copies);
+	copies(r, f, res->copies);
+}
+
+/* Frames of which it was not known yet. */
+static void collect(struct run *r)
+{
+	struct flying **at = &r->under_way;
+
+	while (*at) {
+		struct flying *f = *at;
+
+		if (f->flight.done) {
+			*at = f->next;
+			decided(r, f);
+		} else {
+			at = &f->next;
+		}
+	}
+}
+
+static void advance(struct run *r)
+{
+	ec_sim_advance(r->sim, now_ns(r));
+	collect(r);
+}
+
+/* One frame through the segment. */
+static void launch(struct run *r, int port, struct flying *f)
+{
+	u64 start = max(now_ns(r), r->wire_free_ns[port]);
+
+	r->wire_free_ns[port] = start + ec_frame_wire_ns(f->len);
+	ec_sim_send(r->sim, &f->flight, port, f->data, f->len, start);
+	f->next = r->under_way;
+	r->under_way = f;
+	collect(r);		/* mostly this one */
 }
 
 static void receive(struct run *r, int port)
@@ -163,6 +197,8 @@ static void receive(struct run *r, int port)
 
 static void deliver(struct run *r)
 {
+	if (r->under_way)
+		advance(r);
 	while (r->flying && r->flying->due_ns <= now_ns(r)) {
 		struct flying *f = r->flying;
 
@@ -187,12 +223,14 @@ static void show(const struct run *r)
 static void rest(struct run *r, const sigset_t *mask)
 {
 	struct pollfd fds[EC_SIM_PORTS + 1];
-	u64 now = now_ns(r), left = LOOK_NS;
+	u64 now = now_ns(r), left = LOOK_NS, next = ec_sim_next_step(r->sim);
 	struct timespec t;
 	int i;
 
 	if (r->flying)
-		left = r->flying->due_ns > now ? min(r->flying->due_ns - now, left) : 0;
+		next = min(next, r->flying->due_ns);
+	if (next != EC_ESC_NEVER)
+		left = next > now ? min(next - now, left) : 0;
 	for (i = 0; i < r->n_ports; i++)
 		fds[i] = (struct pollfd){ .fd = r->ports[i].fd, .events = r->free ? POLLIN : 0 };
 	fds[i] = (struct pollfd){ .fd = r->control, .events = POLLIN };
@@ -203,15 +241,15 @@ static void rest(struct run *r, const sigset_t *mask)
 		if (fds[i].revents)
 			receive(r, i);
 	if (fds[i].revents) {
-		ec_sim_advance(r->sim, now_ns(r));	/* a fault begins now */
+		advance(r);	/* a fault begins now */
 		control_receive(r->control, r->sim);
 	}
 }
 
 /* Periodic: advance the time of a quiet segment, check the interfaces. */
-static bool look(struct run *r, u64 now)
+static bool look(struct run *r)
 {
-	ec_sim_advance(r->sim, now);
+	advance(r);
 	for (int i = 0; i < r->n_ports; i++) {
 		port_check(&r->ports[i]);
 		if (r->ports[i].gone)
@@ -230,7 +268,7 @@ static void loop(struct run *r, const sigset_t *mask, bool verbose)
 		deliver(r);
 		if (now - looked >= LOOK_NS) {
 			looked = now;
-			if (!look(r, now))
+			if (!look(r))
 				return;
 		}
 		if (verbose && now - shown >= SECOND) {
