@@ -32,7 +32,8 @@
  *	const NAME.CHANNEL value=N
  *	ramp NAME.CHANNEL amplitude=N period=TIME [offset=N]
  *	sine NAME.CHANNEL amplitude=N period=TIME [offset=N]
- *	fault [at=TIME] WHAT, where WHAT is one of
+ *	fault [at=TIME] WHAT [frame=N [register=N] [when=out|back] [after=TIME]],
+ *		with the n-th frame from then on, where WHAT is one of
  *		plug NAME.PORT NAME.PORT [cable=TIME]  unplug NAME.PORT
  *		swap NAME NAME (slaves)  swap NAME.PORT NAME.PORT (branches)
  *		host NAME.PORT [every=TIME] (a PC or a switch, and its frames)
@@ -55,7 +56,7 @@
  *		emergency NAME code=N [register=N]
  *		voe NAME [vendor=N] [type=N] [size=N] (a VoE message)
  *		lose|mangle|duplicate|delay frame=N|rate=Nppm [port=0|1]
- *			[copies=N] [by=TIME]
+ *			[copies=N] [by=TIME] [register=N] [when=out|back]
  *
  * Slaves hang in a line, port 0 at port 1 of the slave before.
  */

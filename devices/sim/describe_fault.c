@@ -174,6 +174,17 @@ static int latch(struct ec_desc *d, struct ec_sim_fault *f)
 	return 0;
 }
 
+/* where a frame is lost; on the way back, unless something else is said */
+static int way(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	enum ec_sim_when when = EC_SIM_WHEN_BACK;
+
+	if (ec_desc_when(d, &when))
+		return -EINVAL;
+	f->value = when == EC_SIM_WHEN_BACK;
+	return 0;
+}
+
 static int frame(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	s64 n = 0, ppb = -1, port = -1, copies = 1;
@@ -181,6 +192,8 @@ static int frame(struct ec_desc *d, struct ec_sim_fault *f)
 	int ret;
 
 	ret = ec_desc_number(d, "frame", 1, 0x7FFFFFFF, &n);
+	if (!ret)
+		ret = ec_desc_register(d, f);
 	if (!ret)
 		ret = ec_desc_rate(d, "rate", 1000000000, &ppb);
 	if (!ret)
@@ -198,7 +211,7 @@ static int frame(struct ec_desc *d, struct ec_sim_fault *f)
 	f->arg = (u32)n;
 	f->arg2 = n ? 0 : (u32)div64_u64((u64)ppb + 999, 1000);
 	f->value = f->type == EC_SIM_FAULT_DELAY ? by : (u64)copies;
-	return 0;
+	return f->type == EC_SIM_FAULT_LOSE ? way(d, f) : 0;
 }
 
 static int option(struct ec_desc *d, struct ec_sim_fault *f, const char *key,
@@ -389,6 +402,8 @@ int ec_desc_fault(struct ec_desc *d)
 	ret = v->object == FRAME ? frame(d, &f) : target(d, v, &f);
 	if (!ret)
 		ret = details(d, v, &f);
+	if (!ret && v->object != FRAME)
+		ret = ec_desc_wait(d, &f);
 	if (ret)
 		return ret;
 	if (d->command) {

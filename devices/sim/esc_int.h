@@ -72,7 +72,7 @@ struct ec_sim_hits {
 
 struct ec_sim_pending_fault {
 	struct ec_sim_fault f;
-	u32 seen;			/* frames since it became active */
+	u32 seen;			/* frames since it became active, or passes of its cable */
 	int next;
 };
 
@@ -127,6 +127,7 @@ struct ec_sim {
 	int fault_free;
 	int fault_due;			/* sorted by time */
 	int fault_frame;		/* active faults of frames */
+	int fault_wait;			/* faults that wait for a frame */
 
 	u8 scratch[EC_SIM_SCRATCH];	/* incoming data of read-write commands */
 	u8 scratch2[EC_SIM_SCRATCH];	/* data on their way to be merged */
@@ -357,7 +358,7 @@ bool ec_sim_must_fly(struct ec_sim *sim, u64 until);
 void ec_sim_fly(struct ec_sim *sim, struct ec_sim_flight *fl);
 void ec_sim_step(struct ec_sim *sim);
 void ec_sim_arrive(struct ec_sim *sim, struct ec_sim_flight *fl, int out_port, u64 delay_ns);
-void ec_sim_lose(struct ec_sim_flight *fl);
+void ec_sim_lose(struct ec_sim *sim, struct ec_sim_flight *fl);
 void ec_sim_link_changed(struct ec_esc *esc, int port, u64 now);
 void ec_sim_finish(struct ec_sim *sim, struct ec_sim_flight *fl);
 
@@ -365,9 +366,16 @@ void ec_sim_finish(struct ec_sim *sim, struct ec_sim_flight *fl);
 int ec_sim_faults_init(struct ec_sim *sim);
 u64 ec_sim_faults_next(const struct ec_sim *sim);
 void ec_sim_faults_run(struct ec_sim *sim, u64 now);
-void ec_sim_faults_frame(struct ec_sim *sim, int port, bool *lose_out,
-			 bool *lose_back, struct ec_sim_result *res,
-			 u64 *extra_ns);
+void ec_sim_fault_queue(struct ec_sim *sim, int i);
+void ec_sim_fault_free(struct ec_sim *sim, int i);
+
+/* fault_frame.c */
+bool ec_sim_fault_of_frame(enum ec_sim_fault_type type);
+void ec_sim_fault_watch(struct ec_sim *sim, int i);
+void ec_sim_faults_frame(struct ec_sim *sim, struct ec_sim_flight *fl, bool *lose_out);
 void ec_sim_faults_mangle(struct ec_sim *sim, u8 *frame, size_t len);
+void ec_sim_faults_wait(struct ec_sim *sim, struct ec_sim_flight *fl);
+void ec_sim_faults_pass(struct ec_sim *sim, struct ec_sim_flight *fl, u64 t);
+void ec_sim_faults_end(struct ec_sim *sim, struct ec_sim_flight *fl);
 
 #endif

@@ -59,13 +59,8 @@ int ec_sim_faults_init(struct ec_sim *sim)
 	sim->fault_free = 0;
 	sim->fault_due = -1;
 	sim->fault_frame = -1;
+	sim->fault_wait = -1;
 	return 0;
-}
-
-static bool is_frame_fault(enum ec_sim_fault_type type)
-{
-	return type == EC_SIM_FAULT_LOSE || type == EC_SIM_FAULT_DUPLICATE ||
-	       type == EC_SIM_FAULT_DELAY || type == EC_SIM_FAULT_MANGLE;
 }
 
 /* two different ports, or slaves */
@@ -92,14 +87,14 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	bool cable = f->type == EC_SIM_FAULT_CUT || f->type == EC_SIM_FAULT_HEAL ||
 		     f->type == EC_SIM_FAULT_UNPLUG || f->type == EC_SIM_FAULT_BOUNCE;
 
-	if ((u32)f->type >= EC_SIM_FAULT_TYPES)
+	if ((u32)f->type >= EC_SIM_FAULT_TYPES || (u32)f->when > EC_SIM_WHEN_BACK)
 		return false;
 	if (f->type == EC_SIM_FAULT_PLUG)
 		return can_plug(sim, f);
 	if (f->type == EC_SIM_FAULT_SWAP)
 		return can_swap(sim, f);
-	if (is_frame_fault(f->type))
-		return f->port >= -1 && f->port < EC_SIM_PORTS;
+	if (ec_sim_fault_of_frame(f->type))
+		return f->port >= -1 && f->port < EC_SIM_PORTS && !f->frame;
 	if (f->type == EC_SIM_FAULT_BOUNCE &&
 	    (!f->arg || !(f->arg2 % EC_SIM_BOUNCE_BITS) || f->arg2 < EC_SIM_BOUNCE_BITS ||
 	     f->arg2 / EC_SIM_BOUNCE_BITS > EC_SIM_BOUNCE_MAX))
@@ -122,14 +117,14 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	       (f->port >= 0 && f->port < EC_MAX_PORT);
 }
 
-static void give_back(struct ec_sim *sim, int i)
+void ec_sim_fault_free(struct ec_sim *sim, int i)
 {
 	sim->fault[i].next = sim->fault_free;
 	sim->fault_free = i;
 }
 
 /* into the list of those that wait, behind those of the same time */
-static void queue(struct ec_sim *sim, int i)
+void ec_sim_fault_queue(struct ec_sim *sim, int i)
 {
 	int *at = &sim->fault_due;
 
@@ -161,8 +156,18 @@ int ec_sim_add_fault(struct ec_sim *sim, const struct ec_sim_fault *fault)
 	sim->fault_free = sim->fault[i].next;
 	sim->fault[i].f = *fault;
 	sim->fault[i].seen = 0;
-	queue(sim, i);
+	ec_sim_fault_queue(sim, i);
 	return 0;
+}
+
+static void forget(struct ec_sim *sim, int *list)
+{
+	while (*list >= 0) {
+		int i = *list;
+
+		*list = sim->fault[i].next;
+		ec_sim_fault_free(sim, i);
+	}
 }
 
 /**
@@ -175,17 +180,14 @@ int ec_sim_add_fault(struct ec_sim *sim, const struct ec_sim_fault *fault)
  */
 void ec_sim_clear_faults(struct ec_sim *sim)
 {
-	int *list[2] = { &sim->fault_due, &sim->fault_frame };
+	int *list[] = { &sim->fault_due, &sim->fault_frame, &sim->fault_wait };
+	struct ec_sim_flight *fl;
 	u32 i;
 
-	for (i = 0; i < 2; i++) {
-		while (*list[i] >= 0) {
-			int k = *list[i];
-
-			*list[i] = sim->fault[k].next;
-			give_back(sim, k);
-		}
-	}
+	for (i = 0; i < ARRAY_SIZE(list); i++)
+		forget(sim, list[i]);
+	for (fl = sim->flights; fl; fl = fl->next)
+		forget(sim, &fl->faults);
 	for (i = 0; i < sim->count; i++) {
 		ec_esc_settle(sim->esc[i]);
 		memset(&sim->esc[i]->fault, 0, sizeof(sim->esc[i]->fault));
@@ -290,24 +292,6 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	}
 }
 
-/* end an earlier fault by chance of the same kind and port */
-static void end_chance(struct ec_sim *sim, const struct ec_sim_fault *f)
-{
-	int *at = &sim->fault_frame;
-
-	while (*at >= 0) {
-		int i = *at;
-		const struct ec_sim_fault *o = &sim->fault[i].f;
-
-		if (o->type == f->type && o->port == f->port && !o->arg) {
-			*at = sim->fault[i].next;
-			give_back(sim, i);
-		} else {
-			at = &sim->fault[i].next;
-		}
-	}
-}
-
 /* the next bit of a contact that bounces; false: that was the last */
 static bool bounce_on(struct ec_sim_fault *f, u64 now)
 {
@@ -328,87 +312,13 @@ void ec_sim_faults_run(struct ec_sim *sim, u64 now)
 	struct ec_sim_fault *f = &sim->fault[i].f;
 
 	sim->fault_due = sim->fault[i].next;
-	if (!is_frame_fault(f->type)) {
-		strike(sim, f, now);
-		if (f->type == EC_SIM_FAULT_HOST ? ec_sim_host(sim, f, now) : bounce_on(f, now))
-			queue(sim, i);
-		else
-			give_back(sim, i);
+	if (f->frame || ec_sim_fault_of_frame(f->type)) {
+		ec_sim_fault_watch(sim, i);
 		return;
 	}
-	if (!f->arg)
-		end_chance(sim, f);
-	if (!f->arg && !f->arg2) {
-		give_back(sim, i);
-		return;
-	}
-	sim->fault[i].next = sim->fault_frame;
-	sim->fault_frame = i;
-}
-
-static bool hits(struct ec_sim *sim, struct ec_sim_pending_fault *pf, int port)
-{
-	if (pf->f.port >= 0 && pf->f.port != port)
-		return false;
-	if (pf->f.arg)
-		return ++pf->seen == pf->f.arg;
-	return (u64)ec_sim_random(sim) * 1000000 >> 32 < pf->f.arg2;
-}
-
-/* what happens to the frame being sent */
-void ec_sim_faults_frame(struct ec_sim *sim, int port, bool *lose_out,
-			 bool *lose_back, struct ec_sim_result *res,
-			 u64 *extra_ns)
-{
-	int *at = &sim->fault_frame;
-
-	while (*at >= 0) {
-		int i = *at;
-		struct ec_sim_pending_fault *pf = &sim->fault[i];
-		const struct ec_sim_fault *f = &pf->f;
-
-		if (!hits(sim, pf, port)) {
-			at = &pf->next;
-			continue;
-		}
-		res->induced = true;
-		switch (f->type) {
-		case EC_SIM_FAULT_LOSE:
-			if (f->value)
-				*lose_back = true;
-			else
-				*lose_out = true;
-			break;
-		case EC_SIM_FAULT_DUPLICATE:
-			res->copies = (u8)(f->value ? f->value : 1);
-			break;
-		case EC_SIM_FAULT_DELAY:
-			*extra_ns += f->value;
-			break;
-		default:
-			res->mangled = true;
-			break;
-		}
-		if (f->arg) {			/* it was the n-th: done */
-			*at = pf->next;
-			give_back(sim, i);
-		} else {
-			at = &pf->next;
-		}
-	}
-}
-
-/* change one to four bytes behind the EtherCAT header */
-void ec_sim_faults_mangle(struct ec_sim *sim, u8 *frame, size_t len)
-{
-	u32 n = 1 + (ec_sim_random(sim) & 3);
-
-	if (len <= EC_FRAME_HDR)
-		return;
-	while (n--) {
-		u32 span = (u32)len - EC_FRAME_HDR;
-		u32 at = EC_FRAME_HDR + ec_sim_random(sim) % span;
-
-		frame[at] ^= (u8)(1u << (ec_sim_random(sim) & 7));
-	}
+	strike(sim, f, now);
+	if (f->type == EC_SIM_FAULT_HOST ? ec_sim_host(sim, f, now) : bounce_on(f, now))
+		ec_sim_fault_queue(sim, i);
+	else
+		ec_sim_fault_free(sim, i);
 }

@@ -91,11 +91,12 @@ void ec_sim_send(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u8 *eth
 
 	*fl = (struct ec_sim_flight){
 		.eth = eth, .ip = ip, .frame = eth + at, .len = len - at, .eth_len = len,
+		.faults = -1,
 	};
 	if (at)
 		ec_sim_start(sim, fl, port, now_ns);
 	else
-		ec_sim_lose(fl);
+		ec_sim_lose(sim, fl);
 }
 
 /**

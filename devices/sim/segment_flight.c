@@ -84,15 +84,17 @@ void ec_sim_arrive(struct ec_sim *sim, struct ec_sim_flight *fl, int out_port, u
 	res->delay_ns = (s64)(delay_ns + fl->extra_ns);
 	fl->due_ns = fl->start_ns + (u64)res->delay_ns;
 	fl->done = true;
+	ec_sim_faults_end(sim, fl);
 }
 
-void ec_sim_lose(struct ec_sim_flight *fl)
+void ec_sim_lose(struct ec_sim *sim, struct ec_sim_flight *fl)
 {
 	fl->res.copies = 0;
 	fl->res.mangled = false;
 	fl->res.out_port = -1;
 	fl->res.delay_ns = -ENOLINK;
 	fl->done = true;
+	ec_sim_faults_end(sim, fl);
 }
 
 static void on_its_way(struct ec_sim *sim, struct ec_sim_flight *fl)
@@ -121,7 +123,7 @@ void ec_sim_recall(struct ec_sim *sim, struct ec_sim_flight *fl)
 	if (!*at)
 		return;
 	*at = fl->next;
-	ec_sim_lose(fl);
+	ec_sim_lose(sim, fl);
 }
 
 /* let time pass until a frame is back or lost */
@@ -173,6 +175,7 @@ static void leave(struct ec_sim *sim, struct ec_sim_flight *fl, const struct ec_
 	transit->until = fl->at_ns + fl->wire_ns;
 	if (fl->to < 0)
 		fl->at_ns += fl->wire_ns;
+	ec_sim_faults_pass(sim, fl, t);
 	on_its_way(sim, fl);
 }
 
@@ -345,7 +348,7 @@ void ec_sim_step(struct ec_sim *sim)
 
 	sim->flights = fl->next;
 	if (!came_through(sim, fl) || (back ? fl->lose_back : !enter(sim, fl)))
-		ec_sim_lose(fl);
+		ec_sim_lose(sim, fl);
 	else if (back)
 		ec_sim_arrive(sim, fl, -2 - fl->to, fl->at_ns - fl->start_ns);
 }

@@ -343,7 +343,7 @@ static void pass(struct ec_sim *sim, struct ec_sim_flight *fl)
 	ec_sim_deliver(sim);
 
 	if (lost || fl->lose_back || r->out_port < 0)
-		ec_sim_lose(fl);
+		ec_sim_lose(sim, fl);
 	else
 		ec_sim_arrive(sim, fl, r->out_port, r->delay_ns + fl->wire_ns);
 }
@@ -358,13 +358,16 @@ void ec_sim_start(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u64 no
 	fl->start_ns = now_ns;
 	fl->wire_ns = ec_frame_wire_ns(fl->eth_len) - 12 * 80;
 	ec_sim_advance(sim, now_ns);
+	if (sim->fault_wait >= 0)
+		ec_sim_faults_wait(sim, fl);
 	sim->frame = fl->number;
-	ec_sim_faults_frame(sim, port, &lose_out, &fl->lose_back, &fl->res, &fl->extra_ns);
+	ec_sim_faults_frame(sim, fl, &lose_out);
 	if (sim->dirty)
 		ec_sim_routes(sim);
 	if (lose_out || !ec_sim_link(sim, port))
-		ec_sim_lose(fl);
-	else if (ec_sim_must_fly(sim, now_ns + sim->route[port].span_ns + fl->wire_ns))
+		ec_sim_lose(sim, fl);
+	else if (fl->faults >= 0 ||
+		 ec_sim_must_fly(sim, now_ns + sim->route[port].span_ns + fl->wire_ns))
 		ec_sim_fly(sim, fl);
 	else
 		pass(sim, fl);
@@ -385,7 +388,9 @@ void ec_sim_start(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u64 no
 s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 			u64 now_ns, struct ec_sim_result *res)
 {
-	struct ec_sim_flight fl = { .frame = frame, .len = len, .eth_len = EC_ETH_HDR + len };
+	struct ec_sim_flight fl = {
+		.frame = frame, .len = len, .eth_len = EC_ETH_HDR + len, .faults = -1,
+	};
 
 	ec_sim_start(sim, &fl, port, now_ns);
 	ec_sim_finish(sim, &fl);

@@ -162,6 +162,18 @@ enum ec_sim_mailbox_fault {
 };
 
 /**
+ * enum ec_sim_when - when a fault that waits for a frame happens
+ * @EC_SIM_WHEN_SENT: when the frame is sent
+ * @EC_SIM_WHEN_OUT: when the frame is on the cable of the fault, on its way out
+ * @EC_SIM_WHEN_BACK: when it is there on its way back
+ */
+enum ec_sim_when {
+	EC_SIM_WHEN_SENT,
+	EC_SIM_WHEN_OUT,
+	EC_SIM_WHEN_BACK
+};
+
+/**
  * struct ec_sim_fault - one scripted fault
  * @at_ns: when it begins; 0 or past: with the next frame or advance
  * @type: what
@@ -171,6 +183,13 @@ enum ec_sim_mailbox_fault {
  * @arg: frame faults: the n-th frame from @at_ns on (1 = next), 0 = by chance
  * @arg2: frame faults by chance: probability in ppm, 0 ends the earlier one
  * @value: see the types
+ * @frame: it waits for the n-th frame from @at_ns on (1 = next), 0: it does not; with a
+ *         fault of frames see @arg
+ * @by_register: only frames with a physical command that accesses @reg count
+ * @reg: register
+ * @when: on the way of this frame. The cable is the one at @slave, @port, or at port 0 of
+ *        @slave; at the latest, it happens at the end of the frame
+ * @after_ns: so much later
  */
 struct ec_sim_fault {
 	u64 at_ns;
@@ -180,6 +199,11 @@ struct ec_sim_fault {
 	u32 arg;
 	u32 arg2;
 	u64 value;
+	u32 frame;
+	bool by_register;
+	u16 reg;
+	enum ec_sim_when when;
+	u64 after_ns;
 };
 
 /**
@@ -239,6 +263,7 @@ enum ec_sim_under_way {
  * @from_port: port of the slave
  * @left_at: number of the last event of a port then
  * @started_at: and when it was sent
+ * @faults: first of those that happen on its way, -1: none
  *
  * All but the first three is private to the model.
  */
@@ -269,6 +294,7 @@ struct ec_sim_flight {
 	u8 from_port;
 	u64 left_at;
 	u64 started_at;
+	int faults;
 };
 
 /* building */

@@ -206,12 +206,6 @@ static void sim_cable_swap_master(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
 }
 
-/* logical @first on, @len bytes; returns the working counter */
-static int logical(struct bed *b, u8 cmd, u32 first, u8 *data, u16 len)
-{
-	return bed_tx(b, cmd, (u16)first, (u16)(first >> 16), data, len);
-}
-
 static void sim_cable_old_registers_are_live(struct kunit *test)
 {
 	struct bed *b = app_bed_part(test, "slave a EK1100\nslave o EL2008\nbranch none\n"

@@ -27,6 +27,12 @@ static inline int count(struct bed *b, int port)
 	return bed_tx_port(b, port, EC_CMD_BRD, 0, 0, v, 2);
 }
 
+/* logical @first on, @len bytes; returns the working counter */
+static inline int logical(struct bed *b, u8 cmd, u32 first, u8 *data, u16 len)
+{
+	return bed_tx(b, cmd, (u16)first, (u16)(first >> 16), data, len);
+}
+
 /* registers of a slave, reached or not */
 static inline u32 dl(struct bed *b, u32 slave)
 {
