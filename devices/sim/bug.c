@@ -68,6 +68,7 @@ static const char * const bug_names[EC_SIM_BUGS] = {
 	[EC_SIM_BUG_UDP_CHECKSUM] = "udp_checksum",
 	[EC_SIM_BUG_AUTO_CLOSE] = "auto_close",
 	[EC_SIM_BUG_LOOPS_STAY] = "loops_stay",
+	[EC_SIM_BUG_FORWARD] = "forward",
 	[EC_SIM_BUG_DL_SILENT] = "dl_silent",
 };
 

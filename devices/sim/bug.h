@@ -75,6 +75,7 @@ enum ec_sim_bug {
 	EC_SIM_BUG_UDP_CHECKSUM,	/* checksum kept in a frame that changed */
 	EC_SIM_BUG_AUTO_CLOSE,		/* auto close opens with the link */
 	EC_SIM_BUG_LOOPS_STAY,		/* temporary loop settings stay */
+	EC_SIM_BUG_FORWARD,		/* 0x0100 bit 0 ignored: all frames pass */
 	EC_SIM_BUG_DL_SILENT,		/* links and loops change without DL event */
 	EC_SIM_BUGS
 };

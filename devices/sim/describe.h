@@ -36,7 +36,8 @@
  *		with the n-th frame from then on, where WHAT is one of
  *		plug NAME.PORT NAME.PORT [cable=TIME]  unplug NAME.PORT
  *		swap NAME NAME (slaves)  swap NAME.PORT NAME.PORT (branches)
- *		host NAME.PORT [every=TIME] (a PC or a switch, and its frames)
+ *		host NAME.PORT [every=TIME] [frames=broadcast|ethercat] (a PC or a switch,
+ *			and its frames)
  *		bounce NAME.PORT pattern=01001 [step=TIME] [times=N] (contact)
  *		old NAME [station=N] [loops=N] [state=STATE] [logical=N] (registers)
  *		cut|heal NAME.PORT  off|on NAME  dead|alive NAME

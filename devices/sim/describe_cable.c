@@ -139,12 +139,22 @@ static int bounce(struct ec_desc *d, struct ec_sim_fault *f)
 
 static int host(struct ec_desc *d, const struct ec_desc_word *w, struct ec_sim_fault *f)
 {
+	struct ec_desc_word frames;
+
 	if (real_end(d, w, &f->slave, &f->port))
 		return -EINVAL;
 	if (f->slave < 0)
 		return ec_desc_fail(d, "a PC or a switch is plugged in at a slave only", NULL, "");
 	if (ec_desc_time(d, "every", EC_DESC_TIME_MAX, &f->value))
 		return -EINVAL;
+	frames = ec_desc_value(d, "frames");
+	f->arg = ec_desc_is(&frames, "ethercat") ? EC_SIM_HOST_ETHERCAT : EC_SIM_HOST_BROADCAST;
+	if (frames.s && !f->arg && !ec_desc_is(&frames, "broadcast"))
+		return ec_desc_fail(d, "invalid frames '", &frames,
+				    "': expected broadcast or ethercat");
+	if (f->arg && f->value && f->value < EC_SIM_HOST_ETHERCAT_NS)
+		return ec_desc_fail(d, "EtherCAT frames of a host come at most every 100 us",
+				    NULL, "");
 	return !f->value || f->value >= EC_SIM_HOST_MIN_NS ? 0 :
 		ec_desc_fail(d, "the frames of a host do not follow each other so fast: expected every=7us or more",
 			     NULL, "");

@@ -144,6 +144,7 @@ struct ec_esc_transit {
  * @peer_port: port of the peer
  * @cable_ns: delay of the cable
  * @cut: the cable is cut (kept on both ends)
+ * @host: number of the host
  * @link: physical link as of now
  * @open: loop open: frames leave here
  * @auto_closed: the link was lost since a write, a frame or mode "auto" opened the loop;
@@ -158,6 +159,7 @@ struct ec_esc_port {
 	u8 peer_port;
 	u32 cable_ns;
 	bool cut;
+	u32 host;
 	bool link;
 	bool open;
 	bool auto_closed;

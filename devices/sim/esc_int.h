@@ -10,6 +10,7 @@
 #define EC_DC_SIZE		0x0100
 #define EC_SIM_SCRATCH		2048	/* >= the longest datagram */
 #define EC_SIM_LEN_CIRCULATING	0x40	/* in the high byte of the length word */
+#define EC_SIM_HOST_FRAMES	16	/* on their way, or not fetched yet */
 #define EC_SIM_HITS		16	/* logical datagrams of a cycle, power of two */
 
 /* one passage of a frame through a processing unit */
@@ -70,6 +71,13 @@ struct ec_sim_hits {
 	u16 *step;
 };
 
+/* a frame of a host */
+struct ec_sim_host_frame {
+	struct ec_sim_flight fl;	/* first */
+	enum { EC_SIM_HOST_FREE, EC_SIM_HOST_IN_FLIGHT, EC_SIM_HOST_ARRIVED } state;
+	u8 eth[60];
+};
+
 struct ec_sim_pending_fault {
 	struct ec_sim_fault f;
 	u32 seen;			/* frames since it became active, or passes of its cable */
@@ -101,6 +109,9 @@ struct ec_sim {
 	u64 port_events;		/* links lost and loops closed */
 	u64 port_next;			/* no port changes by itself earlier */
 	u64 disturbed;			/* frames on their way when a link changed */
+	struct ec_sim_host_frame host[EC_SIM_HOST_FRAMES];
+	u32 host_arrived;		/* to be fetched */
+	u32 hosts;			/* plugged in so far */
 	int pend_head;
 	int pend_tail;
 
@@ -330,8 +341,12 @@ void ec_esc_old(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now);
 void ec_sim_cut(struct ec_sim *sim, int slave, int port, bool cut, u64 now);
 void ec_sim_plug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
 void ec_sim_unplug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
-bool ec_sim_host(struct ec_sim *sim, struct ec_sim_fault *f, u64 now);
+void ec_sim_plug_host(struct ec_sim *sim, int slave, int port, u64 now);
 void ec_sim_swap(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now);
+
+/* segment_host.c */
+bool ec_sim_host(struct ec_sim *sim, struct ec_sim_fault *f, u64 now);
+void ec_sim_host_done(struct ec_sim *sim, struct ec_sim_flight *fl);
 
 /* segment_spans.c */
 int ec_sim_spans_room(struct ec_sim *sim, u32 n);
@@ -356,6 +371,7 @@ void ec_sim_eth_mark(const struct ec_sim *sim, struct ec_sim_flight *fl);
 /* segment_flight.c */
 bool ec_sim_must_fly(struct ec_sim *sim, u64 until);
 void ec_sim_fly(struct ec_sim *sim, struct ec_sim_flight *fl);
+void ec_sim_fly_from_host(struct ec_sim *sim, struct ec_sim_flight *fl, int slave, int port);
 void ec_sim_step(struct ec_sim *sim);
 void ec_sim_arrive(struct ec_sim *sim, struct ec_sim_flight *fl, int out_port, u64 delay_ns);
 void ec_sim_lose(struct ec_sim *sim, struct ec_sim_flight *fl);

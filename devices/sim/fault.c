@@ -105,7 +105,9 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 		return false;
 	if (f->type == EC_SIM_FAULT_HOST)
 		return ec_sim_has_port(sim, f->slave, f->port) && !f->arg2 &&
-		       (!f->value || f->value >= EC_SIM_HOST_MIN_NS);
+		       f->arg <= EC_SIM_HOST_ETHERCAT &&
+		       (!f->value || f->value >= EC_SIM_HOST_MIN_NS) &&
+		       (!f->value || !f->arg || f->value >= EC_SIM_HOST_ETHERCAT_NS);
 	if (f->type == EC_SIM_FAULT_LATCH && (f->arg > 1 || !f->arg2 || f->arg2 > 3))
 		return false;
 	if (f->type == EC_SIM_FAULT_OLD && f->value & EC_SIM_OLD_STATE &&

@@ -172,27 +172,14 @@ void ec_sim_unplug(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	pull(sim, (struct end){ f->slave, f->port }, now);
 }
 
-/*
- * First a host comes, then each time one of its frames. An open port destroys it, as it
- * is no EtherCAT; a port that closed itself opens. Returns whether there is a next one.
- */
-bool ec_sim_host(struct ec_sim *sim, struct ec_sim_fault *f, u64 now)
+/* a cable there comes out before */
+void ec_sim_plug_host(struct ec_sim *sim, int slave, int port, u64 now)
 {
-	const struct end a = { f->slave, f->port };
-	struct ec_esc *esc = sim->esc[f->slave];
-	struct ec_esc_port *port = &esc->port[f->port];
+	const struct end a = { slave, port };
 
-	if (!f->arg2) {
-		pull(sim, a, now);
-		port->peer = EC_ESC_PEER_HOST;
-		look(sim, a, now);
-		f->arg2 = 1;
-	} else if (port->peer == EC_ESC_PEER_HOST && ec_esc_port_waits(esc, f->port)) {
-		port->auto_closed = false;
-		ec_sim_loops(esc, false, now);
-	}
-	f->at_ns = now + f->value;
-	return f->value && port->peer == EC_ESC_PEER_HOST;
+	pull(sim, a, now);
+	port_of(sim, a)->peer = EC_ESC_PEER_HOST;
+	look(sim, a, now);
 }
 
 /* the end that takes the place of @e when two slaves, or two of their ports, are exchanged */

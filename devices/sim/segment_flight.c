@@ -85,6 +85,8 @@ void ec_sim_arrive(struct ec_sim *sim, struct ec_sim_flight *fl, int out_port, u
 	fl->due_ns = fl->start_ns + (u64)res->delay_ns;
 	fl->done = true;
 	ec_sim_faults_end(sim, fl);
+	if (fl->mport < 0)
+		ec_sim_host_done(sim, fl);
 }
 
 void ec_sim_lose(struct ec_sim *sim, struct ec_sim_flight *fl)
@@ -95,6 +97,8 @@ void ec_sim_lose(struct ec_sim *sim, struct ec_sim_flight *fl)
 	fl->res.delay_ns = -ENOLINK;
 	fl->done = true;
 	ec_sim_faults_end(sim, fl);
+	if (fl->mport < 0)
+		ec_sim_host_done(sim, fl);
 }
 
 static void on_its_way(struct ec_sim *sim, struct ec_sim_flight *fl)
@@ -195,6 +199,22 @@ void ec_sim_fly(struct ec_sim *sim, struct ec_sim_flight *fl)
 	      fl->start_ns);
 }
 
+/* a frame of a host is at the port of a slave */
+void ec_sim_fly_from_host(struct ec_sim *sim, struct ec_sim_flight *fl, int slave, int port)
+{
+	struct ec_esc_transit *transit = &sim->esc[slave]->port[port].received;
+
+	fl->started_at = sim->port_events;
+	fl->left_at = sim->port_events;
+	fl->from = EC_ESC_PEER_HOST;
+	fl->to = slave;
+	fl->to_port = (u8)port;
+	fl->at_ns = fl->start_ns;
+	transit->number = fl->number;
+	transit->until = fl->at_ns + fl->wire_ns;
+	on_its_way(sim, fl);
+}
+
 /* was the cable that the frame took whole all the time */
 static bool came_through(const struct ec_sim *sim, const struct ec_sim_flight *fl)
 {
@@ -237,16 +257,19 @@ static u8 exits(const struct ec_esc *esc, const struct ec_sim_flight *fl)
 static void arrivals(struct ec_sim *sim, const struct ec_sim_flight *fl, const struct ec_esc *esc,
 		     struct ec_frame_ctx *ctx)
 {
-	const struct ec_sim_route *r = &sim->route[fl->mport];
+	const struct ec_sim_route *r;
 	const struct ec_sim_step *st;
 	u64 sent = fl->start_ns;
 
 	ctx->recv_mask = 1;
 	ctx->recv[0] = ctx->now;
+	if (fl->mport < 0)
+		return;
 	if (sim->dirty)
 		ec_sim_routes(sim);
 	if (esc->route_pos[fl->mport] < 0)
 		return;
+	r = &sim->route[fl->mport];
 	st = &r->step[esc->route_pos[fl->mport]];
 	if (!r->repeats)	/* it may have gone another way so far */
 		sent = ctx->now - st->pu_ns;
@@ -315,6 +338,13 @@ static int through(struct ec_sim *sim, struct ec_sim_flight *fl, struct ec_esc *
 	return -1;
 }
 
+/* no EtherCAT, and 0x0100 bit 0 is set: the controller destroys it */
+static bool destroyed(const struct ec_sim_flight *fl, const struct ec_esc *esc)
+{
+	return !fl->frame && esc->mem[EC_REG_DL_CONTROL] & 1 &&
+	       !ec_esc_bug(esc, EC_SIM_BUG_FORWARD);
+}
+
 /* a frame is at a slave; false: it ends there */
 static bool enter(struct ec_sim *sim, struct ec_sim_flight *fl)
 {
@@ -327,7 +357,7 @@ static bool enter(struct ec_sim *sim, struct ec_sim_flight *fl)
 		return false;
 	if (!esc->port[fl->to_port].open && !let_in(sim, fl, esc))
 		return false;
-	p = through(sim, fl, esc, &delay_ns);
+	p = destroyed(fl, esc) ? -1 : through(sim, fl, esc, &delay_ns);
 	if (p < 0)
 		return false;
 	port = &esc->port[p];

@@ -67,7 +67,8 @@ struct ec_sim_ops {
  *                       (bit 0 first, 1: contact), @arg2 % EC_SIM_BOUNCE_BITS of them, and
  *                       again from the first; @arg2 / EC_SIM_BOUNCE_BITS altogether
  * @EC_SIM_FAULT_HOST: a PC or a switch comes to @slave, @port; a cable there comes out
- *                     before. It sends a frame every @value ns, 0: none. @arg2 is 0
+ *                     before. It sends a frame, EC_SIM_HOST_* in @arg, every @value ns,
+ *                     0: none. @arg2 is 0
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -115,6 +116,11 @@ enum ec_sim_fault_type {
 #define EC_SIM_BOUNCE_BITS	64	/* a pattern has fewer */
 #define EC_SIM_BOUNCE_MAX	100000	/* bits altogether: they may all be due at one time */
 #define EC_SIM_HOST_MIN_NS	6720	/* a minimum frame of a host, with preamble and gap */
+#define EC_SIM_HOST_ETHERCAT_NS	100000	/* of one that slaves process: they cost time */
+
+/* "arg" of EC_SIM_FAULT_HOST: what it sends */
+#define EC_SIM_HOST_BROADCAST	0
+#define EC_SIM_HOST_ETHERCAT	1	/* BRD of 0x0130, as a master that looks for slaves */
 
 #define EC_SIM_EDGE_RISING	1	/* both: a pulse, too short to see */
 #define EC_SIM_EDGE_FALLING	2
@@ -297,6 +303,18 @@ struct ec_sim_flight {
 	int faults;
 };
 
+/**
+ * struct ec_sim_foreign - a frame of a host that has come to a master
+ * @port: master port
+ * @due_ns: when its last bit was there
+ * @eth: the Ethernet frame, without FCS
+ */
+struct ec_sim_foreign {
+	int port;
+	u64 due_ns;
+	u8 eth[60];
+};
+
 /* building */
 struct ec_sim *ec_sim_new(const struct ec_sim_ops *ops, u32 max_slaves,
 			  u64 seed);
@@ -323,6 +341,7 @@ u64 ec_sim_next_step(const struct ec_sim *sim);
 void ec_sim_recall(struct ec_sim *sim, struct ec_sim_flight *fl);
 void ec_sim_set_under_way(struct ec_sim *sim, enum ec_sim_under_way how);
 u64 ec_sim_disturbed(const struct ec_sim *sim);
+bool ec_sim_foreign(struct ec_sim *sim, struct ec_sim_foreign *f);
 void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
 u64 ec_sim_next_event(struct ec_sim *sim);
 bool ec_sim_link(const struct ec_sim *sim, int port);

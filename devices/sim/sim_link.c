@@ -24,7 +24,8 @@ static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
 	struct ec_sim_link *l = container_of(w, struct ec_sim_link, wire);
 
-	if (port)
+	/* a network stack, too, has only these for the master; a host may send others */
+	if (port || (eth[12] << 8 | eth[13]) != EC_ETHERTYPE)
 		return;
 	rcu_read_lock();
 	ecdev_receive(l->dev, eth + 6, eth + EC_ETH_HDR, len - EC_ETH_HDR);

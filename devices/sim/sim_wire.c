@@ -119,6 +119,25 @@ static void decided(struct ec_sim_wire *w, struct ec_sim_flying *f)
 	copies(w, f, res->copies);
 }
 
+/* Frames that no master has sent. */
+static void foreign(struct ec_sim_wire *w)
+{
+	struct ec_sim_foreign o;
+	struct ec_sim_flying *f;
+
+	lockdep_assert_held(&w->lock);
+	while (ec_sim_foreign(w->sim, &o)) {
+		f = w->running ? unused(w) : NULL;
+		if (!f)
+			continue;
+		f->port = o.port;
+		f->due_ns = o.due_ns;
+		f->len = sizeof(o.eth);
+		memcpy(f->eth, o.eth, sizeof(o.eth));
+		insert(w, f);
+	}
+}
+
 /* Frames of which it was not known yet. */
 static void collect(struct ec_sim_wire *w)
 {
@@ -130,6 +149,7 @@ static void collect(struct ec_sim_wire *w)
 		list_del(&f->list);
 		decided(w, f);
 	}
+	foreign(w);
 }
 
 /* The time of the segment is the kernel's. */

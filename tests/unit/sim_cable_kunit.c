@@ -426,6 +426,8 @@ static void sim_cable_errors_are_reported(struct kunit *test)
 		{ "bounce c.0 pattern=01 times=50001", "out of range" },
 		{ "host c.0 every=1us", "expected every=7us or more" },
 		{ "host c.2", "does not have this port" },
+		{ "host c.0 frames=ip", "invalid frames 'ip': expected broadcast or ethercat" },
+		{ "host c.0 frames=ethercat every=99us", "at most every 100 us" },
 		{ "host master.0", "at a slave only" },
 		{ "old c", "nothing is old" },
 		{ "old c state=ON", "invalid state 'ON'" },

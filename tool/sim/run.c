@@ -153,10 +153,29 @@ static void collect(struct run *r)
 	}
 }
 
+/* Frames that no master has sent. */
+static void foreign(struct run *r)
+{
+	struct ec_sim_foreign o;
+
+	while (ec_sim_foreign(r->sim, &o)) {
+		struct flying *f = o.port < r->n_ports ? take(r) : NULL;
+
+		if (!f)
+			continue;
+		f->port = o.port;
+		f->due_ns = o.due_ns;
+		f->len = sizeof(o.eth);
+		memcpy(f->data, o.eth, sizeof(o.eth));
+		insert(r, f);
+	}
+}
+
 static void advance(struct run *r)
 {
 	ec_sim_advance(r->sim, now_ns(r));
 	collect(r);
+	foreign(r);
 }
 
 /* One frame through the segment. */
@@ -169,6 +188,7 @@ static void launch(struct run *r, int port, struct flying *f)
 	f->next = r->under_way;
 	r->under_way = f;
 	collect(r);		/* mostly this one */
+	foreign(r);
 }
 
 static void receive(struct run *r, int port)
