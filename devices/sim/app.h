@@ -371,6 +371,7 @@ struct ec_app {
  * @own_eeprom: no PREOP unless the EEPROM is assigned to it
  * @no_lrw: its controller does not process LRW
  * @loops_fixed: its controller does not keep what is written to 0x0101
+ * @link_ns: time from cable and power to a link
  * @response_ns: time from mailbox request to response
  * @op_timeout_ns: time limit from SAFEOP to OP
  * @process_ns: delay through the controller, 0: default
@@ -396,6 +397,7 @@ struct ec_app_config {
 	bool own_eeprom;
 	bool no_lrw;
 	bool loops_fixed;
+	u32 link_ns;
 	u64 response_ns;
 	u64 op_timeout_ns;
 	u32 process_ns;

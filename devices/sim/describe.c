@@ -26,6 +26,8 @@ static int do_segment(struct ec_desc *d)
 		ret = ec_desc_time(d, "transition", EC_DESC_TIME_MAX, &d->transition_ns);
 	if (!ret)
 		ret = ec_desc_time(d, "op_timeout", EC_DESC_TIME_MAX, &d->op_timeout_ns);
+	if (!ret)
+		ret = ec_desc_time(d, "link", EC_DESC_LINK_MAX, &d->link_ns);
 	return ret ? ret : ec_desc_under_way(d);
 }
 

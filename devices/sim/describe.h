@@ -4,7 +4,7 @@
  * defined before they are used. Times are written 250ns, 10us, 1.5ms, 2s; a
  * bare number is in ns.
  *
- *	segment [seed=N] [response=TIME] [transition=TIME] [op_timeout=TIME]
+ *	segment [seed=N] [response=TIME] [transition=TIME] [op_timeout=TIME] [link=TIME]
  *		[under_way=back|lost|random] (frames that come back to a closed loop)
  *	slave NAME DEVICE|file=IMAGE [OPTION...]
  *	repeat N slave NAME DEVICE [OPTION...]	NAME1, NAME2...; the alias counts up
@@ -25,6 +25,7 @@
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
  *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
  *		loops=fixed (0x0101 does not keep what is written)
+ *		link=TIME (from cable and power to a link)
  *	branch NAME PORT		the next slave hangs there
  *	branch none			the next slave hangs nowhere, until it is plugged
  *	wire NAME.PORT -> NAME.PORT [cable=TIME]	"master.0", "master.1" too

@@ -197,7 +197,11 @@ int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f)
 int ec_desc_own_ports(struct ec_desc *d, struct ec_app_config *c)
 {
 	struct ec_desc_word w = ec_desc_value(d, "loops");
+	u64 link = d->link_ns;
 
+	if (ec_desc_time(d, "link", EC_DESC_LINK_MAX, &link))
+		return -EINVAL;
+	c->link_ns = (u32)link;
 	c->loops_fixed = ec_desc_is(&w, "fixed");
 	return !w.s || c->loops_fixed ? 0 :
 		ec_desc_fail(d, "invalid loops '", &w, "': expected fixed");

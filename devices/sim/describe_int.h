@@ -7,6 +7,7 @@
 
 #define EC_DESC_WORDS	32
 #define EC_DESC_NOWHERE	(-3)	/* the parent of a slave that is plugged later */
+#define EC_DESC_LINK_MAX	4000000000u	/* ns */
 #define EC_DESC_TIME_MAX	(3600ull * 1000000000ull)
 
 /* a word of a statement, in the text, not terminated */
@@ -56,6 +57,7 @@ struct ec_desc_wire {
  * @response_ns: default of the slaves
  * @transition_ns: default of the slaves
  * @op_timeout_ns: default of the slaves
+ * @link_ns: default of the slaves
  * @node: slaves so far
  * @n_nodes: how many
  * @max_nodes: slaves in the text
@@ -80,6 +82,7 @@ struct ec_desc {
 	u64 response_ns;
 	u64 transition_ns;
 	u64 op_timeout_ns;
+	u64 link_ns;
 	struct ec_desc_node *node;
 	u32 n_nodes;
 	u32 max_nodes;

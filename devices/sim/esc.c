@@ -494,6 +494,8 @@ void ec_esc_run(struct ec_esc *esc, u64 now)
 		esc->mem[EC_REG_DL_CONTROL] &= (u8)~0x02;
 		ec_sim_loops(esc, false, now);		/* the master wrote nothing */
 	}
+	if (esc->link_wake <= now)
+		ec_sim_ports(esc, now);
 	if (esc->wd_due <= now)
 		ec_esc_wd_expire(esc, now);
 	if (esc->wd_pdi_due <= now)

@@ -52,6 +52,7 @@ struct ec_esc;
  * @refuse_unwritten: an input SM is not readable before the PDI wrote it once
  * @dc_delay_only: with EC_FEAT_DC: receive times, but no clock that can be set
  * @loops_fixed: 0x0101 does not keep what is written: it stays 0, auto
+ * @link_ns: time from cable and power at both ends to a link; the longer one of both ends
  *
  * ec_esc_config_init() gives a complete set; change what differs.
  * A 32-bit clock is one without EC_FEAT_DC64.
@@ -80,6 +81,7 @@ struct ec_esc_config {
 	bool refuse_unwritten;
 	bool dc_delay_only;
 	bool loops_fixed;
+	u32 link_ns;
 };
 
 /**
@@ -146,6 +148,8 @@ struct ec_esc_transit {
  * @cut: the cable is cut (kept on both ends)
  * @host: number of the host
  * @link: physical link as of now
+ * @link_at: when it comes, EC_ESC_NEVER: there is no cable that could, or it is there
+ * @linked_ns: when it came the last time
  * @open: loop open: frames leave here
  * @auto_closed: the link was lost since a write, a frame or mode "auto" opened the loop;
  *               mode "auto close" keeps it shut then
@@ -161,6 +165,8 @@ struct ec_esc_port {
 	bool cut;
 	u32 host;
 	bool link;
+	u64 link_at;
+	u64 linked_ns;
 	bool open;
 	bool auto_closed;
 	u64 lost_at;
@@ -390,6 +396,7 @@ struct ec_esc_late {
  * @wd_pdi_expired: it has, and the PDI was not accessed since
  * @loop_restore: time at which temporary loop settings end
  * @loop_saved: loop settings to restore
+ * @link_wake: when the next link comes
  * @loop_frame: last frame that changed loops by a write
  * @loop_before: ports that were open before it
  * @reset_step: letters of the reset sequence seen
@@ -436,6 +443,7 @@ struct ec_esc {
 	u64 wd_pdi_due;
 	bool wd_pdi_expired;
 	u64 loop_restore;
+	u64 link_wake;
 	u8 loop_saved;
 	u64 loop_frame;
 	u8 loop_before;

@@ -171,6 +171,7 @@ static inline u64 ec_esc_next(const struct ec_esc *esc)
 	u64 t = min(esc->app_wake_ns, esc->wd_pdi_due);
 
 	t = min(t, esc->loop_restore);
+	t = min(t, esc->link_wake);
 	return min(t, esc->dc.sync_wake);
 }
 

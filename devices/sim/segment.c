@@ -353,8 +353,11 @@ struct ec_esc *ec_sim_add(struct ec_sim *sim, const struct ec_esc_config *cfg)
 		memcpy(esc->eep.data, cfg->eeprom, cfg->eeprom_len);
 	esc->cfg.eeprom = NULL;
 
-	for (p = 0; p < EC_MAX_PORT; p++)
+	for (p = 0; p < EC_MAX_PORT; p++) {
 		esc->port[p].peer = -1;
+		esc->port[p].link_at = EC_ESC_NEVER;
+	}
+	esc->link_wake = EC_ESC_NEVER;
 	esc->pend_next = -2;
 	esc->key = EC_ESC_NEVER;
 	esc->route_pos[0] = -1;

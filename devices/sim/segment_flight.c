@@ -56,7 +56,7 @@ static u64 port_next(struct ec_sim *sim)
 {
 	sim->port_next = EC_ESC_NEVER;
 	for (u32 i = 0; i < sim->count; i++)
-		ec_sim_port_due(sim, sim->esc[i]->loop_restore);
+		ec_sim_port_due(sim, min(sim->esc[i]->loop_restore, sim->esc[i]->link_wake));
 	return sim->port_next;
 }
 

@@ -19,7 +19,7 @@ bool ec_sim_link(const struct ec_sim *sim, int port)
 {
 	const struct ec_esc_port *m = &sim->mport[port];
 
-	return m->peer >= 0 && !m->cut && sim->esc[m->peer]->powered;
+	return m->peer >= 0 && sim->esc[m->peer]->port[m->peer_port].link;
 }
 
 static void dl_event(struct ec_esc *esc)
@@ -73,31 +73,67 @@ void ec_sim_loops(struct ec_esc *esc, bool written, u64 now)
 	}
 }
 
-/* power or cables around @esc changed */
+static void set_link(struct ec_esc *esc, int p, bool link, u64 now)
+{
+	struct ec_esc_port *port = &esc->port[p];
+	u8 *lost = esc->mem + EC_REG_ERR_LOST(p);
+
+	if (link == port->link)
+		return;
+	port->link = link;
+	if (link)
+		port->linked_ns = now;
+	ec_sim_link_changed(esc, p, now);
+	if (!esc->powered)
+		return;
+	if (!link && *lost != 0xff && !ec_esc_bug(esc, EC_SIM_BUG_LOST_UNCOUNTED))
+		++*lost;
+	dl_event(esc);
+}
+
+/* there is all that a link needs but time */
+static bool has_partner(const struct ec_esc *esc, const struct ec_esc_port *port)
+{
+	return esc->powered && port->peer != -1 && !port->cut &&
+	       (port->peer < 0 || esc->sim->esc[port->peer]->powered);
+}
+
+static u32 link_delay(const struct ec_esc *esc, const struct ec_esc_port *port)
+{
+	u32 other = port->peer < 0 ? 0 : esc->sim->esc[port->peer]->cfg.link_ns;
+
+	return max(esc->cfg.link_ns, other);
+}
+
+static void wake_for_links(struct ec_esc *esc)
+{
+	esc->link_wake = EC_ESC_NEVER;
+	for (int p = 0; p < EC_MAX_PORT; p++)
+		esc->link_wake = min(esc->link_wake, esc->port[p].link_at);
+	ec_sim_port_due(esc->sim, esc->link_wake);
+	ec_sim_touch(esc);
+}
+
+/* power or cables around @esc changed, or it is time for a link */
 void ec_sim_ports(struct ec_esc *esc, u64 now)
 {
-	struct ec_sim *sim = esc->sim;
 	int p;
 
-	sim->dirty = true;
+	esc->sim->dirty = true;
 	for (p = 0; p < EC_MAX_PORT; p++) {
 		struct ec_esc_port *port = &esc->port[p];
-		bool link = esc->powered && port->peer != -1 && !port->cut &&
-			    (port->peer < 0 || sim->esc[port->peer]->powered);
-		u8 *lost = esc->mem + EC_REG_ERR_LOST(p);
+		bool could = has_partner(esc, port);
 
-		if (link == port->link)
-			continue;
-		port->link = link;
-		ec_sim_link_changed(esc, p, now);
-		if (!esc->powered)
-			continue;
-		if (!link && *lost != 0xff &&
-		    !ec_esc_bug(esc, EC_SIM_BUG_LOST_UNCOUNTED))
-			++*lost;
-		dl_event(esc);
+		if (!could)
+			port->link_at = EC_ESC_NEVER;
+		else if (!port->link && port->link_at == EC_ESC_NEVER)
+			port->link_at = now + link_delay(esc, port);
+		if (port->link_at <= now)
+			port->link_at = EC_ESC_NEVER;
+		set_link(esc, p, could && port->link_at == EC_ESC_NEVER, now);
 	}
 	ec_sim_loops(esc, false, now);
+	wake_for_links(esc);
 }
 
 void ec_sim_power(struct ec_esc *esc, bool on, u64 now)

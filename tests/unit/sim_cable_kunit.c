@@ -404,6 +404,93 @@ static void sim_cable_without_power(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, count(b, 0), 5);
 }
 
+/* a PHY needs time for a link; of two the slower one */
+static void sim_cable_link_takes_time(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, "segment link=10ms\nslave a EK1100 link=0\n"
+				     "slave b EL2008 link=5ms\nslave c EL2008\n", 0);
+
+	b->gap = 0;
+	b->now = 100;
+	KUNIT_EXPECT_TRUE(test, ec_sim_link(b->sim, 0));
+	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	b->now = 5000000 - 20000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x5610);
+	b->now = 5000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x5a30);
+	b->now = 10000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	forget_dl_event(b, 1);
+	forget_dl_event(b, 2);
+
+	command(test, b, "cut c.0");
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 2, "down at once");
+	forget_dl_event(b, 1);
+	command(test, b, "heal c.0");
+	KUNIT_EXPECT_FALSE_MSG(test, dl_event(b, 1), "not yet");
+	b->now += 9000000;
+	command(test, b, "cut c.0");
+	KUNIT_EXPECT_EQ_MSG(test, lost(b, 1), 0x100, "there was none to lose");
+	command(test, b, "heal c.0");
+	b->now += 9000000;
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), 2, "from the beginning");
+	b->now += 1000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 3);
+	KUNIT_EXPECT_TRUE(test, dl_event(b, 1));
+	KUNIT_EXPECT_EQ(test, ec_sim_next_event(b->sim), EC_ESC_NEVER);
+}
+
+/* power, a host and the master's port */
+static void sim_cable_link_takes_time_elsewhere(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, "segment link=10ms\nslave a EK1100\nslave b EL2008\n",
+				     0);
+
+	b->gap = 0;
+	b->now = 100;
+	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
+	b->now = 10000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	command(test, b, "off b");
+	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	command(test, b, "on b");
+	command(test, b, "host a.2");
+	b->now += 9000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	command(test, b, "unplug a.2");
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x100);
+	command(test, b, "host a.2");
+	b->now += 1000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	b->now += 9000000;
+	KUNIT_EXPECT_EQ_MSG(test, count(b, 0), -1, "the host has a link now");
+	KUNIT_EXPECT_EQ(test, dl(b, 0) & 0xfff0, 0x6a70);
+	command(test, b, "unplug master.0");
+	command(test, b, "plug master.0 a.0");
+	b->now += 9999999;
+	ec_sim_advance(b->sim, b->now);
+	KUNIT_EXPECT_FALSE(test, ec_sim_link(b->sim, 0));
+	ec_sim_advance(b->sim, b->now + 1);
+	KUNIT_EXPECT_TRUE(test, ec_sim_link(b->sim, 0));
+}
+
+/* a bounce shorter than a link needs: no link until the contact stays */
+static void sim_cable_link_outlasts_bounce(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a EK1100\nslave b EL2008 link=1ms\n");
+
+	b->now = 1000000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+	command(test, b, "bounce a.1 pattern=01 step=100us times=50");
+	for (u32 i = 0; i < 500; i++)
+		KUNIT_EXPECT_EQ(test, count(b, 0), 1);
+	KUNIT_EXPECT_EQ(test, lost(b, 0), 0x100);
+	b->now += 1000000;
+	KUNIT_EXPECT_EQ(test, count(b, 0), 2);
+}
+
 static void sim_cable_errors_are_reported(struct kunit *test)
 {
 	struct bed *b = app_bed_part(test, LINE, 3);
@@ -485,6 +572,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_cable_bursts_within_microsecond),
 	KUNIT_CASE(sim_cable_host_and_loops),
 	KUNIT_CASE(sim_cable_without_power),
+	KUNIT_CASE(sim_cable_link_takes_time),
+	KUNIT_CASE(sim_cable_link_takes_time_elsewhere),
+	KUNIT_CASE(sim_cable_link_outlasts_bounce),
 	KUNIT_CASE(sim_cable_errors_are_reported),
 	{}
 };

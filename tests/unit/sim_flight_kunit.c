@@ -293,6 +293,25 @@ static void sim_flight_branch_comes(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, wkc(&a[1]), 7);
 }
 
+/* a link that comes by itself while the frame is on a long cable */
+static void sim_flight_link_comes(struct kunit *test)
+{
+	struct bed *b = bed_new(test, 2, 0);
+	struct air a[2];
+
+	for (int i = 0; i < 2; i++) {
+		KUNIT_ASSERT_NOT_NULL(test, ec_sim_add(b->sim, &b->cfg));
+		KUNIT_ASSERT_EQ(test, ec_sim_wire(b->sim, i - 1, 1, i, 0, i ? 100 : 20000), 0);
+		b->cfg.link_ns = 1000000;
+	}
+	mark(b, &a[0], 1000000 - 30 * US, 1);
+	mark(b, &a[1], 1000000 - 20 * US, 2);
+	ec_sim_advance(b->sim, SECOND);
+	KUNIT_EXPECT_EQ(test, wkc(&a[0]), 1);
+	KUNIT_EXPECT_EQ(test, wkc(&a[1]), 2);
+	KUNIT_EXPECT_EQ(test, ec_sim_disturbed(b->sim), 2);
+}
+
 static void sim_flight_recalled_frame_is_lost(struct kunit *test)
 {
 	struct bed *b = line(test, 20000);
@@ -495,6 +514,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_flight_returning_frame_opens_port),
 	KUNIT_CASE(sim_flight_power_off),
 	KUNIT_CASE(sim_flight_branch_comes),
+	KUNIT_CASE(sim_flight_link_comes),
 	KUNIT_CASE(sim_flight_recalled_frame_is_lost),
 	KUNIT_CASE(sim_flight_fates),
 	KUNIT_CASE(sim_flight_same_as_at_once),

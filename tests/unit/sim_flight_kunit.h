@@ -20,8 +20,8 @@ struct air {
 	u8 eth[64];
 };
 
-static inline void send(struct bed *b, struct air *a, u64 at, u8 cmd, u16 adp, u16 ado, u64 val,
-		 u16 len)
+static inline void send(struct bed *b, struct air *a, u64 at, u8 cmd, u16 adp, u16 ado,
+			u64 val, u16 len)
 {
 	struct ec_frame_buf f;
 	size_t n;
@@ -58,8 +58,8 @@ static inline u32 marked(struct bed *b, u8 val)
 	return v;
 }
 
-static inline void plan(struct kunit *test, struct bed *b, u64 at, enum ec_sim_fault_type type, int slave,
-		 int port)
+static inline void plan(struct kunit *test, struct bed *b, u64 at, enum ec_sim_fault_type type,
+			int slave, int port)
 {
 	const struct ec_sim_fault f = { .at_ns = at, .type = type, .slave = slave, .port = port };
 
