@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * What is behind a closed port is made harmless before process data reach it. The port is open for
- * the frames of a trial only, which leave in one send: open, work, close twice, as the reply of the
- * first may be lost. The setting is temporary, so that the port closes itself if the master fails.
+ * the frames of a trial only, which leave in one send: open twice, work, close twice, as a frame
+ * may be lost. The setting is temporary, so that the port closes itself if the master fails.
  *
  * By position nothing is written but a station address that no slave has: when the contact breaks
  * between two frames, the next slave of the ring is at that position, and gets its own back.
@@ -46,6 +46,7 @@ struct trial {
 	u8 port;
 	u16 position;	/* of the first slave behind the port */
 	u16 next;	/* station address of the slave after it, 0: there is none */
+	u16 dl;		/* DL status of the host at the end of the last trial */
 	struct ec_dg work[WORK];
 	unsigned int n;
 };
@@ -87,19 +88,22 @@ static void give_back(const struct trial *t, u16 station)
 
 /*
  * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0, or
- * -EAGAIN: the contact broke, or frames were lost.
+ * -EAGAIN: frames were lost; -ENOLINK: the contact broke.
  */
 static int run(struct trial *t, u16 station)
 {
 	const u8 opened[2] = { t->host.control | TEMPORARY,
 			       with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
-	struct ec_dg dg[WORK + 6], *close, *check;
+	struct ec_dg dg[WORK + 7], *close, *check;
 	u8 dl[2] = { 0 }, ghost[2], next[2];
 	unsigned int n = 0, i;
 
-	dg[n++] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, opened);
-	dg[0].last = true;
+	/* twice: without it the work would be done by the next slave of the ring */
+	for (i = 0; i < 2; i++) {
+		dg[n] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, opened);
+		dg[n++].last = true;
+	}
 	for (i = 0; i < t->n; i++)
 		dg[n++] = t->work[i];
 	dg[n - 1].last = true;
@@ -114,18 +118,22 @@ static int run(struct trial *t, u16 station)
 	dg[n++] = EC_FPRD(t->next ?: t->host.station, EC_REG_STATION, 2, next);
 	ec_xfer_train(t->bus->links, dg, n);
 	for (i = 0; i < t->n; i++)
-		t->work[i] = dg[1 + i];
+		t->work[i] = dg[2 + i];
 	if (check[0].err || check[0].wkc != 1 ||
 	    !(get_unaligned_le16(dl) & EC_DLS_LOOP(t->port))) {
 		close_surely(t, closed);
-		check[1].repeat = true;
-		ec_xfer(t->bus->links, &check[1], 2);
+		for (i = 0; i < 3; i++)
+			check[i].repeat = true;
+		ec_xfer(t->bus->links, check, 3);
 	}
+	t->dl = check[0].err || check[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!check[1].err && check[1].wkc == 1 && t->next &&
 	    !check[2].err && !check[2].wkc) {
 		give_back(t, station);
-		return -EAGAIN;
+		return -ENOLINK;
 	}
+	if (!(t->dl & EC_DLS_LINK(t->port)))
+		return -ENOLINK;
 	for (i = 0; i < t->n; i++)
 		if (t->work[i].err)
 			return -EAGAIN;
@@ -141,10 +149,12 @@ static int greet(struct trial *t, struct guest *g)
 
 	put_unaligned_le16(g->station, fresh);
 	t->n = 0;
+	if (!(t->dl & EC_DLS_LINK(t->port)))
+		return -ENOLINK;
 	was = add(t, EC_DG(EC_CMD_APRD, (u16)-t->position, EC_REG_STATION, 4, g->station_was));
 	add(t, EC_DG(EC_CMD_APWR, (u16)-t->position, EC_REG_STATION, 2, fresh));
 	ret = run(t, g->station);
-	if (was->err || !was->wkc)
+	if (!was->err && !was->wkc && ret != -ENOLINK)
 		return -ENXIO;
 	return ret;
 }
@@ -264,6 +274,16 @@ static int let_in(struct trial *t)
 	return ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, open, 2);
 }
 
+/* The DL status of the host; its port may have lost its link since it was seen. */
+static int look(struct trial *t)
+{
+	u8 dl[2];
+
+	t->dl = ec_xfer_fprd(t->bus->links, t->host.station, EC_REG_DL_STATUS, dl, 2) ?
+		0 : get_unaligned_le16(dl);
+	return t->dl & EC_DLS_LINK(t->port) ? 0 : -ENOLINK;
+}
+
 /* One slave; -EALREADY: it is let in, but the slaves behind it are not. */
 static int trial_one(struct trial *t, struct guest *g)
 {
@@ -272,7 +292,11 @@ static int trial_one(struct trial *t, struct guest *g)
 	*g = (struct guest){ .station = ec_known_fresh_station(t->bus) };
 	if (!g->station)
 		return -ENOSPC;
-	ret = try_often(t, g, greet) ?: try_often(t, g, ask);
+	ret = look(t) ?: try_often(t, g, greet);
+	/* each time: a PC or a switch lets no frame return */
+	if (ret == -EAGAIN && t->work[0].err)
+		return -ENXIO;
+	ret = ret ?: try_often(t, g, ask);
 	if (ret)
 		return ret;
 	g->kept = kept_station(t->bus, g);
@@ -359,8 +383,8 @@ static int trial_branch(struct trial *t, struct guest *first)
  * in INIT, without FMMUs and SYNC signals.
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -EAGAIN: the contact
- * broke, or frames were lost; -ENOSPC: no free station address.
+ * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
+ * broke; -EAGAIN: frames were lost; -ENOSPC: no free station address.
  */
 int ec_trial(struct ec_slave *s, unsigned int port)
 {
@@ -376,6 +400,7 @@ int ec_trial(struct ec_slave *s, unsigned int port)
 	t.next = next_station(s->bus, t.position);
 	ret = trial_one(&t, &g);
 	s->ports.loops = t.host.loops;
+	s->dl_seen = t.dl ?: s->dl_seen;
 	if (ret)
 		return ret == -EALREADY ? 1 : ret;
 	return trial_branch(&t, &g);

@@ -60,6 +60,39 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 	return i - first;
 }
 
+/* of the frames of a train before its last one: the caller waits for that */
+static void passed(struct ec_post *post)
+{
+}
+
+/* Posts of a train leave together; only the last one is awaited. */
+static void couple(struct half *h)
+{
+	unsigned int i;
+
+	for (i = 0; i < h->n; i++) {
+		h->post[i].train = h->n - i;
+		if (i + 1 == h->n)
+			continue;
+		h->post[i].wait = NULL;
+		h->post[i].done = passed;
+	}
+	h->wait.pending = 1;
+}
+
+/* The frames of a train return in their order: what is missing behind the last one is lost. */
+static void uncouple(struct half *h)
+{
+	unsigned int i, k;
+
+	for (i = 0; i + 1 < h->n; i++) {
+		ec_post_cancel(&h->post[i]);
+		for (k = 0; k < h->post[i].n; k++)
+			if (h->post[i].dg[k].err == -EINPROGRESS)
+				h->post[i].dg[k].err = -ETIMEDOUT;
+	}
+}
+
 /* Send half a window of posts from datagram @first on; returns the first datagram not sent. */
 static unsigned int send_half(struct batch *b, struct half *h, unsigned int first)
 {
@@ -82,9 +115,9 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 	}
 	if (!h->n)
 		return first;
-	for (i = 0; b->class == EC_POST_TRAIN && i < h->n; i++)
-		h->post[i].train = h->n - i;
 	h->wait.pending = h->n;
+	if (b->class == EC_POST_TRAIN)
+		couple(h);
 	init_completion(&h->wait.done);
 	for (i = 0; i < h->n; i++)
 		ec_post_send(&h->post[i], 0);
@@ -123,6 +156,8 @@ static void finish_half(struct batch *b, struct half *h)
 	unsigned int i;
 
 	wait_half(b, h);
+	if (b->class == EC_POST_TRAIN)
+		uncouple(h);
 	for (i = 0; i < h->n && !b->err; i++) {
 		int err = h->post[i].dg[0].err;
 
@@ -300,7 +335,8 @@ int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n)
  *
  * Beside a cycle all frames are in one send, behind the process data, unless the device is full
  * after some of them: then the others are the first ones of the next send. A cycle in whose free
- * wire time they do not fit sends none of them. No frame is repeated.
+ * wire time they do not fit sends none of them. No frame is repeated, and a frame that has not
+ * returned when the last one has is lost.
  *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_xfer(); -ETIMEDOUT also when they do not fit.

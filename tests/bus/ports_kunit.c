@@ -193,6 +193,102 @@ static void ports_drives_return(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2u);
 }
 
+/* registers of a slave that has nothing to do with what is plugged in */
+struct healthy {
+	u8 station[2];
+	u8 loops;
+	u8 al[2];
+	u8 fmmu[4 * EC_FMMU_PAGE];
+	u8 sm[4 * EC_SM_PAGE];
+	u8 dc;
+};
+
+static void take(struct bus *b, u32 index, struct healthy *h)
+{
+	const u8 *m = mem(b, index);
+	u32 sm;
+
+	memset(h, 0, sizeof(*h));
+	memcpy(h->station, m + EC_REG_STATION, sizeof(h->station));
+	h->loops = m[EC_REG_DL_LOOPS];
+	memcpy(h->al, m + EC_REG_AL_STATUS, sizeof(h->al));
+	memcpy(h->fmmu, m + EC_REG_FMMU(0), sizeof(h->fmmu));
+	memcpy(h->sm, m + EC_REG_SM(0), sizeof(h->sm));
+	/* the status of a buffer changes all the time */
+	for (sm = 0; sm < 4; sm++)
+		h->sm[sm * EC_SM_PAGE + EC_SM_OFS_STATUS] = 0;
+	h->dc = m[EC_REG_DC_ACTIVATION];
+}
+
+#define HEALTHY	5	/* all that are connected at first */
+#define FRAMES	60	/* of a trial and of the cycle meanwhile */
+
+/* One try: frame @n from shortly before the trial on meets @what. Returns cycles of a wrong address. */
+static u32 try_at(struct cyc *c, const struct healthy *h, const char *what, u32 n, u32 *odd)
+{
+	struct bus *b = c->b;
+	struct healthy is;
+	char text[64];
+	u32 i, k, wrong = 0;
+
+	/* as after a rest: losses of the try before do not count */
+	memset(bus_slave(b, A2)->ports.loss, 0, sizeof(bus_slave(b, A2)->ports.loss));
+	command(b, "plug a2.1 x1.0");
+	cyc_run(c, 95);
+	snprintf(text, sizeof(text), what, n);
+	command(b, text);
+	for (k = 0; k < 1500; k++) {
+		bool all = true;
+
+		cyc_run(c, 1);
+		if (k == 2 * FRAMES)
+			command(b, "heal a2.1");
+		for (i = 0; i < HEALTHY; i++) {
+			take(b, i, &is);
+			all &= !memcmp(is.station, h[i].station, 2);
+			/* its own port opens for the new ones */
+			is.loops = i == A2 ? h[i].loops : is.loops;
+			*odd += memcmp(&is.loops, &h[i].loops,
+				       sizeof(is) - offsetof(struct healthy, loops)) != 0;
+		}
+		wrong += !all;
+		if (bus_n_slaves(b) == N + 2 && k > 2 * FRAMES + 10)
+			break;
+	}
+	KUNIT_EXPECT_EQ_MSG(b->test, bus_n_slaves(b), N + 2u, "%s", text);
+	command(b, "unplug a2.1");
+	cyc_run(c, 300);
+	KUNIT_EXPECT_EQ_MSG(b->test, bus_n_slaves(b), (u32)N, "%s", text);
+	return wrong;
+}
+
+/* The contact breaks at each frame of a trial, and each of its frames is lost. */
+static void ports_fault_at_each_frame(struct kunit *test)
+{
+	static const char * const faults[] = {
+		"cut a2.1 frame=%u when=out", "cut a2.1 frame=%u when=back",
+		"lose frame=%u", "lose frame=%u when=out",
+	};
+	struct healthy h[HEALTHY];
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i, n, most = 0, odd = 0, lost;
+
+	for (i = 0; i < HEALTHY; i++)
+		take(c->b, i, &h[i]);
+	for (i = 0; i < ARRAY_SIZE(faults); i++)
+		for (n = 1; n <= FRAMES; n++)
+			most = max(most, try_at(c, h, faults[i], n, &odd));
+	lost = w.incomplete;
+	bus_figure("faults at each of %u frames from before a trial on: an address wrong for at most %u cycles, %u of %llu cycles incomplete",
+		   FRAMES * (u32)ARRAY_SIZE(faults), most, lost, c->cycles);
+	KUNIT_EXPECT_LE(test, most, 2u);
+	KUNIT_EXPECT_EQ(test, odd, 0u);
+	KUNIT_EXPECT_EQ(test, w.foreign, 0u);
+	/* each fault takes one frame, which may be that of the cycle */
+	KUNIT_EXPECT_LE(test, lost, FRAMES * (u32)ARRAY_SIZE(faults));
+}
+
 /* A PC or a cable between two free ports: said once, and no frame of the cycle is lost. */
 static void ports_nobody(struct kunit *test)
 {
@@ -244,6 +340,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_new_slaves),
 	KUNIT_CASE(ports_branch_returns),
 	KUNIT_CASE(ports_drives_return),
+	KUNIT_CASE(ports_fault_at_each_frame),
 	KUNIT_CASE(ports_nobody),
 	KUNIT_CASE(ports_flapping),
 	{}
