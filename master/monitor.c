@@ -26,6 +26,7 @@
 #define STABLE_LOOKS	2	/* equal counts before a scan starts */
 #define MOVING_NS	(100 * NSEC_PER_MSEC)	/* or so long: a contact may bounce all the time */
 #define PORTS_NS	(20 * NSEC_PER_MSEC)	/* between reads of all ports because of an event */
+#define LOST_NS		NSEC_PER_SEC	/* all frames, then all slaves are disconnected */
 #define UNASKED_NS	NSEC_PER_SEC	/* without an event, while ports are closed */
 #define TRIES		2	/* to poll all slaves */
 #define STAYS		5	/* looks that do not clear an event, then it is not watched */
@@ -61,6 +62,7 @@ struct watch {
 	bool woken;		/* by one of them */
 	unsigned int stays;	/* looks in a row that did not clear the AL event */
 	u64 ports_ns;		/* last read of all ports */
+	u64 lost_ns;		/* since when no frame returns, 0: frames do */
 	bool door;		/* a closed port has a link */
 	unsigned int dl_stays;	/* looks in a row that did not clear the event of a port */
 	u64 event;		/* number of the next one for the kernel log */
@@ -262,6 +264,7 @@ static void ask_slaves(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	unsigned int count = 0, try;
+	bool lost = true;
 	u8 al[2] = { 0, 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_AL_STATUS, 2, al);
 	u16 ored = 0, wkc = 0;
@@ -274,12 +277,18 @@ static void ask_slaves(struct watch *w)
 			return;		/* nothing was sent, so nothing is known */
 		if (ret)
 			continue;
+		lost = false;
 		count = believable(w, dg.back);
 		wkc = dg.wkc;
 		ored = get_unaligned_le16(al);
 		w->irq = dg.irq;
 		break;
 	}
+	/* frames that do not return say nothing of the slaves, unless that lasts */
+	w->lost_ns = !lost ? 0 : w->lost_ns ?: ktime_get_ns();
+	if (lost && READ_ONCE(m->bus.guarded) && w->link_up &&
+	    ktime_get_ns() - w->lost_ns < LOST_NS)
+		return;
 	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
 		if (w->scanned) {
@@ -371,7 +380,7 @@ static bool looks_after_list(const struct watch *w)
  * A port has got or lost its link: slaves may have changed although their number has not. One that
  * shows the event all the time is ignored.
  */
-static void note_ports(struct watch *w)
+static void monitor_note_ports(struct watch *w)
 {
 	u64 now = ktime_get_ns(), due = 0;
 	bool event = w->irq & EC_ECAT_EVENT_DL;
@@ -413,7 +422,7 @@ static void monitor_count_slaves(struct watch *w)
 	if (!all_well(w))
 		ask_slaves(w);
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
-	note_ports(w);
+	monitor_note_ports(w);
 	ride(w);
 	if (looks_after_list(w) && w->link_up)
 		w->survey.exchange |= ec_mailboxes_look(&w->m->bus, w->irq);
@@ -487,7 +496,7 @@ static void look_at_ports(struct watch *w)
 	int count;
 
 	if (w->link_up && w->count)
-		result = ec_ports_work(&w->m->bus);
+		result = ec_ports_work(&w->m->bus, w->scanned && w->count == w->m->bus.n_slaves);
 	w->door = result != EC_PORTS_QUIET;
 	if (result != EC_PORTS_FOUND)
 		return;
@@ -662,8 +671,8 @@ static int monitor(void *data)
 			idle = w.well && !w.survey.chores;
 			if (!idle)
 				monitor_try_again(&w);
-			maybe_scan(&w);
 			look_at_ports(&w);
+			maybe_scan(&w);
 			if (!idle)
 				read_pdos(&w);
 		} else {

@@ -71,6 +71,11 @@ static u16 dl_of(const struct ec_slave *s)
 	return s->dl_seen ?: s->dl_status;
 }
 
+static bool is_open(const struct ec_slave *s, unsigned int port)
+{
+	return ec_graph_open_ports(dl_of(s)) & BIT(port);
+}
+
 static bool has_port(const struct ec_slave *s, unsigned int port)
 {
 	return ec_slave_port_type(s, port) >= 2;
@@ -81,12 +86,11 @@ static u8 wanted_loop(const struct ec_slave *s, unsigned int port)
 {
 	if (!port || port == s->upstream || !has_port(s, port))
 		return EC_LOOP_AUTO;
+	/* one that has closed itself would open by a frame from behind it, or by the next write */
 	if (s->at[port])
-		return EC_LOOP_AUTO_CLOSE;
+		return is_open(s, port) ? EC_LOOP_AUTO_CLOSE : EC_LOOP_CLOSED;
 	/* frames leave there although no slave is known: closing it could cut some off */
-	if (ec_graph_open_ports(dl_of(s)) & BIT(port))
-		return EC_LOOP_AUTO;
-	return EC_LOOP_CLOSED;
+	return is_open(s, port) ? EC_LOOP_AUTO : EC_LOOP_CLOSED;
 }
 
 static u8 wanted_loops(const struct ec_slave *s)
@@ -101,17 +105,9 @@ static u8 wanted_loops(const struct ec_slave *s)
 	return loops;
 }
 
-/* A write opens a port that has closed itself: not before its loss has been worked through. */
 static bool may_write(const struct ec_slave *s)
 {
-	unsigned int p;
-
-	if (READ_ONCE(s->silent) || READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
-		return false;
-	for (p = 1; p < EC_MAX_PORT; p++)
-		if (s->at[p] && p != s->upstream && !(ec_graph_open_ports(dl_of(s)) & BIT(p)))
-			return false;
-	return true;
+	return !READ_ONCE(s->silent) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 }
 
 static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, const u8 *is)
@@ -275,14 +271,15 @@ static enum ec_ports_result work_at_doors(struct ec_bus *bus)
 /**
  * ec_ports_work() - bring loop control up to date, and look behind ports that have got a link
  * @bus: bus
+ * @scanned: the list is that of the slaves which reply now: positions are certain
  *
  * Context: The monitor thread. Waits for bus traffic.
  * Return: whether slaves were let in, or another look is due soon.
  */
-enum ec_ports_result ec_ports_work(struct ec_bus *bus)
+enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned)
 {
 	write_loops(bus);
-	return is_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
+	return scanned && is_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
 }
 
 /**

@@ -60,7 +60,7 @@ static int moved_by(const struct proof *p, const struct stretch *t)
 }
 
 /* Address and ports of slave @i, now at @at; a known one that fell silent does not reply. */
-static enum doubt check(const struct proof *p, unsigned int i, unsigned int at)
+static enum doubt proof_check(const struct proof *p, unsigned int i, unsigned int at)
 {
 	const struct scan *sc = p->sc;
 	const struct ec_slave *s = sc->slaves[i];
@@ -89,7 +89,7 @@ static enum doubt check_found(const struct proof *p, const struct stretch *t)
 	for (i = t->new; i < end; i++) {
 		if (sc->regs[i].gone || (int)i + by < 0 || i + by >= sc->n)
 			return UNREAD;
-		doubt = max(doubt, check(p, i, i + by));
+		doubt = max(doubt, proof_check(p, i, i + by));
 	}
 	if (t->n_new && end < sc->n && sc->regs[end].there &&
 	    (end + by >= sc->n || !answers_as(p, end + by, sc->slaves[end]->station)))

@@ -31,7 +31,7 @@ static void list_free(struct list *l)
 	kvfree(l->lost);
 }
 
-static void take(struct list *l, const struct scan *sc, unsigned int i, unsigned int end)
+static void list_take(struct list *l, const struct scan *sc, unsigned int i, unsigned int end)
 {
 	for (; i < end; i++) {
 		l->at[i] = l->n;
@@ -48,14 +48,14 @@ static void compose(struct list *l, const struct scan *sc)
 	for (k = 0; k < sc->n_stretches; k++) {
 		const struct stretch *t = &sc->stretch[k];
 
-		take(l, sc, i, t->new);
+		list_take(l, sc, i, t->new);
 		i = t->new + t->n_new;
 		if (!t->thrown)
-			take(l, sc, t->new, i);
+			list_take(l, sc, t->new, i);
 		for (j = t->old; t->thrown && j < t->old + t->n_old; j++)
 			l->slaves[l->n++] = bus->slaves[j];
 	}
-	take(l, sc, i, sc->n);
+	list_take(l, sc, i, sc->n);
 }
 
 static int list_make(struct list *l, const struct scan *sc)
@@ -147,7 +147,7 @@ static void take_ports(struct scan *sc, const struct list *l)
 }
 
 /* A slave that hung where others were found now hangs behind them. */
-static void make_room(const struct scan *sc, const struct list *l)
+static void make_room_behind(const struct scan *sc, const struct list *l)
 {
 	unsigned int k;
 
@@ -166,7 +166,7 @@ static void fit(const struct scan *sc, const struct list *l)
 {
 	unsigned int i, first;
 
-	make_room(sc, l);
+	make_room_behind(sc, l);
 	ec_graph_fit(l->slaves, l->n);
 	first = ec_graph_misfit(l->slaves, l->n);
 	if (sc->n_thrown)
@@ -204,7 +204,7 @@ static void note_aliases(struct scan *sc, const struct list *l)
 }
 
 /* Those that are lost leave the graph; of each it is noted where it hung. */
-static void leave(const struct scan *sc, struct list *l)
+static void leave_list(const struct scan *sc, struct list *l)
 {
 	struct ec_bus *bus = sc->bus;
 	unsigned int i;
@@ -229,7 +229,7 @@ static void set_list(struct scan *sc, struct list *l)
 	unsigned int i;
 
 	lockdep_assert_held_write(&bus->topo);
-	leave(sc, l);
+	leave_list(sc, l);
 	for (i = 0; i < l->n; i++)
 		l->slaves[i]->position = i;
 	leave_places(sc);

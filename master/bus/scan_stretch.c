@@ -14,7 +14,7 @@ struct order {
 	u16 *rank;	/* of a known slave that was found: its number among these, in the list */
 };
 
-static void fill(const struct scan *sc, struct order *o)
+static void fill_order(const struct scan *sc, struct order *o)
 {
 	const struct ec_bus *bus = sc->bus;
 	unsigned int i, rank = 0;
@@ -28,7 +28,8 @@ static void fill(const struct scan *sc, struct order *o)
 			o->rank[o->at[i]] = rank++;
 }
 
-static void add(struct scan *sc, struct stretch t, unsigned int old_end, unsigned int new_end)
+static void stretch_add(struct scan *sc, struct stretch t, unsigned int old_end,
+			unsigned int new_end)
 {
 	t.n_old = old_end - t.old;
 	t.n_new = new_end - t.new;
@@ -55,12 +56,12 @@ static void separate(struct scan *sc, const struct order *o)
 			continue;
 		/* the slaves since @begin are those of the list, in some order */
 		if (begin == highest) {
-			add(sc, t, s->position, i);
+			stretch_add(sc, t, s->position, i);
 			t = (struct stretch){ .old = s->position + 1, .new = i + 1 };
 		}
 		begin = seen;
 	}
-	add(sc, t, sc->bus->n_slaves, sc->n);
+	stretch_add(sc, t, sc->bus->n_slaves, sc->n);
 }
 
 /**
@@ -79,7 +80,7 @@ int ec_scan_stretches(struct scan *sc)
 	int ret = o.at && o.rank ? 0 : -ENOMEM;
 
 	if (!ret) {
-		fill(sc, &o);
+		fill_order(sc, &o);
 		separate(sc, &o);
 	}
 	kvfree(o.at);

@@ -33,6 +33,7 @@ struct guest {
 	u16 station;
 	u16 kept;	/* address that it had, 0: none that it may have again */
 	u8 entry;
+	bool mute;	/* no frame to it has returned */
 	u8 info[EC_INFO_SIZE];
 	u8 station_was[4];
 	u8 dl[2];
@@ -56,7 +57,7 @@ static u8 with_loop(u8 loops, unsigned int port, u8 value)
 	return (loops & ~(3 << 2 * port)) | value << 2 * port;
 }
 
-static struct ec_dg *add(struct trial *t, struct ec_dg dg)
+static struct ec_dg *trial_add(struct trial *t, struct ec_dg dg)
 {
 	t->work[t->n] = dg;
 	return &t->work[t->n++];
@@ -72,25 +73,81 @@ static void close_surely(const struct trial *t, const u8 *closed)
 			return;
 }
 
+static bool is_missing(const struct ec_slave *s)
+{
+	u8 station[2];
+
+	return ec_xfer_fprd(s->bus->links, s->station, EC_REG_STATION, station, 2) == -EIO;
+}
+
+static struct ec_slave *in_list(const struct ec_bus *bus, u16 station)
+{
+	ec_for_each_slave(s, bus)
+		if (s->station == station)
+			return s;
+	return NULL;
+}
+
+/*
+ * Which slave of the list has got the address of the one at ring position @i: its neighbors in the
+ * ring are those in the list, seen from both, and it does not reply at its own. NULL: not certain.
+ */
+static struct ec_slave *owner_at(struct ec_bus *bus, u8 (*at)[2], unsigned int i)
+{
+	const struct ec_slave *before = NULL, *after = NULL;
+	unsigned int from, to;
+
+	if (i)
+		before = in_list(bus, get_unaligned_le16(at[i - 1]));
+	if (i + 1 < bus->n_slaves)
+		after = in_list(bus, get_unaligned_le16(at[i + 1]));
+	from = before ? before->position + 1 : 0;
+	to = after ? after->position : bus->n_slaves;
+	return to == from + 1 && is_missing(bus->slaves[from]) ? bus->slaves[from] : NULL;
+}
+
+static u16 find_owner(struct ec_bus *bus, u16 station)
+{
+	struct ec_dg *dg = kvcalloc(bus->n_slaves, sizeof(*dg), GFP_KERNEL);
+	u8 (*at)[2] = kvcalloc(bus->n_slaves, sizeof(*at), GFP_KERNEL);
+	const struct ec_slave *owner = NULL;
+	unsigned int i;
+
+	if (dg && at) {
+		for (i = 0; i < bus->n_slaves; i++)
+			dg[i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, at[i]);
+		ec_xfer(bus->links, dg, bus->n_slaves);
+		for (i = 0; i < bus->n_slaves && get_unaligned_le16(at[i]) != station; i++)
+			;
+		owner = i < bus->n_slaves ? owner_at(bus, at, i) : NULL;
+	}
+	kvfree(dg);
+	kvfree(at);
+	return owner ? owner->station : 0;
+}
+
 /*
  * A slave of the bus has the address of the guest, although the port is closed: the contact broke
- * before the address was written.
+ * before the address was written. It is the next one of the ring, unless others were disconnected
+ * as well.
  */
-static void give_back(const struct trial *t, u16 station)
+static void trial_give_back(const struct trial *t, u16 station, bool next)
 {
+	u16 owner = next ? t->next : find_owner(t->bus, station);
 	u8 own[2];
 
-	put_unaligned_le16(t->next, own);
-	ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2);
+	put_unaligned_le16(owner, own);
+	if (owner)
+		ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2);
 	ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
-		t->host.station, t->port, t->next);
+		t->host.station, t->port, owner);
 }
 
 /*
  * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0, or
  * -EAGAIN: frames were lost; -ENOLINK: the contact broke.
  */
-static int run(struct trial *t, u16 station)
+static int trial_run(struct trial *t, u16 station)
 {
 	const u8 opened[2] = { t->host.control | TEMPORARY,
 			       with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
@@ -127,9 +184,8 @@ static int run(struct trial *t, u16 station)
 		ec_xfer(t->bus->links, check, 3);
 	}
 	t->dl = check[0].err || check[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
-	if (!check[1].err && check[1].wkc == 1 && t->next &&
-	    !check[2].err && !check[2].wkc) {
-		give_back(t, station);
+	if (!check[1].err && check[1].wkc) {
+		trial_give_back(t, station, t->next && !check[2].err && !check[2].wkc);
 		return -ENOLINK;
 	}
 	if (!(t->dl & EC_DLS_LINK(t->port)))
@@ -140,38 +196,44 @@ static int run(struct trial *t, u16 station)
 	return close[0].wkc || close[1].wkc ? 0 : -EAGAIN;
 }
 
-/* The first slave behind the port gets an address; 0, -ENXIO: none replies, or as run(). */
+/* The first slave behind the port gets an address; 0, -ENXIO: none replies, or as trial_run(). */
 static int greet(struct trial *t, struct guest *g)
 {
-	u8 fresh[2];
+	static const u8 all_closed[1] = { 0xfc };
 	const struct ec_dg *was;
+	u16 adp = -t->position;
+	u8 fresh[2];
 	int ret;
 
 	put_unaligned_le16(g->station, fresh);
 	t->n = 0;
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
-	was = add(t, EC_DG(EC_CMD_APRD, (u16)-t->position, EC_REG_STATION, 4, g->station_was));
-	add(t, EC_DG(EC_CMD_APWR, (u16)-t->position, EC_REG_STATION, 2, fresh));
-	ret = run(t, g->station);
+	was = trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, g->station_was));
+	trial_add(t, EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, fresh));
+	/* a device behind it may let no frame return; it executes what it gets */
+	if (g->mute)
+		trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
+	ret = trial_run(t, g->station);
+	g->mute = was->err;
 	if (!was->err && !was->wkc && ret != -ENOLINK)
 		return -ENXIO;
 	return ret;
 }
 
-static int ask(struct trial *t, struct guest *g)
+static int trial_ask(struct trial *t, struct guest *g)
 {
 	static const u8 latch[4];
 	unsigned int i;
 	int ret;
 
 	t->n = 0;
-	add(t, EC_FPWR(g->station, EC_REG_DC_RECV(0), 4, latch))->last = true;
-	add(t, EC_FPRD(g->station, EC_REG_TYPE, EC_INFO_SIZE, g->info));
-	add(t, EC_FPRD(g->station, EC_REG_DL_CONTROL, 2, g->control));
-	add(t, EC_FPRD(g->station, EC_REG_DL_STATUS, 2, g->dl));
-	add(t, EC_FPRD(g->station, EC_REG_DC_RECV(0), 16, g->times));
-	ret = run(t, g->station);
+	trial_add(t, EC_FPWR(g->station, EC_REG_DC_RECV(0), 4, latch))->last = true;
+	trial_add(t, EC_FPRD(g->station, EC_REG_TYPE, EC_INFO_SIZE, g->info));
+	trial_add(t, EC_FPRD(g->station, EC_REG_DL_CONTROL, 2, g->control));
+	trial_add(t, EC_FPRD(g->station, EC_REG_DL_STATUS, 2, g->dl));
+	trial_add(t, EC_FPRD(g->station, EC_REG_DC_RECV(0), 16, g->times));
+	ret = trial_run(t, g->station);
 	/* not every controller has receive times */
 	for (i = 1; i < 4 && !ret; i++)
 		ret = t->work[i].wkc == 1 ? 0 : -EAGAIN;
@@ -181,7 +243,7 @@ static int ask(struct trial *t, struct guest *g)
 }
 
 /* The port by which frames come in: the open one that latched first. */
-static u8 entry_of(const struct guest *g)
+static u8 guest_entry(const struct guest *g)
 {
 	u8 open = ec_graph_open_ports(get_unaligned_le16(g->dl));
 	int best = -1;
@@ -220,17 +282,17 @@ static int tame(struct trial *t, struct guest *g)
 
 	put_unaligned_le16(g->kept ?: g->station, kept);
 	t->n = 0;
-	add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops));
+	trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops));
 	if (fmmus)
-		add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
-	add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
-	add(t, EC_FPWR(g->station, EC_REG_AL_CONTROL, 2, init));
-	add(t, EC_FPRD(g->station, EC_REG_DL_LOOPS, 1, is));
+		trial_add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
+	trial_add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
+	trial_add(t, EC_FPWR(g->station, EC_REG_AL_CONTROL, 2, init));
+	trial_add(t, EC_FPRD(g->station, EC_REG_DL_LOOPS, 1, is));
 	if (fmmus)
-		add(t, EC_FPRD(g->station, EC_REG_FMMU(0), fmmus, left));
+		trial_add(t, EC_FPRD(g->station, EC_REG_FMMU(0), fmmus, left));
 	last = t->n;
-	add(t, EC_FPWR(g->station, EC_REG_STATION, 2, kept));
-	ret = run(t, g->station);
+	trial_add(t, EC_FPWR(g->station, EC_REG_STATION, 2, kept));
+	ret = trial_run(t, g->station);
 	if (t->work[last].wkc == 1)
 		g->station = get_unaligned_le16(kept);
 	if (ret)
@@ -296,11 +358,11 @@ static int trial_one(struct trial *t, struct guest *g)
 	/* each time: a PC or a switch lets no frame return */
 	if (ret == -EAGAIN && t->work[0].err)
 		return -ENXIO;
-	ret = ret ?: try_often(t, g, ask);
+	ret = ret ?: try_often(t, g, trial_ask);
 	if (ret)
 		return ret;
 	g->kept = kept_station(t->bus, g);
-	g->entry = entry_of(g);
+	g->entry = guest_entry(g);
 	ret = try_often(t, g, tame);
 	if (ret && ret != -EOPNOTSUPP)
 		return ret;

@@ -223,7 +223,7 @@ static void take(struct bus *b, u32 index, struct healthy *h)
 #define HEALTHY	5	/* all that are connected at first */
 #define FRAMES	60	/* of a trial and of the cycle meanwhile */
 
-/* One try: frame @n from shortly before the trial on meets @what. Returns cycles of a wrong address. */
+/* Frame @n from shortly before the trial on meets @what. Returns cycles of a wrong address. */
 static u32 try_at(struct cyc *c, const struct healthy *h, const char *what, u32 n, u32 *odd)
 {
 	struct bus *b = c->b;
@@ -290,7 +290,7 @@ static void ports_fault_at_each_frame(struct kunit *test)
 }
 
 /* A PC or a cable between two free ports: said once, and no frame of the cycle is lost. */
-static void ports_nobody(struct kunit *test)
+static void ports_no_reply(struct kunit *test)
 {
 	static const char * const commands[] = {
 		"host b2.1 every=1ms", "plug a2.1 b2.1",
@@ -341,7 +341,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_branch_returns),
 	KUNIT_CASE(ports_drives_return),
 	KUNIT_CASE(ports_fault_at_each_frame),
-	KUNIT_CASE(ports_nobody),
+	KUNIT_CASE(ports_no_reply),
 	KUNIT_CASE(ports_flapping),
 	{}
 };

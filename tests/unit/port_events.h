@@ -58,6 +58,7 @@ struct port_end {
  * @burst_percent: of all events, those in bursts of 2 to 20 within a millisecond
  * @ahead_ns: how long before they happen events are planned
  * @kinds: bits of enum port_event that happen
+ * @no_hosts: no PC or switch comes
  * @root: also to slaves at a port of the master
  * @wrong_way: one of ten slaves that were not connected is plugged in by its port 1; two of
  *             them in the bus let no frame return
@@ -78,6 +79,7 @@ struct port_events {
 	u32 burst_percent;
 	u64 ahead_ns;
 	u32 kinds;
+	bool no_hosts;
 	bool root;
 	bool wrong_way;
 	u64 events;
@@ -368,7 +370,7 @@ static inline bool port_events_foreign(struct port_events *e, u64 at)
 		return port_events_connect(e, at, x);
 	}
 	end = port_events_port(e, PORT_EVENTS_FREE);
-	return end.slave >= 0 &&
+	return end.slave >= 0 && !e->no_hosts &&
 	       port_events_add(e, at, EC_SIM_FAULT_HOST, end,
 			       (struct port_end){ (int)port_events_rnd(e, 2), 0 }, every);
 }
