@@ -3,7 +3,6 @@
 #include <linux/slab.h>
 #include "boundary/api.h"
 #include "boundary/cdev.h"
-#include "bus/known.h"
 #include "carry/posts.h"
 #include "link/device.h"
 #include "link/spec.h"
@@ -83,7 +82,6 @@ static void destroy(struct ec_master *m)
 	ec_device_unregister(&m->links);
 	ec_carry_exit(&m->carry);
 	ec_links_exit(&m->links);
-	ec_known_forget_images(&m->bus);
 	ec_bus_exit(&m->bus);
 	ec_log_flush(m->base, true);
 	kvfree(m);

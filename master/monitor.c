@@ -27,7 +27,7 @@
 #define MOVING_NS	(100 * NSEC_PER_MSEC)	/* or so long: a contact may bounce all the time */
 #define PORTS_NS	(20 * NSEC_PER_MSEC)	/* between reads of all ports because of an event */
 #define LOST_NS		NSEC_PER_SEC	/* all frames, then all slaves are disconnected */
-#define UNASKED_NS	NSEC_PER_SEC	/* without an event, while ports are closed */
+#define UNASKED_NS	NSEC_PER_SEC	/* if the event says nothing, while ports are closed */
 #define TRIES		2	/* to poll all slaves */
 #define STAYS		5	/* looks that do not clear an event, then it is not watched */
 #define ALONE_NS	NSEC_PER_SEC	/* frames of its own, after a cycle that carried no rider */
@@ -389,7 +389,7 @@ static void monitor_note_ports(struct watch *w)
 		w->dl_stays = 0;
 	if (event && w->dl_stays < STAYS)
 		due = PORTS_NS;
-	else if (READ_ONCE(w->m->bus.guarded))
+	else if (event && READ_ONCE(w->m->bus.guarded))
 		due = UNASKED_NS;
 	if (!due || !w->scanned || w->held || now - w->ports_ns < due)
 		return;
@@ -503,6 +503,7 @@ static void look_at_ports(struct watch *w)
 	count = ec_scan_count(&w->m->bus);
 	if (count > 0 && believable(w, count)) {
 		w->count = count;
+		WRITE_ONCE(w->m->bus.responding, count);
 		scan_next(w);
 	}
 }

@@ -5,16 +5,46 @@
 #include "known.h"
 #include "slave.h"
 
+#define IMAGES		256
+#define IMAGE_BYTES	65536
+
 static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 {
 	return &heads[hash_64(key, EC_KNOWN_BITS)];
 }
 
-static void known_forget(struct ec_known *k, struct ec_lost *l)
+/* Images only save time: without memory there is none. */
+static struct ec_image *keep_image(const struct ec_slave *s)
 {
-	if (l->slave)
-		ec_slave_unref(l->slave);
-	ec_known_drop(k, l);
+	struct ec_image *image;
+
+	if (!s->sii || s->sii_bytes < EC_SII_FIXED_SIZE || s->sii_bytes > IMAGE_BYTES)
+		return NULL;
+	image = kvmalloc(sizeof(*image) + s->sii_bytes, GFP_KERNEL | __GFP_NOWARN);
+	if (!image)
+		return NULL;
+	kref_init(&image->kref);
+	image->bytes = s->sii_bytes;
+	image->flaw = s->flaw;
+	memcpy(image->sii, s->sii, s->sii_bytes);
+	return image;
+}
+
+static void forget_image(struct ec_lost *l)
+{
+	ec_image_put(l->image);
+	l->image = NULL;
+}
+
+/* So many disconnected devices have an image at most. */
+static void limit_images(struct ec_known *k)
+{
+	struct ec_lost *l;
+	unsigned int n = 0;
+
+	list_for_each_entry_reverse(l, &k->oldest, age)
+		if (l->image && ++n > IMAGES)
+			forget_image(l);
 }
 
 /* Without memory the number is forgotten: the device gets another one when it reconnects. */
@@ -33,14 +63,14 @@ static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int
 	l->station = s->station;
 	l->position = s->position;
 	strscpy(l->label, ec_slave_label(s), sizeof(l->label));
-	l->slave = s->sii ? ec_slave_ref(s) : NULL;
+	l->image = keep_image(s);
 	hlist_add_head(&l->by_number, head_of(k->lost, l->number));
 	hlist_add_head(&l->by_station, head_of(k->by_station, l->station));
 	if (l->serial)
 		hlist_add_head(&l->by_serial, head_of(k->by_serial, l->serial));
 	list_add_tail(&l->age, &k->oldest);
 	if (++k->n_lost > limit)
-		known_forget(k, list_first_entry(&k->oldest, struct ec_lost, age));
+		ec_known_drop(k, list_first_entry(&k->oldest, struct ec_lost, age));
 }
 
 static bool was_read(u32 vendor, u32 product)
@@ -161,32 +191,33 @@ u16 ec_known_fresh_station(struct ec_bus *bus)
  * @head: %EC_SII_HEAD bytes: checksum, identity, serial number
  *
  * Context: The monitor thread, which alone changes the numbers.
- * Return: that device with its image, which is as long as the fixed area at least, with a reference
- * for the caller; the one with the station address before others; NULL: there is none.
+ * Return: its image, which is as long as the fixed area at least, with a reference for the caller;
+ * the one with the station address before others; NULL: there is none.
  */
-struct ec_slave *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head)
+struct ec_image *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head)
 {
-	struct ec_slave *found = NULL;
+	struct ec_image *found = NULL;
 	const struct ec_lost *l;
 	bool kept = false;
 
 	list_for_each_entry(l, &bus->known.oldest, age) {
-		if (!l->slave || l->slave->sii_bytes < EC_SII_FIXED_SIZE ||
-		    memcmp(l->slave->sii, head, EC_SII_HEAD))
+		if (!l->image || memcmp(l->image->sii, head, EC_SII_HEAD))
 			continue;
 		/* the one that was disconnected last, as its EEPROM may have been written */
 		if (!kept || l->station == station)
-			found = l->slave;
+			found = l->image;
 		kept |= l->station == station;
 	}
-	return found ? ec_slave_ref(found) : NULL;
+	if (found)
+		kref_get(&found->kref);
+	return found;
 }
 
 /**
  * ec_known_forget_images() - forget the EEPROM images of disconnected devices
  * @bus: bus
  *
- * All are to be read again, their memory is needed, or the bus ends.
+ * All are to be read again, or their memory is needed.
  *
  * Context: The monitor thread. May sleep.
  */
@@ -194,11 +225,8 @@ void ec_known_forget_images(struct ec_bus *bus)
 {
 	struct ec_lost *l;
 
-	list_for_each_entry(l, &bus->known.oldest, age) {
-		if (l->slave)
-			ec_slave_unref(l->slave);
-		l->slave = NULL;
-	}
+	list_for_each_entry(l, &bus->known.oldest, age)
+		forget_image(l);
 }
 
 /**
@@ -220,6 +248,7 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 	ec_for_each_slave(s, bus)
 		if (s->position >= n || slaves[s->position] != s)
 			known_note_lost(k, s, limit);
+	limit_images(k);
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = slaves[i];
 		struct ec_lost *l;
@@ -230,7 +259,7 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 		    by_station(k, s, true) ?: by_number(k, s->device);
 		if (l) {
 			s->device = l->number;
-			known_forget(k, l);
+			ec_known_drop(k, l);
 		} else {
 			s->device = ++k->last;
 		}

@@ -6,13 +6,14 @@
 #include <linux/types.h>
 
 struct ec_bus;
+struct ec_image;
 struct ec_slave;
 
 void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 		     unsigned int limit);
 bool ec_known_was_there(const struct ec_bus *bus, u16 station);
 u16 ec_known_fresh_station(struct ec_bus *bus);
-struct ec_slave *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head);
+struct ec_image *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head);
 void ec_known_forget_images(struct ec_bus *bus);
 struct ec_slave *ec_known_slave(const struct ec_bus *bus, u64 number);
 size_t ec_known_text(const struct ec_bus *bus, u64 number, char *buf, size_t size);

@@ -3,10 +3,25 @@
 #ifndef EC_KNOWN_TABLE_H
 #define EC_KNOWN_TABLE_H
 
+#include <linux/kref.h>
 #include <linux/list.h>
 #include <linux/types.h>
+#include "../wire/sii.h"
 
-struct ec_slave;
+
+/**
+ * struct ec_image - EEPROM image of a device that was disconnected
+ * @kref: references
+ * @bytes: of @sii
+ * @flaw: found when it was read
+ * @sii: image
+ */
+struct ec_image {
+	struct kref kref;
+	size_t bytes;
+	struct ec_sii_flaw flaw;
+	u8 sii[];
+};
 
 #define EC_KNOWN_BITS	5
 #define EC_KNOWN_HEADS	(1 << EC_KNOWN_BITS)
@@ -25,7 +40,7 @@ struct ec_slave;
  * @station: its station address
  * @position: its ring position
  * @label: what people call it
- * @slave: its object, with the EEPROM image; NULL: none was read
+ * @image: of its EEPROM, NULL: none was read, or it is not kept any more
  */
 struct ec_lost {
 	u64 number;
@@ -40,7 +55,7 @@ struct ec_lost {
 	u16 station;
 	u16 position;
 	char label[24];
-	struct ec_slave *slave;
+	struct ec_image *image;
 };
 
 /**
@@ -65,6 +80,7 @@ struct ec_known {
 
 void ec_known_init(struct ec_known *k);
 void ec_known_exit(struct ec_known *k);
+void ec_image_put(struct ec_image *image);
 void ec_known_drop(struct ec_known *k, struct ec_lost *l);
 
 #endif

@@ -123,39 +123,72 @@ static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, c
 		      is[1], wrote);
 }
 
+static bool has_to_write(const struct ec_slave *s)
+{
+	return wanted_loops(s) != s->ports.loops && may_write(s);
+}
+
+/* Slaves whose loop control is not what it has to be. */
+static unsigned int collect(struct ec_bus *bus, struct ec_slave **list, unsigned int n)
+{
+	unsigned int k = 0;
+
+	ec_for_each_slave(s, bus)
+		if (k < n && has_to_write(s))
+			list[k++] = s;
+	return k;
+}
+
+/* A port that has opened meanwhile must not be closed: a slave may be behind it. */
+static void read_ports(struct ec_bus *bus, struct ec_slave **list, unsigned int n,
+		       struct ec_dg *dg, u8 (*v)[3])
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		dg[i] = EC_FPRD(list[i]->station, EC_REG_DL_STATUS, 2, v[i]);
+	ec_xfer(bus->links, dg, n);
+	for (i = 0; i < n; i++)
+		if (!dg[i].err && dg[i].wkc == 1)
+			list[i]->dl_seen = get_unaligned_le16(v[i]);
+}
+
+static void write_ports(struct ec_bus *bus, struct ec_slave **list, unsigned int n,
+			struct ec_dg *dg, u8 (*v)[3])
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++) {
+		v[i][2] = wanted_loops(list[i]);
+		dg[2 * i] = EC_FPWR(list[i]->station, EC_REG_DL_LOOPS, 1, &v[i][2]);
+		dg[2 * i + 1] = EC_FPRD(list[i]->station, EC_REG_DL_CONTROL, 2, v[i]);
+	}
+	ec_xfer(bus->links, dg, 2 * n);
+	for (i = 0; i < n; i++)
+		note_written(list[i], &dg[2 * i], v[i][2], v[i]);
+}
+
 /* Write loop control where it is not what it has to be. */
 static void write_loops(struct ec_bus *bus)
 {
-	unsigned int n = 0, k = 0;
+	struct ec_slave **list;
+	unsigned int n = 0;
 	struct ec_dg *dg;
 	u8 (*v)[3];
 
 	ec_for_each_slave(s, bus)
-		n += wanted_loops(s) != s->ports.loops && may_write(s);
+		n += has_to_write(s);
 	if (!n)
 		return;
+	list = kvcalloc(n, sizeof(*list), GFP_KERNEL);
 	dg = kvcalloc(2 * n, sizeof(*dg), GFP_KERNEL);
 	v = kvcalloc(n, sizeof(*v), GFP_KERNEL);
-	if (!dg || !v)
-		goto out;
-	ec_for_each_slave(s, bus) {
-		v[k][2] = wanted_loops(s);
-		if (v[k][2] == s->ports.loops || !may_write(s))
-			continue;
-		dg[2 * k] = EC_FPWR(s->station, EC_REG_DL_LOOPS, 1, &v[k][2]);
-		dg[2 * k + 1] = EC_FPRD(s->station, EC_REG_DL_CONTROL, 2, v[k]);
-		if (++k == n)
-			break;
+	if (list && dg && v) {
+		n = collect(bus, list, n);
+		read_ports(bus, list, n, dg, v);
+		write_ports(bus, list, n, dg, v);
 	}
-	ec_xfer(bus->links, dg, 2 * k);
-	k = 0;
-	ec_for_each_slave(s, bus) {
-		if (k == n || dg[2 * k].adp != s->station)
-			continue;
-		note_written(s, &dg[2 * k], v[k][2], v[k]);
-		k++;
-	}
-out:
+	kvfree(list);
 	kvfree(dg);
 	kvfree(v);
 }

@@ -37,7 +37,7 @@ struct reader {
 	struct ec_slave *slave;
 	size_t need;
 	size_t began;	/* bytes of the parts before */
-	struct ec_slave *kept;	/* disconnected, with the same head: is it the same? */
+	struct ec_image *kept;	/* of a disconnected device with the same head */
 	u32 check;	/* word at which the two are compared */
 	bool looked;	/* for @kept */
 	u8 tries;
@@ -212,29 +212,28 @@ static void look_for_kept(struct reader *r)
 }
 
 /* The last access that lies within the image */
-static u32 last_word(const struct ec_slave *s)
+static u32 last_word(const struct ec_image *image)
 {
-	return (s->sii_bytes - 8) / 2 & ~3u;
+	return (image->bytes - 8) / 2 & ~3u;
 }
 
 static void drop_kept(struct reader *r)
 {
-	if (r->kept)
-		ec_slave_unref(r->kept);
+	ec_image_put(r->kept);
 	r->kept = NULL;
 }
 
 /* The device is the one that was disconnected: its image is taken, the rest is not read. */
 static void take_kept(struct reader *r)
 {
-	const struct ec_slave *kept = r->kept;
+	const struct ec_image *kept = r->kept;
 	struct ec_slave *s = r->slave;
 
-	if (kept->sii_bytes > s->sii_counted)
-		enlarge(r, kept->sii_bytes);
+	if (kept->bytes > s->sii_counted)
+		enlarge(r, kept->bytes);
 	if (!r->done) {
-		memcpy(s->part, kept->sii, kept->sii_bytes);
-		s->part_bytes = kept->sii_bytes;
+		memcpy(s->part, kept->sii, kept->bytes);
+		s->part_bytes = kept->bytes;
 		s->flaw = kept->flaw;
 		scan_sii_finish(r);
 	}

@@ -152,6 +152,24 @@ static void graph_eeprom_of_known_device(struct kunit *test)
 	}
 }
 
+/* A device that comes back leaves nothing behind. */
+static void graph_devices_return_often(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	u32 i;
+
+	bus_idle(b);
+	for (i = 0; i < 20; i++) {
+		bus_fault(b, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, 0, 0);
+		msleep(300);
+		KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 0u);
+		KUNIT_EXPECT_EQ(test, bus_table(b)->known.n_lost, (u32)N);
+		bus_fault(b, EC_SIM_FAULT_HEAL, EC_SIM_MASTER0, 0, 0, 0);
+		KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 5000), ~0ull);
+		KUNIT_EXPECT_EQ(test, bus_table(b)->known.n_lost, 0u);
+	}
+}
+
 static void bounce(struct bus *b, int slave, int port, u64 t, u64 end, struct rnd_state *r)
 {
 	while (t < end) {
@@ -274,6 +292,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(graph_follows, step_gen_params),
 	KUNIT_CASE(graph_moved_slave_is_not_read_again),
 	KUNIT_CASE(graph_eeprom_of_known_device),
+	KUNIT_CASE(graph_devices_return_often),
 	KUNIT_CASE(graph_found_beside_bouncing_contact),
 	KUNIT_CASE(graph_random_events),
 	{}

@@ -6,7 +6,7 @@
 #include "cyc.h"
 #include "tests/unit/port_events.h"
 
-#define MAX	32	/* slaves of the segment */
+#define SLAVES	32	/* slaves of the segment */
 
 static const char text[] =
 	"segment seed=7 response=100us transition=1ms\n"
@@ -33,8 +33,8 @@ static const char text[] =
 struct run {
 	struct port_events e;
 	u64 last_ns;
-	bool entitled[MAX];
-	struct ec_slave *slave[MAX];
+	bool entitled[SLAVES];
+	struct ec_slave *slave[SLAVES];
 	u32 broken;
 	u64 checked;
 };
@@ -99,7 +99,7 @@ static void look(struct cyc *c)
 {
 	struct run *r = c->ctx;
 	u64 now = ktime_get_ns();
-	u8 mark[MAX];
+	u8 mark[SLAVES];
 	u32 i;
 
 	port_events_plan(&r->e, now);
@@ -113,7 +113,7 @@ static void look(struct cyc *c)
 static void expect_graph(struct bus *b, const char *after)
 {
 	const struct ec_sim_route *r = &b->sim->route[0];
-	u8 mark[MAX];
+	u8 mark[SLAVES];
 	u32 i, p;
 
 	KUNIT_EXPECT_EQ_MSG(b->test, port_events_reached(b->sim, ktime_get_ns(), -1, mark),
@@ -183,7 +183,7 @@ static void random_events(struct kunit *test, u64 seed, u32 events)
 	KUNIT_EXPECT_EQ(test, r->broken, 0u);
 	bus_figure("%llu random events, %llu bursts among them, seed %llu: of %llu checks of slaves that were not cut off %u failed",
 		   r->e.events, r->e.bursts, seed, r->checked, r->broken);
-	for (i = 0; i < MAX; i++)
+	for (i = 0; i < SLAVES; i++)
 		if (r->slave[i])
 			ec_slave_unref(r->slave[i]);
 }

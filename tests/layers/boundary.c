@@ -93,7 +93,6 @@ static void bench_free(struct bench *b)
 	ec_device_unregister(&m->links);
 	ec_carry_exit(&m->carry);
 	ec_links_exit(&m->links);
-	ec_known_forget_images(&m->bus);
 	ec_bus_exit(&m->bus);
 	kvfree(m);
 	ec_cdev_exit();

@@ -23,7 +23,6 @@ static inline void scanned_end(struct scanned *s)
 {
 	ec_bus_stop(&s->bus);
 	segment_end(&s->seg);
-	ec_known_forget_images(&s->bus);
 	ec_bus_exit(&s->bus);
 }
 
