@@ -4,6 +4,7 @@
 #include "../link/links.h"
 #include "../base/once64.h"
 #include "../carry/carry.h"
+#include "../kernel/trace.h"
 #include "slave.h"
 
 #define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
@@ -234,6 +235,13 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 		report_failure(slave, text, error, cause);
 }
 
+/* @before: AL status before, 0: the slave is new */
+static void trace_al(const struct ec_slave *s, u16 before)
+{
+	trace_ec_al_state(s->bus->base->index, s->station, s->position, before,
+			  READ_ONCE(s->al_status), READ_ONCE(s->al_code));
+}
+
 /**
  * ec_slave_list() - report what the scan has noted of a slave that comes into the list
  * @slave: new slave
@@ -249,6 +257,7 @@ void ec_slave_list(struct ec_slave *slave)
 	slave->unreported = false;
 	slave->listed = true;
 	raw_spin_unlock(&slave->note_lock);
+	trace_al(slave, 0);
 	if (slave->sii_flaw[0]) {
 		ec_slave_warn(slave, "%s\n", slave->sii_flaw);
 		ec_slave_event(slave, EC_EVENT_EEPROM, slave->flaw.kind, slave->info.checksum,
@@ -282,6 +291,7 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 		ec_pending_before(slave);
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
+	trace_al(slave, before);
 	ec_slave_changed(slave);
 	if (!slave->listed)
 		return;

@@ -289,7 +289,7 @@ void ec_flight_landed(struct ec_slot *slot)
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	list_for_each_entry(post, &posts, list)
 		take_results(slot, post);
-	ec_links_count(c->links, slot->sides & ~slot->back, lost);
+	ec_links_lost(c->links, slot, slot->sides & ~slot->back);
 	ec_slot_put(slot);
 	/* the thread sends held posts; the place before @held, pairs with send_ready() */
 	smp_mb();

@@ -132,7 +132,7 @@ static void look_at_frame(struct ec_carry *c, unsigned int i, const struct look 
 		ec_flight_landed(slot);
 	if (!lost)
 		return;
-	ec_links_count(c->links, sides, lost);
+	ec_links_lost(c->links, slot, sides);
 	ec_post_lost(c, &posts, err);
 }
 

@@ -265,7 +265,7 @@ static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64
 /* The copy of a link is missing, and may still be received: the slot goes into quarantine. */
 static noinline void put_partial(struct ec_links *l, struct ec_slot *slot)
 {
-	ec_links_count(l, slot->sides & ~slot->back, lost);
+	ec_links_lost(l, slot, slot->sides & ~slot->back);
 	ec_slot_put(slot);
 }
 
@@ -309,7 +309,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 				put_partial(l, slot);
 		} else if (is_lost(c, f, &now)) {
 			/* a copy may have been received just before */
-			ec_links_count(l, slot->sides & ~slot->back, lost);
+			ec_links_lost(l, slot, slot->sides & ~slot->back);
 		} else {
 			f->missed = true;
 			if (f->send == c->send)

@@ -5,6 +5,7 @@
 #include <linux/rcupdate.h>
 #include "../base/bytes.h"
 #include "../base/once64.h"
+#include "../kernel/trace.h"
 #include "send.h"
 
 /*
@@ -19,7 +20,7 @@ static bool make_room(struct ec_cycle *c, u64 now)
 		return true;
 	oldest = c->flight[0].slot;
 	if (ec_slot_cancel(oldest, now))
-		ec_links_count(c->links, oldest->sides & ~oldest->back, lost);
+		ec_links_lost(c->links, oldest, oldest->sides & ~oldest->back);
 	else if (atomic_read_acquire(&oldest->state) == EC_SLOT_DONE)
 		ec_slot_put(oldest);
 	else
@@ -167,6 +168,13 @@ void ec_cycle_app_time(struct ec_cycle *c, const struct ec_ioc_send *what)
 	c->clock.hold = ec_dc_update_app_time(c->dc, what, &c->clock.lead);
 }
 
+/* apart from the send, which needs its registers */
+static noinline void trace_send(const struct ec_cycle *c)
+{
+	trace_ec_cycle(c->base->index, c->sends, c->queued[c->send % EC_CYC_SENDS], c->last.frames,
+		       c->last.ns, c->n_flight);
+}
+
 /**
  * ec_cycle_do_send() - send the queued domains, then acyclic frames that fit
  * @c: active cycle; the links of its master are entered
@@ -214,5 +222,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	ec_links_flush(l);
 	rcu_read_unlock();
 	ec_write64(&c->sends, c->sends + 1);
+	if (trace_ec_cycle_enabled())
+		trace_send(c);
 	return 0;
 }

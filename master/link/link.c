@@ -68,6 +68,28 @@ void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size
 }
 
 /**
+ * ec_link_send_traced() - let a device send a frame, with a trace event when it has taken it
+ * @link: link
+ * @dev: its device
+ * @buf: the frame, in a buffer of the device
+ * @len: its bytes, with padding
+ *
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
+ * Return: as struct ecdev_ops.tx_send.
+ */
+int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len)
+{
+	/* afterwards the buffer belongs to the device */
+	u32 seq = get_unaligned_le32(buf + 8);
+	u8 index = buf[EC_ETH_HDR + EC_FRAME_HDR + 1];
+	int ret = dev->ops->tx_send(dev->priv, buf, len);
+
+	if (!ret)
+		trace_ec_frame_sent(link->links->base->index, link->side, index, seq, len);
+	return ret;
+}
+
+/**
  * ec_links_send() - send a frame on several links
  * @l: links
  * @slot: slot in state BUILD, which holds the frame; in BUILD again on failure

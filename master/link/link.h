@@ -86,6 +86,7 @@ struct ec_link {
 void ec_link_init(struct ec_link *link, struct ec_links *l, u8 side);
 void ec_link_trace(const struct ec_link *link, const char *what, const u8 *data, size_t len);
 void ec_link_show(struct ec_link *link, struct ecdev *dev, const u8 *frame, size_t len);
+int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len);
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now);
 void ec_link_poll(struct ec_link *link);
 void ec_links_poll_each(struct ec_links *l);

@@ -129,6 +129,25 @@ void ec_links_count_at(struct ec_links *l, unsigned long sides, size_t counter)
 }
 
 /**
+ * ec_links_lost() - count a frame as lost
+ * @l: links
+ * @slot: its slot
+ * @sides: mask of the links without its copy; 0: none
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long sides)
+{
+	ec_links_count(l, sides, lost);
+	if (!trace_ec_frame_lost_enabled())
+		return;
+	for (; sides; sides &= sides - 1)
+		trace_ec_frame_lost(l->base->index, __ffs(sides), slot->index,
+				    l->slots.numbered ? READ_ONCE(slot->seq) : 0,
+				    READ_ONCE(slot->eth_len));
+}
+
+/**
  * ec_links_look() - read the physical state of the links; log changes
  * @l: links
  *

@@ -12,6 +12,7 @@
 #include "ethercat.h"
 #include "../base/base.h"
 #include "../base/limits.h"
+#include "../kernel/trace.h"
 #include "access.h"
 #include "device.h"
 #include "link.h"
@@ -242,7 +243,9 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
 	return tx->link ? ec_link_tx_get(tx->link, &tx->dev) : NULL;
 }
 
-/* count a frame on the links of a mask: lost, late, or tx_errors */
+void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long sides);
+
+/* count a frame on the links of a mask: late, or tx_errors */
 #define ec_links_count(l, sides, what) \
 	ec_links_count_at(l, sides, offsetof(struct ec_link_stats, what))
 void ec_links_count_at(struct ec_links *l, unsigned long sides, size_t counter);
@@ -314,7 +317,8 @@ static __always_inline int ec_link_send_buf(struct ec_link *link, struct ecdev *
 
 	if (unlikely(READ_ONCE(l->base->debug) >= 2 || l->capture))
 		ec_link_show(link, dev, buf, len);
-	ret = dev->ops->tx_send(dev->priv, buf, len);
+	ret = trace_ec_frame_sent_enabled() ? ec_link_send_traced(link, dev, buf, len) :
+					      dev->ops->tx_send(dev->priv, buf, len);
 	if (likely(!ret)) {
 		atomic64_inc(&link->stats.tx_frames);
 		atomic64_add(len, &link->stats.tx_bytes);

@@ -61,8 +61,8 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 	return EC_MATCH_DONE;
 }
 
-static __always_inline void receive(struct ec_link *link, const u8 *src, const u8 *data,
-				    size_t len)
+static __always_inline enum ec_match receive(struct ec_link *link, const u8 *src,
+					     const u8 *data, size_t len)
 {
 	struct ec_links *l = link->links;
 	enum ec_match what;
@@ -78,6 +78,17 @@ static __always_inline void receive(struct ec_link *link, const u8 *src, const u
 		atomic64_inc(&link->stats.late);
 	else if (unlikely(what == EC_MATCH_UNMATCHED))
 		atomic64_inc(&link->stats.unmatched);
+	return what;
+}
+
+/* a copy, so that the usual one needs nothing of it */
+static noinline void receive_traced(struct ec_link *link, const u8 *src, const u8 *data, size_t len)
+{
+	u8 index = len >= EC_FRAME_HDR + EC_DGRAM_OVERHEAD ? data[EC_FRAME_HDR + 1] : 0;
+	enum ec_match what = receive(link, src, data, len);
+
+	trace_ec_frame_received(link->links->base->index, link->side, index,
+				get_unaligned_le32(src + 2), len + EC_ETH_HDR, what);
 }
 
 /**
@@ -93,7 +104,11 @@ void ecdev_receive(struct ecdev *dev, const u8 *src, const u8 *data, size_t len)
 {
 	struct ec_link *link = rcu_dereference(dev->link);
 
-	if (link)
+	if (!link)
+		return;
+	if (trace_ec_frame_received_enabled())
+		receive_traced(link, src, data, len);
+	else
 		receive(link, src, data, len);
 }
 EXPORT_SYMBOL_GPL(ecdev_receive);

@@ -10,6 +10,8 @@
  * lost frame loses a message or doubles it.
  */
 #include <linux/ktime.h>
+#include "../kernel/trace.h"
+#include "../link/links.h"
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
 #include "box.h"
@@ -246,6 +248,12 @@ void ec_box_drop(struct ec_box *box)
 	box->held = false;
 }
 
+static void trace_message(const struct ec_box *box, bool to_slave, const struct ec_mbox_hdr *h)
+{
+	trace_ec_mailbox(box->links->base->index, box->station, to_slave, h->type, h->counter,
+			 h->len);
+}
+
 /* SM1 was read: its content is in @rx. */
 static void box_received(struct ec_box *box)
 {
@@ -260,6 +268,7 @@ static void box_received(struct ec_box *box)
 		box->ops->event(box, EC_BOX_ON_REPEATED, 0);
 	} else {
 		box->held = true;
+		trace_message(box, false, &h);
 		box->ops->event(box, EC_BOX_ON_RECEIVED, 0);
 	}
 	if (is_emptying(box) && ++box->drained >= EC_BOX_DRAIN)
@@ -343,6 +352,15 @@ static enum ec_box_step on_read(struct ec_box *box, int ret)
 	return EC_BOX_REST;
 }
 
+static void trace_written(const struct ec_box *box)
+{
+	struct ec_rbuf r = ec_rbuf(box->tx, box->tx_len);
+	struct ec_mbox_hdr h;
+
+	if (trace_ec_mailbox_enabled() && !ec_mbox_hdr_decode(&r, &h))
+		trace_message(box, true, &h);
+}
+
 static enum ec_box_step on_written(struct ec_box *box, int ret)
 {
 	/* its answer was received before */
@@ -353,6 +371,7 @@ static enum ec_box_step on_written(struct ec_box *box, int ret)
 		if (box->at < box->size)
 			return EC_BOX_WRITE;
 		box->doubtful = false;
+		trace_written(box);
 		ec_box_written(box);
 	} else if (ret == -ETIMEDOUT) {
 		/* the slave may have it; if it can repeat, it drops a second one: send it again */

@@ -38,7 +38,7 @@ into() {
 }
 
 rm -rf "$out/built"
-for l in $layers; do into "$l" "master/$l"/*.c; done
+for l in kernel $layers; do into "$l" "master/$l"/*.c; done
 into boundary lib/ecrt/*.c
 shopt -s extglob
 into sim devices/sim/!(sim_module|wire_unity).c
@@ -65,7 +65,7 @@ users() {
 
 	nm -A "$out/$1.o" "$out"/segment.o 2>/dev/null |
 		sed -n "s,^$out/\(.*\)\.o: *U $2\$,tests/layers/\1.c,p"
-	for l in $layers; do
+	for l in kernel $layers; do
 		nm -A "$out/built/$l"/*.o_shipped |
 			sed -n "s,^$out/built/\(.*\)\.o_shipped: *U $2\$,\1.c,p"
 		[ "$l" != "$1" ] || break

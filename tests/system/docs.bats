@@ -258,6 +258,15 @@ motion() {
 	grep -q 'a drive has left operation' "$BATS_TEST_TMPDIR/out"
 }
 
+@test "debugging.rst: tracepoints" {
+	mount -t tracefs tracefs /sys/kernel/tracing 2>/dev/null || true
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment=thin
+	doc Documentation/debugging.rst 'cd /sys/kernel/tracing'
+	wait_for 60 grep -q ' ec_frame_sent: master=0 ' "$BATS_TEST_TMPDIR/out"
+	echo 0 >events/ethercat/enable
+}
+
 @test "simulator.rst: a cable that is cut and repaired" {
 	local f=Documentation/simulator.rst
 
