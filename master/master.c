@@ -76,6 +76,7 @@ static void destroy(struct ec_master *m)
 	ec_session_end(&m->sessions, NULL);
 	ec_monitor_stop(m);
 	ec_event_readers_exit(m);
+	ec_slave_devices_stop(&m->slave_devices);
 	ec_dc_exit(&m->dc);
 	queues_destroy(m);
 	ec_api_destroy(m);

@@ -11,6 +11,7 @@
 #include "master.h"
 #include "../session/reserve.h"
 #include "../session/session.h"
+#include "slave_device.h"
 
 static struct class *ec_class;
 static dev_t first_dev;
@@ -247,6 +248,8 @@ static void make_nodes(void)
 		if (IS_ERR(dev))
 			pr_err("EtherCAT %u: cannot make its device node (%pe); make it with \"mknod /dev/EtherCAT%u c %u %u\"\n",
 			       i, dev, i, MAJOR(first_dev), MINOR(first_dev) + i);
+		else
+			ec_slave_devices_start(&masters[i]->slave_devices, &masters[i]->bus, dev);
 	}
 }
 
@@ -281,8 +284,10 @@ void ec_cdev_unpublish(void)
 
 	if (!n_published)
 		return;
-	for (i = 0; i < n_published; i++)
+	for (i = 0; i < n_published; i++) {
+		ec_slave_devices_stop(&masters[i]->slave_devices);
 		device_destroy(ec_class, first_dev + i);
+	}
 	n_published = 0;
 	cdev_del(cdev);
 	cdev = NULL;
@@ -300,10 +305,13 @@ int ec_cdev_init(void)
 
 	if (ret)
 		return ret;
+	ret = ec_slave_device_register();
+	if (ret)
+		goto err_region;
 	ec_class = ec_class_create("EtherCAT");
 	ret = PTR_ERR_OR_ZERO(ec_class);
 	if (ret)
-		goto err_region;
+		goto err_bus;
 	ec_class->devnode = devnode;
 	/* not in the memory of this module: the kernel may use it after the module was removed */
 	cdev = cdev_alloc();
@@ -317,6 +325,8 @@ int ec_cdev_init(void)
 
 err_class:
 	class_destroy(ec_class);
+err_bus:
+	ec_slave_device_unregister();
 err_region:
 	unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
 	return ret;
@@ -333,5 +343,6 @@ void ec_cdev_exit(void)
 		kobject_put(&cdev->kobj);
 	cdev = NULL;
 	class_destroy(ec_class);
+	ec_slave_device_unregister();
 	unregister_chrdev_region(first_dev, EC_MAX_MASTERS);
 }

@@ -12,6 +12,7 @@
 #include "../carry/rider.h"
 #include "../session/session.h"
 #include "event_readers.h"
+#include "slave_devices.h"
 
 struct ec_api;
 struct task_struct;
@@ -36,6 +37,8 @@ struct ec_master {
 	struct ec_sessions sessions;
 	/** @readers: open files that read events */
 	struct ec_event_readers readers;
+	/** @slave_devices: slaves for the rest of Linux */
+	struct ec_slave_devices slave_devices;
 	/** @api: for applications in the kernel, immutable */
 	struct ec_api *api;
 	/** @monitor: thread that watches the bus; only monitor.c uses it and @rider */

@@ -43,6 +43,13 @@ static inline struct class *ec_class_create(const char *name)
 #define EC_DEVNODE_DEVICE	const struct device
 #endif
 
+/* and that of a bus type's uevent() in 6.3 */
+#if LINUX_VERSION_CODE < KERNEL_VERSION(6, 3, 0)
+#define EC_UEVENT_DEVICE	struct device
+#else
+#define EC_UEVENT_DEVICE	const struct device
+#endif
+
 /* vm_flags are only writable through helpers since 6.3 */
 static inline void ec_vma_flags(struct vm_area_struct *vma, unsigned long set, unsigned long clear)
 {
