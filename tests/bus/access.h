@@ -54,6 +54,11 @@ static inline struct ec_event_ring *bus_events(const struct bus *b)
 	return &bus_base(b)->events.ring;
 }
 
+static inline struct ec_slave_devices *bus_slave_devices(const struct bus *b)
+{
+	return &b->m->slave_devices;
+}
+
 /* open files that read events */
 static inline u32 bus_readers(const struct bus *b)
 {

@@ -22,6 +22,7 @@ bool oom_fails(void);
 #define kvmalloc_array(...)	(oom_fails() ? NULL : kvmalloc_array(__VA_ARGS__))
 #define kvzalloc(...)		(oom_fails() ? NULL : kvzalloc(__VA_ARGS__))
 #define kvcalloc(...)		(oom_fails() ? NULL : kvcalloc(__VA_ARGS__))
+#define kmem_cache_zalloc(...)	(oom_fails() ? NULL : kmem_cache_zalloc(__VA_ARGS__))
 #define __vmalloc(...)		(oom_fails() ? NULL : __vmalloc(__VA_ARGS__))
 #define vmalloc(...)		(oom_fails() ? NULL : vmalloc(__VA_ARGS__))
 #define vmalloc_user(...)	(oom_fails() ? NULL : vmalloc_user(__VA_ARGS__))
