@@ -1,14 +1,29 @@
 # SPDX-License-Identifier: GPL-2.0-only
-# What the rest of Linux sees of the bus: tracepoints.
+# What the rest of Linux sees of the bus: tracepoints, devices, uevents.
 
 load helpers
 
 TRACING=/sys/kernel/tracing
 SIM=/sys/kernel/debug/ec_sim/sim0
+DEVICES=/sys/bus/ethercat/devices
 
 setup_file() { start bench 22; }
 teardown_file() { stop; }
-teardown() { [ ! -e $TRACING/events/ethercat ] || echo 0 >$TRACING/events/ethercat/enable; }
+teardown() {
+	[ ! -e $TRACING/events ] || echo 0 >$TRACING/events/enable
+	for p in ${helpers[@]+"${helpers[@]}"}; do kill -9 "$p" 2>/dev/null || true; done
+}
+
+# python NAME: a program on stdin that runs until the end of the case and writes "ready"
+python() {
+	cat >"$BATS_TEST_TMPDIR/$1.py"
+	python3 "$BATS_TEST_TMPDIR/$1.py" >"$BATS_TEST_TMPDIR/$1" 2>&1 3>&- &
+	helpers+=($!)
+	wait_for 60 grep -q ready "$BATS_TEST_TMPDIR/$1"
+}
+
+devices() { ls $DEVICES 2>/dev/null | wc -l; }
+there_are() { [ "$(devices)" = "$1" ]; }
 
 # traced EVENT...: the trace has one of each
 traced() {
@@ -74,4 +89,174 @@ traced() {
 	    assert any(way in e["text"] and e["bytes"] == 10 and 0 < e["counter"] < 8 for e in coe)
 	assert {e["station"] for e in coe} <= {e["station"] for e in al}
 	END
+}
+
+@test "each slave is a device with its identity and place" {
+	wait_for 20 there_are 22
+	ethercat slaves -v --json >"$BATS_TEST_TMPDIR/slaves"
+	python3 - "$BATS_TEST_TMPDIR/slaves" <<-'END'
+	import json, os, sys
+	bus = "/sys/bus/ethercat/devices/"
+	slaves = json.load(open(sys.argv[1]))["masters"][0]["slaves"]
+	assert len(slaves) == 22
+	for s in slaves:
+	    d = bus + "EtherCAT0-d%u/" % s["device_number"]
+	    files = {n: open(d + n).read().strip() for n in os.listdir(d) if os.path.isfile(d + n)
+	             and n != "uevent"}
+	    assert os.path.realpath(d + "..") == os.path.realpath("/sys/class/EtherCAT/EtherCAT0")
+	    assert os.path.realpath(d + "subsystem") == "/sys/bus/ethercat"
+	    want = {"position": s["position"], "device_number": s["device_number"],
+	            "alias": s["own_alias"],
+	            "al_state": s["state"]}
+	    want |= {a: "0x%08x" % s[b] for a, b in (("vendor", "vendor_id"),
+	        ("product", "product_code"), ("revision", "revision_number"),
+	        ("serial", "serial_number"))}
+	    assert files == {k: str(v) for k, v in want.items()}, (files, want)
+	    modalias = "MODALIAS=ethercat:v%08Xp%08X\n" % (s["vendor_id"], s["product_code"])
+	    assert modalias in open(d + "uevent").read()
+	    assert all(os.stat(d + n).st_mode & 0o777 == 0o444 for n in files)
+	END
+	ethercat states SAFEOP -p4 --wait
+	[ "$(cat $DEVICES/EtherCAT0-d5/al_state)" = SAFEOP ]
+	ethercat states PREOP -p4 --wait
+}
+
+@test "a branch that is cut and healed has uevents, and keeps its names" {
+	local before
+
+	before=$(ls $DEVICES)
+	python listener <<-'END'
+	import socket
+	s = socket.socket(socket.AF_NETLINK, socket.SOCK_RAW, 15)
+	s.bind((0, 1))
+	print("ready", flush=True)
+	while True:
+	    e = s.recv(8192).decode().split("\0")
+	    v = dict(x.split("=", 1) for x in e if "=" in x)
+	    if v["SUBSYSTEM"] in ("ethercat", "EtherCAT"):
+	        print(v["SUBSYSTEM"], v["ACTION"], v["DEVPATH"].split("/")[-1], v.get("MODALIAS"),
+	              flush=True)
+	END
+	echo "cut coupler1.2" >$SIM
+	wait_for 60 eval '[ $(devices) -lt 22 ]'
+	wait_for 60 all_slaves_are PREOP "$(devices)"
+	echo "heal coupler1.2" >$SIM
+	wait_for 60 there_are 22
+	wait_for 60 all_slaves_are PREOP 22
+	[ "$(ls $DEVICES)" = "$before" ]
+	cat "$BATS_TEST_TMPDIR/listener"
+	# each that was removed was added again
+	diff <(sed -n 's/^ethercat remove //p' "$BATS_TEST_TMPDIR/listener" | sort) \
+		<(sed -n 's/^ethercat add //p' "$BATS_TEST_TMPDIR/listener" | sort)
+	grep -qE '^ethercat remove EtherCAT0-d[0-9]+ ethercat:v[0-9A-F]{8}p[0-9A-F]{8}$' \
+		"$BATS_TEST_TMPDIR/listener"
+	! grep -q '^EtherCAT ' "$BATS_TEST_TMPDIR/listener"
+	# what udevadm trigger does
+	echo change >$DEVICES/EtherCAT0-d1/uevent
+	wait_for 20 grep -q '^ethercat change EtherCAT0-d1 ' "$BATS_TEST_TMPDIR/listener"
+	# nothing of it when all is read again
+	: >"$BATS_TEST_TMPDIR/listener"
+	before=$(stat -c '%n %i' $DEVICES/*/)
+	ethercat rescan --wait
+	wait_for 60 all_slaves_are PREOP 22
+	[ "$(stat -c '%n %i' $DEVICES/*/)" = "$before" ]
+	[ ! -s "$BATS_TEST_TMPDIR/listener" ]
+}
+
+@test "a device takes 3 KiB of memory at most" {
+	[ -d $TRACING/events/kmem ] || skip "a kernel without tracepoints"
+	stop
+	echo 16384 >$TRACING/buffer_size_kb
+	echo >$TRACING/trace
+	load_master
+	for e in workqueue/workqueue_execute_start workqueue/workqueue_execute_end kmem/kmalloc \
+		kmem/kfree kmem/kmem_cache_alloc kmem/kmem_cache_free; do
+		echo 1 >$TRACING/events/$e/enable
+	done
+	load_segment bench
+	wait_for 120 all_slaves_are PREOP 22
+	wait_for 20 there_are 22
+	echo 0 >$TRACING/events/enable
+	python3 - $TRACING/trace <<-'END' | tee "$BATS_TEST_TMPDIR/memory"
+	import re, sys
+	own, size, runs = {}, {}, set()
+	for line in open(sys.argv[1]):
+	    m = re.match(r" *(.+)-(\d+) +\[.*?\] \S+ +[\d.]+: (\w+): (.*)", line)
+	    if not m:
+	        continue
+	    thread, event, rest = m[2], m[3], m[4]
+	    ptr = re.search(r"ptr=(\w+)", rest)
+	    if event == "workqueue_execute_start":
+	        own[thread] = "function follow_list" in rest
+	        runs.add(thread) if own[thread] else None
+	    elif event == "workqueue_execute_end":
+	        own[thread] = False
+	    elif "alloc" in event and own.get(thread):
+	        size[ptr[1]] = int(re.search(r"bytes_alloc=(\d+)", rest)[1])
+	    elif "free" in event:
+	        size.pop(ptr[1], None)
+	assert runs
+	print(sum(size.values()) // 22, "bytes of memory of the device of a slave")
+	END
+	sed 's/^/# /' "$BATS_TEST_TMPDIR/memory" >&3
+	n=$(cut -d' ' -f1 "$BATS_TEST_TMPDIR/memory")
+	[ "$n" -gt 1500 ]
+	[ "$n" -le 3072 ]
+}
+
+@test "modules unload while programs read attributes and look for drivers" {
+	wait_for 20 there_are 22
+	python holder <<-'END'
+	import errno, os, time
+	d = "/sys/bus/ethercat/devices/EtherCAT0-d3/"
+	files = [open(d + n) for n in ("al_state", "position", "serial", "uevent")]
+	for f in files:
+	    assert f.read()
+	print("ready", flush=True)
+	while os.path.exists(d):
+	    time.sleep(0.01)
+	for f in files:
+	    try:
+	        f.seek(0)
+	        f.read()
+	    except OSError as e:
+	        assert e.errno == errno.ENODEV, e
+	    else:
+	        raise AssertionError(f)
+	print("all refused", flush=True)
+	END
+	python reader <<-'END'
+	import glob
+	print("ready", flush=True)
+	while True:
+	    for name in glob.glob("/sys/bus/ethercat/devices/*/*"):
+	        try:
+	            open(name).read()
+	        except OSError:
+	            pass
+	END
+	python prober <<-'END'
+	import os
+	print("ready", flush=True)
+	while True:
+	    try:
+	        for name in os.listdir("/sys/bus/ethercat/devices"):
+	            open("/sys/bus/ethercat/drivers_probe", "w").write(name)
+	    except OSError:
+	        pass
+	END
+	dmesg -C
+	for _ in 1 2 3 4 5; do
+		wait_for 60 there_are 22
+		rmmod ec_sim
+		rmmod ec_master
+		[ ! -e /sys/bus/ethercat ]
+		load_master
+		load_segment bench
+	done
+	grep -q '^all refused$' "$BATS_TEST_TMPDIR/holder"
+	wait_for 120 all_slaves_are PREOP 22
+	wait_for 20 there_are 22
+	dmesg
+	! dmesg | grep -qE 'BUG|WARNING|Oops|kobject'
 }
