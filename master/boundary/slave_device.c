@@ -8,6 +8,7 @@
 #include <linux/sched.h>
 #include <linux/slab.h>
 #include <linux/wait_bit.h>
+#include "../bus/graph.h"
 #include "../bus/known.h"
 #include "../bus/slave.h"
 #include "../kernel/compat.h"
@@ -170,11 +171,11 @@ void ec_slave_device_unregister(void)
  */
 void ec_slave_device_locate(const struct ec_slave *s, struct ec_slave_at *at)
 {
-	u16 up = s->next[s->upstream];
+	const struct ec_slave *up = ec_graph_parent(s);
 
 	ec_bus_assert_stays(s->bus);
 	at->number = s->device;
-	at->up = up < s->position ? s->bus->slaves[up]->device : 0;
+	at->up = up ? up->device : 0;
 	at->port = at->up ? s->parent_port % EC_MAX_PORT : 0;
 	at->id = (struct ec_slave_id){
 		.vendor = s->info.vendor, .product = s->info.product,

@@ -237,7 +237,7 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 	*d = (struct ec_door){ 0 };
 }
 
-static void note_nobody(struct ec_slave *s, unsigned int port)
+static void note_no_reply(struct ec_slave *s, unsigned int port)
 {
 	struct ec_door *d = &s->ports.door[port];
 
@@ -261,9 +261,11 @@ static bool try_door(struct ec_slave *s, unsigned int port)
 		return true;
 	}
 	if (ret == -ENXIO)
-		note_nobody(s, port);
+		note_no_reply(s, port);
 	else
-		s->ports.door[port].link_ns = 0;	/* the contact broke */
+		s->ports.door[port].next_ns = ktime_get_ns() + STABLE_NS;
+	if (ret == -ENOLINK)
+		s->ports.door[port].link_ns = 0;
 	ec_slave_dbg(s, 1, "trial at port %u: %d\n", port, ret);
 	return false;
 }

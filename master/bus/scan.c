@@ -285,6 +285,9 @@ static void note_ports(struct scan *sc)
 		u16 dl = get_unaligned_le16(sc->regs[i].dl);
 
 		sc->regs[i].ports = (dl ^ sc->slaves[i]->dl_status) & EC_SCAN_PORTS;
+		/* the read has cleared the event, also if the scan fails */
+		if (each(sc, i) && !sc->regs[i].partial)
+			sc->slaves[i]->dl_seen = dl;
 	}
 	for (k = 0; k < sc->n_stretches; k++)
 		for (i = 0; i < sc->stretch[k].n_new; i++)

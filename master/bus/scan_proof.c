@@ -97,16 +97,30 @@ static enum doubt check_found(const struct proof *p, const struct stretch *t)
 	return doubt;
 }
 
+/* The reads have cleared the events of the ports. */
+static void note_seen(const struct proof *p)
+{
+	const struct scan *sc = p->sc;
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		if (!p->dg[2 * i + 1].err && p->dg[2 * i + 1].wkc == 1)
+			sc->slaves[i]->dl_seen = get_unaligned_le16(p->r[i].dl);
+}
+
 static int ask_found(struct proof *p)
 {
 	struct scan *sc = p->sc;
 	unsigned int i;
+	int ret;
 
 	for (i = 0; i < sc->n; i++) {
 		p->dg[2 * i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, p->r[i].station);
 		p->dg[2 * i + 1] = EC_FPRD(sc->slaves[i]->station, EC_REG_DL_STATUS, 2, p->r[i].dl);
 	}
-	return ec_xfer(sc->bus->links, p->dg, 2 * sc->n);
+	ret = ec_xfer(sc->bus->links, p->dg, 2 * sc->n);
+	note_seen(p);
+	return ret;
 }
 
 static bool is_found(const struct scan *sc, const struct ec_slave *s)

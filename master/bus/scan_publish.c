@@ -138,7 +138,6 @@ static void take_ports(struct scan *sc, const struct list *l)
 			sc->changed |= ec_graph_open_ports(s->dl_status) !=
 				       ec_graph_open_ports(get_unaligned_le16(r->dl));
 			s->dl_status = get_unaligned_le16(r->dl);
-			s->dl_seen = 0;
 			for (p = 0; p < EC_MAX_PORT; p++)
 				s->recv[p] = get_unaligned_le32(r->recv + 4 * p);
 		}
