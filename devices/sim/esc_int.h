@@ -144,6 +144,22 @@ struct ec_sim {
 	u8 scratch2[EC_SIM_SCRATCH];	/* data on their way to be merged */
 };
 
+/* what each frame needs; ec_sim_fly() does the rest for those on their way */
+static inline void ec_sim_flight_init(struct ec_sim_flight *fl, u8 *eth, u8 *frame, size_t len,
+				      size_t eth_len)
+{
+	fl->done = false;
+	fl->res = (struct ec_sim_result){ .out_port = -1 };
+	fl->eth = eth;
+	fl->ip = 0;
+	fl->frame = frame;
+	fl->len = len;
+	fl->eth_len = eth_len;
+	fl->lose_back = false;
+	fl->extra_ns = 0;
+	fl->faults = -1;
+}
+
 static inline bool ec_range_hit(u32 a, u32 len, u32 reg, u32 n)
 {
 	return a < reg + n && a + len > reg;

@@ -138,7 +138,8 @@ void ec_sim_advance(struct ec_sim *sim, u64 now_ns)
 {
 	for (;;) {
 		u64 a = slaves_next(sim), b = ec_sim_faults_next(sim);
-		u64 c = ec_sim_next_step(sim), t = min(a, b), wd;
+		u64 c = sim->flights ? sim->flights->at_ns : EC_ESC_NEVER;
+		u64 t = min(a, b), wd;
 
 		t = min(t, c);
 		wd = watchdogs_next(sim, min(t, now_ns));

@@ -62,7 +62,7 @@ bool ec_sim_eth_is_ethercat(const u8 *eth, size_t len)
 /* what a slave that processed the frame changed outside of its EtherCAT part */
 void ec_sim_eth_mark(const struct ec_sim *sim, struct ec_sim_flight *fl)
 {
-	if (!fl->eth || !fl->res.processed)
+	if (!fl->res.processed)
 		return;
 	fl->eth[6] |= 2;
 	if (fl->ip && sim->bug != EC_SIM_BUG_UDP_CHECKSUM)
@@ -89,10 +89,8 @@ void ec_sim_send(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u8 *eth
 {
 	size_t ip, at = find(eth, len, &ip);
 
-	*fl = (struct ec_sim_flight){
-		.eth = eth, .ip = ip, .frame = eth + at, .len = len - at, .eth_len = len,
-		.faults = -1,
-	};
+	ec_sim_flight_init(fl, eth, eth + at, len - at, len);
+	fl->ip = ip;
 	if (at)
 		ec_sim_start(sim, fl, port, now_ns);
 	else

@@ -78,13 +78,15 @@ void ec_sim_arrive(struct ec_sim *sim, struct ec_sim_flight *fl, int out_port, u
 
 	if (res->mangled)
 		ec_sim_faults_mangle(sim, fl->frame, fl->len);
-	ec_sim_eth_mark(sim, fl);
+	if (fl->eth)
+		ec_sim_eth_mark(sim, fl);
 	res->copies++;
 	res->out_port = out_port;
 	res->delay_ns = (s64)(delay_ns + fl->extra_ns);
 	fl->due_ns = fl->start_ns + (u64)res->delay_ns;
 	fl->done = true;
-	ec_sim_faults_end(sim, fl);
+	if (fl->faults >= 0)
+		ec_sim_faults_end(sim, fl);
 	if (fl->mport < 0)
 		ec_sim_host_done(sim, fl);
 }
@@ -96,7 +98,8 @@ void ec_sim_lose(struct ec_sim *sim, struct ec_sim_flight *fl)
 	fl->res.out_port = -1;
 	fl->res.delay_ns = -ENOLINK;
 	fl->done = true;
-	ec_sim_faults_end(sim, fl);
+	if (fl->faults >= 0)
+		ec_sim_faults_end(sim, fl);
 	if (fl->mport < 0)
 		ec_sim_host_done(sim, fl);
 }
@@ -183,6 +186,18 @@ static void leave(struct ec_sim *sim, struct ec_sim_flight *fl, const struct ec_
 	on_its_way(sim, fl);
 }
 
+/* nothing has happened to it yet */
+static void set_out(const struct ec_sim *sim, struct ec_sim_flight *fl, int from)
+{
+	fl->circulating = false;
+	fl->disturbed = false;
+	fl->hops = 0;
+	fl->from = from;
+	fl->from_port = 0;
+	fl->started_at = sim->port_events;
+	fl->left_at = sim->port_events;
+}
+
 /* a frame, of which ec_sim_start() knows the beginning, leaves the master */
 void ec_sim_fly(struct ec_sim *sim, struct ec_sim_flight *fl)
 {
@@ -190,11 +205,10 @@ void ec_sim_fly(struct ec_sim *sim, struct ec_sim_flight *fl)
 	struct ec_frame_iter it;
 	struct ec_dgram d;
 
+	set_out(sim, fl, -2 - fl->mport);
 	if (ec_sim_datagrams(&it, fl->frame, fl->len))
 		while (it.more && ec_frame_iter_next(&it, &d) > 0)
 			fl->circulating |= d.circulating;
-	fl->started_at = sim->port_events;
-	fl->from = -2 - fl->mport;
 	leave(sim, fl, cable, &sim->esc[cable->peer]->port[cable->peer_port].received,
 	      fl->start_ns);
 }
@@ -204,9 +218,7 @@ void ec_sim_fly_from_host(struct ec_sim *sim, struct ec_sim_flight *fl, int slav
 {
 	struct ec_esc_transit *transit = &sim->esc[slave]->port[port].received;
 
-	fl->started_at = sim->port_events;
-	fl->left_at = sim->port_events;
-	fl->from = EC_ESC_PEER_HOST;
+	set_out(sim, fl, EC_ESC_PEER_HOST);
 	fl->to = slave;
 	fl->to_port = (u8)port;
 	fl->at_ns = fl->start_ns;

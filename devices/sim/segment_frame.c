@@ -388,10 +388,9 @@ void ec_sim_start(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u64 no
 s64 ec_sim_frame_result(struct ec_sim *sim, int port, u8 *frame, size_t len,
 			u64 now_ns, struct ec_sim_result *res)
 {
-	struct ec_sim_flight fl = {
-		.frame = frame, .len = len, .eth_len = EC_ETH_HDR + len, .faults = -1,
-	};
+	struct ec_sim_flight fl;
 
+	ec_sim_flight_init(&fl, NULL, frame, len, EC_ETH_HDR + len);
 	ec_sim_start(sim, &fl, port, now_ns);
 	ec_sim_finish(sim, &fl);
 	*res = fl.res;

@@ -43,10 +43,9 @@ static void compose(struct ec_sim_host_frame *h, const struct ec_sim_fault *f, u
 	eth[9] = (u8)(f->slave >> 8);
 	eth[10] = (u8)f->slave;
 	eth[11] = (u8)f->port;
-	h->fl = (struct ec_sim_flight){
-		.eth = eth, .eth_len = sizeof(h->eth), .number = number, .mport = -1,
-		.faults = -1,
-	};
+	ec_sim_flight_init(&h->fl, eth, NULL, 0, sizeof(h->eth));
+	h->fl.number = number;
+	h->fl.mport = -1;
 	if (f->arg == EC_SIM_HOST_BROADCAST) {
 		memcpy(eth + 12, arp, sizeof(arp));
 		memcpy(eth + 22, eth + 6, 6);
