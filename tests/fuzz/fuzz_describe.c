@@ -24,6 +24,14 @@ const struct fuzz_seed fuzz_seeds[] = {
 	SEED("slave a drive in=40 sm_in=3 sm_out=2 mapping=lenient\nslave b io sm_in=2 in=9\n"),
 	SEED("slave a drive fixed=0x1600,0x1C13 dc_modes=0,0x0500\nfault at=1ms jump a by=-1.5s\n"
 	     "fault at=2ms jump a by=9min\n"),
+	SEED("segment under_way=random link=1us\nslave a EK1100 loops=fixed\nslave b EK1100 link=0\n"
+	     "slave c drive\nwire c.1 -> master.1\nbranch none\nslave d EL2008\n"
+	     "fault at=1ms plug a.2 d.0 cable=20us\nfault host b.2 every=100us frames=ethercat\n"
+	     "fault bounce c.0 pattern=0011 step=300ns times=9\nfault at=3ms unplug a.2\n"),
+	SEED("segment under_way=lost\nslave a EK1100\nslave b EL2008\nbranch a 2\nslave c EL2008\n"
+	     "fault cut b.0 frame=1 when=out\nfault heal a.1 frame=2 register=0x130 when=back\n"
+	     "fault swap b c frame=1 after=3us\nfault old c station=7 state=OP logical=4 loops=12\n"
+	     "fault off b frame=3\nfault lose frame=1 when=out register=0x101\n"),
 	{ NULL, 0 }
 };
 

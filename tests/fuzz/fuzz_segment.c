@@ -83,6 +83,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 	u8 frame[1600];
 
 	MUST(sim);
+	/* at once, or from slave to slave */
+	ec_sim_set_under_way(sim, (enum ec_sim_under_way)(len % 3));
 	while (len > 2) {
 		size_t n = min_t(size_t, get_unaligned_le16(data) & 0x7FF, len - 2);
 
