@@ -68,10 +68,11 @@ static void sim_flight_cut_cable(struct kunit *test)
 /* several frames in one send: each is where it is */
 static void sim_flight_burst_meets_cut(struct kunit *test)
 {
+	struct air *a = kunit_kzalloc(test, 8 * sizeof(*a), GFP_KERNEL);
 	struct bed *b = line(test, 20000);
-	struct air a[8];
 	u64 t = b->now;
 
+	KUNIT_ASSERT_NOT_NULL(test, a);
 	plan(test, b, t + 40 * US, EC_SIM_FAULT_CUT, 2, 1);
 	for (u8 i = 0; i < 8; i++)
 		mark(b, &a[i], t + i * 7 * US, (u8)(i + 1));
