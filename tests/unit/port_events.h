@@ -3,8 +3,9 @@
  * Random events at the ports of a segment, and what the model says of paths and neighbors.
  *
  * A test calls port_events_plan() at least every ahead_ns, best once a cycle: events become
- * faults of the segment before frames are sent that may meet them. The events depend on the
- * seed, on the times of the calls and on the segment only, so the same test gives the same run.
+ * faults of the segment before frames are sent that may meet them. Frames must be sent, as some
+ * events wait for one. The events depend on the seed, on the times of the calls and on the segment
+ * only, so the same test gives the same run.
  */
 #ifndef PORT_EVENTS_H
 #define PORT_EVENTS_H
@@ -57,6 +58,8 @@ struct port_end {
  * @mean_ns: mean distance of events, bursts counted as one
  * @burst_percent: of all events, those in bursts of 2 to 20 within a millisecond
  * @ahead_ns: how long before they happen events are planned
+ * @in_frame_percent: of the events at cables, those that wait for one of the next frames and
+ *                    happen when it is sent, up to 20 us later, or while it is on the cable
  * @kinds: bits of enum port_event that happen
  * @no_hosts: no PC or switch comes
  * @root: also to slaves at a port of the master
@@ -78,6 +81,7 @@ struct port_events {
 	u64 mean_ns;
 	u32 burst_percent;
 	u64 ahead_ns;
+	u32 in_frame_percent;
 	u32 kinds;
 	bool no_hosts;
 	bool root;
@@ -263,12 +267,30 @@ static inline bool port_events_add(struct port_events *e, u64 at, enum ec_sim_fa
 	return !ec_sim_add_fault(e->sim, &f);
 }
 
+/* as port_events_add(), sometimes when a frame is there */
+static inline bool port_events_cabling(struct port_events *e, u64 at, enum ec_sim_fault_type type,
+				       struct port_end end, struct port_end other, u64 value)
+{
+	struct ec_sim_fault f = {
+		.at_ns = at, .type = type, .slave = end.slave, .port = end.port,
+		.arg = (u32)other.slave, .arg2 = (u32)other.port, .value = value,
+	};
+
+	if (port_events_rnd(e, 100) < e->in_frame_percent) {
+		f.frame = 1 + port_events_rnd(e, 3);
+		f.when = (enum ec_sim_when)port_events_rnd(e, 3);
+		f.after_ns = f.when == EC_SIM_WHEN_SENT ? port_events_rnd(e, 20000) : 0;
+	}
+	return !ec_sim_add_fault(e->sim, &f);
+}
+
 static inline bool port_events_contact(struct port_events *e, u64 at, bool close)
 {
 	struct port_end end = port_events_port(e, close ? PORT_EVENTS_CUT : PORT_EVENTS_WHOLE);
 
 	return end.slave >= 0 &&
-	       port_events_add(e, at, close ? EC_SIM_FAULT_HEAL : EC_SIM_FAULT_CUT, end, end, 0);
+	       port_events_cabling(e, at, close ? EC_SIM_FAULT_HEAL : EC_SIM_FAULT_CUT, end, end,
+				   0);
 }
 
 static inline bool port_events_flap(struct port_events *e, u64 at)
@@ -280,25 +302,27 @@ static inline bool port_events_flap(struct port_events *e, u64 at)
 	if (port_events_rnd(e, 5))
 		pattern |= 1u << (bits - 1);
 	return end.slave >= 0 &&
-	       port_events_add(e, at, EC_SIM_FAULT_BOUNCE, end,
-			       (struct port_end){ (int)step, (int)(EC_SIM_BOUNCE_BITS + bits) },
-			       pattern);
+	       port_events_cabling(e, at, EC_SIM_FAULT_BOUNCE, end,
+				   (struct port_end){ (int)step, (int)(EC_SIM_BOUNCE_BITS + bits) },
+				   pattern);
 }
 
-/* slave @x to a free port of one that is not behind it */
+/* slave @x to its first place, or to a free port of a slave that is not behind it */
 static inline bool port_events_connect(struct port_events *e, u64 at, int x)
 {
 	struct port_end own = { x, 0 }, to;
 
 	if (x < 0)
 		return false;
+	to = e->first[x][0];
 	if (e->wrong_way && !e->mark[x] && !port_events_rnd(e, 10) &&
 	    ec_sim_has_port(e->sim, x, 1))
 		own.port = 1;
 	port_events_reached(e->sim, ~0ull, x, e->mark);
-	to = port_events_port(e, PORT_EVENTS_FREE);
+	if (to.slave < 0 || !port_events_free(e, to.slave, to.port) || port_events_rnd(e, 2))
+		to = port_events_port(e, PORT_EVENTS_FREE);
 	return to.slave >= 0 &&
-	       port_events_add(e, at, EC_SIM_FAULT_PLUG, own, to, port_events_rnd(e, 1000));
+	       port_events_cabling(e, at, EC_SIM_FAULT_PLUG, own, to, port_events_rnd(e, 1000));
 }
 
 static inline bool port_events_plug(struct port_events *e, u64 at)
@@ -309,7 +333,7 @@ static inline bool port_events_plug(struct port_events *e, u64 at)
 	if (x < 0 && !port_events_rnd(e, 2)) {
 		end = port_events_port(e, PORT_EVENTS_BRANCH);
 		return end.slave >= 0 &&
-		       port_events_add(e, at, EC_SIM_FAULT_UNPLUG, end, end, 0);
+		       port_events_cabling(e, at, EC_SIM_FAULT_UNPLUG, end, end, 0);
 	}
 	return port_events_connect(e, at, x >= 0 ? x : port_events_slave(e, true, false));
 }
@@ -327,7 +351,7 @@ static inline bool port_events_swap(struct port_events *e, u64 at)
 		b = port_events_port(e, PORT_EVENTS_BRANCH);
 	}
 	return a.slave >= 0 && b.slave >= 0 &&
-	       port_events_add(e, at, EC_SIM_FAULT_SWAP, a, b, 0);
+	       port_events_cabling(e, at, EC_SIM_FAULT_SWAP, a, b, 0);
 }
 
 static inline bool port_events_power(struct port_events *e, u64 at)
@@ -362,8 +386,8 @@ static inline bool port_events_foreign(struct port_events *e, u64 at)
 
 	if (end.slave < 0 && there >= 0)
 		end = (struct port_end){ there, 0 };
-	if (end.slave >= 0 && port_events_rnd(e, 2))
-		return port_events_add(e, at, EC_SIM_FAULT_UNPLUG, end, end, 0);
+	if (end.slave >= 0 && port_events_rnd(e, 4))
+		return port_events_cabling(e, at, EC_SIM_FAULT_UNPLUG, end, end, 0);
 	if (x >= 0 && port_events_rnd(e, 2)) {
 		if (port_events_rnd(e, 2))
 			port_events_old(e, at, x);
@@ -396,13 +420,28 @@ static inline bool port_events_one(struct port_events *e, u64 at, enum port_even
 	}
 }
 
+/* the more slaves are missing, the more often one of them comes back: most are there */
+static inline enum port_event port_events_choose(struct port_events *e)
+{
+	u32 own = 0, missing = 0;
+
+	for (int i = 0; i < e->slaves; i++) {
+		own += !e->foreign[i];
+		missing += !e->foreign[i] && !e->mark[i];
+	}
+	if (!port_events_rnd(e, 4) || port_events_rnd(e, own) >= 3 * missing)
+		return (enum port_event)port_events_rnd(e, PORT_EVENTS);
+	return port_events_rnd(e, 2) ? PORT_EVENT_CLOSE : PORT_EVENT_PLUG;
+}
+
 /* one that is possible; some kinds are not, now and then */
 static inline void port_events_any(struct port_events *e, u64 at)
 {
 	for (u32 i = 0; i < 100; i++) {
-		enum port_event kind = (enum port_event)port_events_rnd(e, PORT_EVENTS);
+		enum port_event kind;
 
 		port_events_reached(e->sim, ~0ull, -1, e->mark);
+		kind = port_events_choose(e);
 		if (!(e->kinds >> kind & 1) || !port_events_one(e, at, kind))
 			continue;
 		e->events++;
@@ -448,6 +487,7 @@ static inline void port_events_init(struct port_events *e, struct ec_sim *sim, u
 	e->mean_ns = 200000000;
 	e->burst_percent = 10;
 	e->ahead_ns = 5000000;
+	e->in_frame_percent = 20;
 	e->kinds = BIT(PORT_EVENTS) - 1;
 	e->rng = seed * 2 + 1;
 	e->slaves = (int)min_t(u32, ec_sim_count(sim), PORT_EVENTS_SLAVES);
@@ -492,7 +532,7 @@ static inline void port_events_stop(struct port_events *e)
 
 /**
  * port_events_restore() - let all be as in the beginning, foreign devices gone
- * @e: random events, stopped PORT_EVENTS_REST_NS and ahead_ns ago
+ * @e: random events, stopped PORT_EVENTS_REST_NS and ahead_ns ago, frames sent since then
  * @at: time of the segment
  */
 static inline void port_events_restore(struct port_events *e, u64 at)

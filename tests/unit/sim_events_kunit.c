@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Random events at ports: that they are what they are said to be, and that the model withstands them. */
+/* Random events at ports: what they are said to be, and that the model withstands them. */
 #include "sim_cable_kunit.h"
 #include "port_events.h"
 
@@ -7,7 +7,8 @@
 #define SECOND	1000000000ull
 
 #define BUS	"slave r EK1100\nslave a EK1100\nslave b EL2008\nslave c EL2008\n" \
-		"branch r 2\nslave d EK1100\nslave e EL2008\nbranch d 2\nslave f EK1100\nslave g EL2008\n" \
+		"branch r 2\nslave d EK1100\nslave e EL2008\n" \
+		"branch d 2\nslave f EK1100\nslave g EL2008\n" \
 		"branch none\nslave x EK1100\nslave y drive\n"
 #define N	8	/* of 10 that are connected */
 
@@ -27,7 +28,7 @@ static void run(struct port_events *e, struct bed *b, u64 events)
 	while (e->events < events) {
 		port_events_plan(e, b->now);
 		b->now += 4 * MS;
-		ec_sim_advance(b->sim, b->now);
+		count(b, 0);
 	}
 }
 
@@ -205,6 +206,7 @@ static void sim_events_frames_pass_reached(struct kunit *test)
 	u8 m[PORT_EVENTS_SLAVES];
 
 	e->kinds &= ~BIT(PORT_EVENT_FOREIGN);
+	e->in_frame_percent = 0;
 	b->gap = 0;
 	while (e->events < 3000) {
 		u64 before = ec_sim_disturbed(b->sim);
@@ -225,6 +227,29 @@ static void sim_events_frames_pass_reached(struct kunit *test)
 	KUNIT_EXPECT_LE(test, (u64)lost, ec_sim_disturbed(b->sim));
 }
 
+/* events that wait for frames meet some of them; a frame that meets none returns */
+static void sim_events_meet_frames(struct kunit *test)
+{
+	struct bed *b = app_bed_part(test, BUS, N);
+	struct port_events *e = begin(test, b, 5);
+	u32 frames = 0, lost = 0;
+	u64 met;
+
+	e->kinds &= ~BIT(PORT_EVENT_FOREIGN);
+	e->in_frame_percent = 100;
+	while (e->events < 2000) {
+		port_events_plan(e, b->now);
+		b->now += MS;
+		lost += count(b, 0) < 0;
+		frames++;
+	}
+	met = ec_sim_disturbed(b->sim);
+	KUNIT_EXPECT_GT(test, met, 500);
+	KUNIT_EXPECT_LT_MSG(test, met, 2000, "of %u frames", frames);
+	KUNIT_EXPECT_GT(test, lost, 200);
+	KUNIT_EXPECT_LE(test, (u64)lost, met);
+}
+
 /* all kinds, all fates, then all is as it was */
 static void sim_events_restored(struct kunit *test)
 {
@@ -242,13 +267,16 @@ static void sim_events_restored(struct kunit *test)
 			count(b, (int)(b->now / MS & 1));
 		}
 		port_events_stop(e);
-		b->now += PORT_EVENTS_REST_NS + e->ahead_ns;
-		ec_sim_advance(b->sim, b->now);
+		for (u64 t = 0; t <= PORT_EVENTS_REST_NS + e->ahead_ns; t += MS) {
+			b->now += MS;
+			count(b, 0);
+		}
 		port_events_restore(e, b->now);
 		ec_sim_advance(b->sim, b->now);
 		for (int i = 0; i < e->slaves; i++)
 			for (int p = 0; p < EC_MAX_PORT; p++)
-				expect_peer(test, b, i, p, e->first[i][p].slave, e->first[i][p].port);
+				expect_peer(test, b, i, p, e->first[i][p].slave,
+					    e->first[i][p].port);
 		KUNIT_EXPECT_EQ(test, port_events_reached(b->sim, b->now, -1, m), N);
 		KUNIT_EXPECT_EQ(test, count(b, 0), N);
 		if (seed < 20)
@@ -265,6 +293,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_events_reached_since),
 	KUNIT_CASE(sim_events_peers),
 	KUNIT_CASE(sim_events_frames_pass_reached),
+	KUNIT_CASE(sim_events_meet_frames),
 	KUNIT_CASE(sim_events_restored),
 	{}
 };
