@@ -46,7 +46,7 @@ struct trial {
 	struct host host;
 	u8 port;
 	u16 position;	/* of the first slave behind the port */
-	u16 next;	/* station address of the slave after it, 0: there is none */
+	const struct ec_slave *next;	/* of the list, at that position now; NULL: there is none */
 	u16 dl;		/* DL status of the host at the end of the last trial */
 	struct ec_dg work[WORK];
 	unsigned int n;
@@ -73,57 +73,47 @@ static void close_surely(const struct trial *t, const u8 *closed)
 			return;
 }
 
-static bool is_missing(const struct ec_slave *s)
+/* Does @s not reply at its address, although the port at which it hangs is open? */
+static bool has_lost_address(const struct ec_slave *s, const struct ec_dg *own,
+			     const struct ec_dg *up, const u8 *dl)
 {
-	u8 station[2];
-
-	return ec_xfer_fprd(s->bus->links, s->station, EC_REG_STATION, station, 2) == -EIO;
+	if (own->err || own->wkc)
+		return false;
+	return !ec_graph_parent(s) ||
+	       (!up->err && up->wkc == 1 &&
+		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->parent_port));
 }
 
-static struct ec_slave *in_list(const struct ec_bus *bus, u16 station)
-{
-	ec_for_each_slave(s, bus)
-		if (s->station == station)
-			return s;
-	return NULL;
-}
-
-/*
- * Which slave of the list has got the address of the one at ring position @i: its neighbors in the
- * ring are those in the list, seen from both, and it does not reply at its own. NULL: not certain.
- */
-static struct ec_slave *owner_at(struct ec_bus *bus, u8 (*at)[2], unsigned int i)
-{
-	const struct ec_slave *before = NULL, *after = NULL;
-	unsigned int from, to;
-
-	if (i)
-		before = in_list(bus, get_unaligned_le16(at[i - 1]));
-	if (i + 1 < bus->n_slaves)
-		after = in_list(bus, get_unaligned_le16(at[i + 1]));
-	from = before ? before->position + 1 : 0;
-	to = after ? after->position : bus->n_slaves;
-	return to == from + 1 && is_missing(bus->slaves[from]) ? bus->slaves[from] : NULL;
-}
-
-static u16 find_owner(struct ec_bus *bus, u16 station)
+/* The only slave of the list that has lost its address; 0: there is none, or more */
+static u16 find_owner(struct ec_bus *bus)
 {
 	struct ec_dg *dg = kvcalloc(bus->n_slaves, sizeof(*dg), GFP_KERNEL);
-	u8 (*at)[2] = kvcalloc(bus->n_slaves, sizeof(*at), GFP_KERNEL);
-	const struct ec_slave *owner = NULL;
-	unsigned int i;
+	u8 (*dl)[2] = kvcalloc(bus->n_slaves, sizeof(*dl), GFP_KERNEL);
+	unsigned int n = 0;
+	u16 station = 0;
 
-	if (dg && at) {
-		for (i = 0; i < bus->n_slaves; i++)
-			dg[i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, at[i]);
-		ec_xfer(bus->links, dg, bus->n_slaves);
-		for (i = 0; i < bus->n_slaves && get_unaligned_le16(at[i]) != station; i++)
-			;
-		owner = i < bus->n_slaves ? owner_at(bus, at, i) : NULL;
+	if (!dg || !dl)
+		goto out;
+	ec_for_each_slave(s, bus) {
+		dg[n] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[n]);
+		n++;
 	}
+	ec_xfer(bus->links, dg, n);
+	n = 0;
+	ec_for_each_slave(s, bus) {
+		unsigned int up = ec_graph_parent(s) ? ec_graph_parent(s)->position : 0;
+
+		if (dg[s->position].wkc == 1)
+			s->dl_seen = get_unaligned_le16(dl[s->position]);
+		if (!has_lost_address(s, &dg[s->position], &dg[up], dl[up]))
+			continue;
+		n++;
+		station = s->station;
+	}
+out:
 	kvfree(dg);
-	kvfree(at);
-	return owner ? owner->station : 0;
+	kvfree(dl);
+	return n == 1 ? station : 0;
 }
 
 /*
@@ -133,7 +123,7 @@ static u16 find_owner(struct ec_bus *bus, u16 station)
  */
 static void trial_give_back(const struct trial *t, u16 station, bool next)
 {
-	u16 owner = next ? t->next : find_owner(t->bus, station);
+	u16 owner = next ? t->next->station : find_owner(t->bus);
 	u8 own[2];
 
 	put_unaligned_le16(owner, own);
@@ -152,8 +142,9 @@ static int trial_run(struct trial *t, u16 station)
 	const u8 opened[2] = { t->host.control | TEMPORARY,
 			       with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
-	struct ec_dg dg[WORK + 7], *close, *check;
-	u8 dl[2] = { 0 }, ghost[2], next[2];
+	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
+	struct ec_dg dg[WORK + 8], *close, *check;
+	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 };
 	unsigned int n = 0, i;
 
 	/* twice: without it the work would be done by the next slave of the ring */
@@ -172,20 +163,22 @@ static int trial_run(struct trial *t, u16 station)
 	check = &dg[n];
 	dg[n++] = EC_FPRD(t->host.station, EC_REG_DL_STATUS, 2, dl);
 	dg[n++] = EC_FPRD(station, EC_REG_STATION, 2, ghost);
-	dg[n++] = EC_FPRD(t->next ?: t->host.station, EC_REG_STATION, 2, next);
+	dg[n++] = EC_FPRD(next ? next->station : station, EC_REG_STATION, 2, own);
+	dg[n++] = EC_FPRD(up ? up->station : station, EC_REG_DL_STATUS, 2, up_dl);
 	ec_xfer_train(t->bus->links, dg, n);
 	for (i = 0; i < t->n; i++)
 		t->work[i] = dg[2 + i];
 	if (check[0].err || check[0].wkc != 1 ||
 	    !(get_unaligned_le16(dl) & EC_DLS_LOOP(t->port))) {
 		close_surely(t, closed);
-		for (i = 0; i < 3; i++)
+		for (i = 0; i < 4; i++)
 			check[i].repeat = true;
-		ec_xfer(t->bus->links, check, 3);
+		ec_xfer(t->bus->links, check, 4);
 	}
 	t->dl = check[0].err || check[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!check[1].err && check[1].wkc) {
-		trial_give_back(t, station, t->next && !check[2].err && !check[2].wkc);
+		trial_give_back(t, station, next &&
+				has_lost_address(next, &check[2], &check[3], up_dl));
 		return -ENOLINK;
 	}
 	if (!(t->dl & EC_DLS_LINK(t->port)))
@@ -321,11 +314,6 @@ static u16 kept_station(struct ec_bus *bus, const struct guest *g)
 	return station && ec_known_was_there(bus, station) ? station : 0;
 }
 
-static u16 next_station(struct ec_bus *bus, u16 position)
-{
-	return position < bus->n_slaves ? bus->slaves[position]->station : 0;
-}
-
 /* Let the guest in: its port is open from now on. */
 static int let_in(struct trial *t)
 {
@@ -459,7 +447,7 @@ int ec_trial(struct ec_slave *s, unsigned int port)
 	struct guest g;
 	int ret;
 
-	t.next = next_station(s->bus, t.position);
+	t.next = t.position < s->bus->n_slaves ? s->bus->slaves[t.position] : NULL;
 	ret = trial_one(&t, &g);
 	s->ports.loops = t.host.loops;
 	s->dl_seen = t.dl ?: s->dl_seen;
