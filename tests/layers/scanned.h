@@ -40,9 +40,9 @@ static inline bool scanned_begin(struct scanned *s, const char *text)
 /* all slaves are in PREOP then */
 static inline bool scanned_scan(struct scanned *s, unsigned int slaves)
 {
-	bool changed = false;
+	struct ec_scan_result result = { 0 };
 
-	if (!CHECK_EQ(ec_scan(&s->bus, slaves, &changed), 0) || !CHECK(changed) ||
+	if (!CHECK_EQ(ec_scan(&s->bus, slaves, &result), 0) || !CHECK(result.changed) ||
 	    !CHECK_EQ(s->bus.n_slaves, slaves))
 		return false;
 	WRITE_ONCE(s->bus.responding, slaves);
