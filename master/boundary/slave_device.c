@@ -176,7 +176,7 @@ void ec_slave_device_locate(const struct ec_slave *s, struct ec_slave_at *at)
 	ec_bus_assert_stays(s->bus);
 	at->number = s->device;
 	at->up = up ? up->device : 0;
-	at->port = at->up ? s->parent_port % EC_MAX_PORT : 0;
+	at->port = up ? s->parent_port : 0;
 	at->id = (struct ec_slave_id){
 		.vendor = s->info.vendor, .product = s->info.product,
 		.revision = s->info.revision, .serial = s->info.serial,
