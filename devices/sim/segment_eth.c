@@ -91,6 +91,7 @@ void ec_sim_send(struct ec_sim *sim, struct ec_sim_flight *fl, int port, u8 *eth
 
 	ec_sim_flight_init(fl, eth, eth + at, len - at, len);
 	fl->ip = ip;
+	fl->mport = port;
 	if (at)
 		ec_sim_start(sim, fl, port, now_ns);
 	else

@@ -150,7 +150,8 @@ traced() {
 		<(sed -n 's/^ethercat add //p' "$BATS_TEST_TMPDIR/listener" | sort)
 	grep -qE '^ethercat remove EtherCAT0-d[0-9]+ ethercat:v[0-9A-F]{8}p[0-9A-F]{8}$' \
 		"$BATS_TEST_TMPDIR/listener"
-	! grep -q '^EtherCAT ' "$BATS_TEST_TMPDIR/listener"
+	run grep '^EtherCAT ' "$BATS_TEST_TMPDIR/listener"
+	[ "$status" = 1 ]
 	# what udevadm trigger does
 	echo change >$DEVICES/EtherCAT0-d1/uevent
 	wait_for 20 grep -q '^ethercat change EtherCAT0-d1 ' "$BATS_TEST_TMPDIR/listener"
@@ -177,7 +178,7 @@ traced() {
 	wait_for 120 all_slaves_are PREOP 22
 	wait_for 20 there_are 22
 	echo 0 >$TRACING/events/enable
-	python3 - $TRACING/trace <<-'END' | tee "$BATS_TEST_TMPDIR/memory"
+	python3 - $TRACING/trace >"$BATS_TEST_TMPDIR/memory" <<-'END'
 	import re, sys
 	own, size, runs = {}, {}, set()
 	for line in open(sys.argv[1]):
@@ -258,5 +259,6 @@ traced() {
 	wait_for 120 all_slaves_are PREOP 22
 	wait_for 20 there_are 22
 	dmesg
-	! dmesg | grep -qE 'BUG|WARNING|Oops|kobject'
+	run grep -E 'BUG|WARNING|Oops|kobject' < <(dmesg)
+	[ "$status" = 1 ]
 }
