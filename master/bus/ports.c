@@ -237,17 +237,22 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 	*d = (struct ec_door){ 0 };
 }
 
-static void note_no_reply(struct ec_slave *s, unsigned int port)
+/* The port stays closed: said once, and tried again ever less often. */
+static void note_closed(struct ec_slave *s, unsigned int port, int why)
 {
 	struct ec_door *d = &s->ports.door[port];
 
 	d->wait_ms = clamp_t(u32, 2 * d->wait_ms, WAIT_MIN_MS, WAIT_MAX_MS);
 	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
-	if (d->told)
+	if (d->logged)
 		return;
-	d->told = true;
-	ec_slave_warn(s, "port %u has a link, but no slave replies behind it; it stays closed: connect port 0 (IN) of a slave there\n",
-		      port);
+	d->logged = true;
+	if (why == -EOPNOTSUPP)
+		ec_slave_warn(s, "port %u: the slave behind it does not keep register 0x0101, and others are behind that; the port stays closed: connect them before activation\n",
+			      port);
+	else
+		ec_slave_warn(s, "port %u has a link, but no slave replies behind it; it stays closed: connect port 0 (IN) of a slave there\n",
+			      port);
 }
 
 static bool try_door(struct ec_slave *s, unsigned int port)
@@ -260,8 +265,8 @@ static bool try_door(struct ec_slave *s, unsigned int port)
 			      port, ret);
 		return true;
 	}
-	if (ret == -ENXIO)
-		note_no_reply(s, port);
+	if (ret == -ENXIO || ret == -EOPNOTSUPP)
+		note_closed(s, port, ret);
 	else
 		s->ports.door[port].next_ns = ktime_get_ns() + STABLE_NS;
 	if (ret == -ENOLINK)

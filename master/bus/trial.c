@@ -127,10 +127,12 @@ static void trial_give_back(const struct trial *t, u16 station, bool next)
 	u8 own[2];
 
 	put_unaligned_le16(owner, own);
-	if (owner)
-		ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2);
-	ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
-		t->host.station, t->port, owner);
+	if (owner && !ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2))
+		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
+			t->host.station, t->port, owner);
+	else
+		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, another slave has station address 0x%04x now and is scanned again\n",
+			t->host.station, t->port, station);
 }
 
 /*
@@ -202,11 +204,18 @@ static int greet(struct trial *t, struct guest *g)
 	t->n = 0;
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
+	/*
+	 * A device behind the guest may let no frame return, but the guest executes what it gets. That
+	 * no slave of the bus has its address is certain by now.
+	 */
+	if (g->mute) {
+		g->mute = false;
+		trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
+		ret = trial_run(t, g->station);
+		return ret == -ENOLINK ? ret : -EAGAIN;
+	}
 	was = trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, g->station_was));
 	trial_add(t, EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, fresh));
-	/* a device behind it may let no frame return; it executes what it gets */
-	if (g->mute)
-		trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
 	ret = trial_run(t, g->station);
 	g->mute = was->err;
 	if (!was->err && !was->wkc && ret != -ENOLINK)
@@ -260,6 +269,11 @@ static u8 guest_loops(const struct guest *g)
 		if (p != g->entry)
 			loops = with_loop(loops, p, EC_LOOP_CLOSED);
 	return loops;
+}
+
+static bool is_last(const struct guest *g)
+{
+	return hweight8(ec_graph_open_ports(get_unaligned_le16(g->dl))) <= 1;
 }
 
 /* Nothing of an earlier configuration is left that process data or a cycle could reach. */
@@ -352,6 +366,9 @@ static int trial_one(struct trial *t, struct guest *g)
 	g->kept = kept_station(t->bus, g);
 	g->entry = guest_entry(g);
 	ret = try_often(t, g, tame);
+	/* what is behind a guest that does not keep its loops would get process data at once */
+	if (ret == -EOPNOTSUPP && !is_last(g))
+		return ret;
 	if (ret && ret != -EOPNOTSUPP)
 		return ret;
 	if (let_in(t))
@@ -434,7 +451,8 @@ static int trial_branch(struct trial *t, struct guest *first)
  *
  * Context: The monitor thread. Waits for bus traffic.
  * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
- * broke; -EAGAIN: frames were lost; -ENOSPC: no free station address.
+ * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
+ * behind it; -ENOSPC: no free station address.
  */
 int ec_trial(struct ec_slave *s, unsigned int port)
 {

@@ -3,6 +3,7 @@
 #include <linux/kmsg_dump.h>
 #include "bus.h"
 #include "slow.h"
+#include "devices/sim/esc_int.h"
 #include "master/boundary/ioctl.h"
 #include "master/wire/sii.h"
 #include "master/boundary/cdev.h"
@@ -298,6 +299,52 @@ void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, 
 	};
 
 	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
+}
+
+/**
+ * bus_command() - something happens to the segment now
+ * @b: bus
+ * @text: as a running segment accepts it, see Documentation/simulator.rst
+ */
+void bus_command(struct bus *b, const char *text)
+{
+	struct ec_sim_error err;
+	struct ec_sim_fault f;
+
+	KUNIT_ASSERT_EQ_MSG(b->test, ec_sim_command(b->sim, &ec_sim_kernel_ops, text, strlen(text),
+						    &f, &err), 0, "%s: %s", text, err.text);
+	f.at_ns = ktime_get_ns();
+	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
+}
+
+/**
+ * bus_expect_graph() - the list and the neighbors are those of the model
+ * @b: bus at rest
+ * @after: what has happened
+ */
+void bus_expect_graph(struct bus *b, const char *after)
+{
+	const struct ec_sim_route *r = &b->sim->route[0];
+	u32 i, p;
+
+	KUNIT_ASSERT_EQ_MSG(b->test, bus_n_slaves(b), r->steps, "after %s", after);
+	for (i = 0; i < r->steps; i++) {
+		const struct ec_slave *s = bus_slave(b, i);
+		const struct ec_esc *esc = r->step[i].esc;
+
+		KUNIT_EXPECT_EQ_MSG(b->test, s->station,
+				    get_unaligned_le16(esc->mem + EC_REG_STATION),
+				    "slave %u after %s", i, after);
+		KUNIT_EXPECT_FALSE_MSG(b->test, s->topology_inconsistent, "slave %u after %s", i,
+				       after);
+		for (p = 0; p < EC_MAX_PORT; p++) {
+			s32 peer = esc->port[p].open ? esc->port[p].peer : -1;
+
+			KUNIT_EXPECT_EQ_MSG(b->test, bus_next(s, p), peer < 0 ? EC_UAPI_NONE16 :
+					    (u16)b->sim->esc[peer]->route_pos[0],
+					    "slave %u port %u after %s", i, p, after);
+		}
+	}
 }
 
 /**

@@ -18,43 +18,6 @@ enum { HUB, A1, A2, MID, B1, B2, B3, C1, C2, X1, X2 };
 
 #define N	9	/* connected at first */
 
-static void command(struct bus *b, const char *text)
-{
-	struct ec_sim_error err;
-	struct ec_sim_fault f;
-
-	KUNIT_ASSERT_EQ_MSG(b->test, ec_sim_command(b->sim, &ec_sim_kernel_ops, text, strlen(text),
-						    &f, &err), 0, "%s: %s", text, err.text);
-	f.at_ns = ktime_get_ns();
-	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
-}
-
-/* The list and the neighbors are those of the model. */
-static void expect_graph(struct bus *b, const char *after)
-{
-	const struct ec_sim_route *r = &b->sim->route[0];
-	u32 i, p;
-
-	KUNIT_ASSERT_EQ_MSG(b->test, bus_n_slaves(b), r->steps, "%s", after);
-	for (i = 0; i < r->steps; i++) {
-		const struct ec_slave *s = bus_slave(b, i);
-		const struct ec_esc *esc = r->step[i].esc;
-
-		KUNIT_EXPECT_EQ_MSG(b->test, s->station,
-				    get_unaligned_le16(esc->mem + EC_REG_STATION),
-				    "slave %u after %s", i, after);
-		KUNIT_EXPECT_FALSE_MSG(b->test, s->topology_inconsistent, "slave %u after %s", i,
-				       after);
-		for (p = 0; p < EC_MAX_PORT; p++) {
-			s32 peer = esc->port[p].open ? esc->port[p].peer : -1;
-
-			KUNIT_EXPECT_EQ_MSG(b->test, bus_next(s, p), peer < 0 ? EC_UAPI_NONE16 :
-					    (u16)b->sim->esc[peer]->route_pos[0],
-					    "slave %u port %u after %s", i, p, after);
-		}
-	}
-}
-
 static void settle(struct bus *b, u32 ms)
 {
 	msleep(ms);
@@ -96,11 +59,11 @@ static void graph_follows(struct kunit *test)
 	u32 i;
 
 	bus_idle(b);
-	expect_graph(b, "the start");
+	bus_expect_graph(b, "the start");
 	for (i = 0; i < ARRAY_SIZE(step->commands) && step->commands[i]; i++)
-		command(b, step->commands[i]);
+		bus_command(b, step->commands[i]);
 	settle(b, 500);
-	expect_graph(b, step->name);
+	bus_expect_graph(b, step->name);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 0), hub);
 }
 
@@ -112,9 +75,9 @@ static void graph_moved_slave_is_not_read_again(struct kunit *test)
 	u64 device = c1->device;
 
 	bus_idle(b);
-	command(b, "plug a2.1 c1.0");
+	bus_command(b, "plug a2.1 c1.0");
 	settle(b, 500);
-	expect_graph(b, "the move");
+	bus_expect_graph(b, "the move");
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 3), c1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 4), c2);
 	KUNIT_EXPECT_EQ(test, c1->device, device);
@@ -132,12 +95,12 @@ static void graph_eeprom_of_known_device(struct kunit *test)
 	for (i = 0; i < 3; i++) {
 		u64 frames;
 
-		command(b, "off c2");
+		bus_command(b, "off c2");
 		msleep(200);
 		KUNIT_EXPECT_EQ(test, bus_n_slaves(b), N - 1u);
 		if (i == 1)
 			bus_esc(b, C2)->eep.data[bytes - 3] ^= 1;
-		command(b, "on c2");
+		bus_command(b, "on c2");
 		settle(b, 300);
 		KUNIT_EXPECT_EQ(test, bus_slave(b, N - 1)->sii_bytes, bytes);
 		KUNIT_EXPECT_EQ(test, memcmp(bus_slave(b, N - 1)->sii,
@@ -198,7 +161,7 @@ static void graph_found_beside_bouncing_contact(struct kunit *test)
 	t0 = ktime_get_ns();
 	bounce(b, MID, 2, t0, t0 + NSEC_PER_SEC, &r);
 	msleep(50);
-	command(b, "plug a2.1 x1.0");
+	bus_command(b, "plug a2.1 x1.0");
 	t0 = ktime_get_ns();
 	for (i = 0; i < 900; i++) {
 		if (bus_n_slaves(b) > 4 && bus_slave(b, 3)->sii &&
@@ -212,7 +175,7 @@ static void graph_found_beside_bouncing_contact(struct kunit *test)
 	bus_figure("a slave found beside a bouncing contact after %llu ms",
 		   div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC));
 	settle(b, 2000);
-	expect_graph(b, "the bounces");
+	bus_expect_graph(b, "the bounces");
 }
 
 /* random events of all kinds at the branch "mid", while drives beside it are in OP */
@@ -269,14 +232,14 @@ static void graph_random_events(struct kunit *test)
 	c->each = look;
 	prandom_seed_state(&r, 33);
 	for (i = 0; i < n; i++) {
-		command(b, events[prandom_u32_state(&r) % ARRAY_SIZE(events)]);
+		bus_command(b, events[prandom_u32_state(&r) % ARRAY_SIZE(events)]);
 		cyc_run(c, prandom_u32_state(&r) % (i % 10 ? 400 : 3));
 		if (i % 20 != 19)
 			continue;
 		for (k = 0; k < ARRAY_SIZE(all_on); k++)
-			command(b, all_on[k]);
+			bus_command(b, all_on[k]);
 		cyc_run(c, 4000);
-		expect_graph(b, "random events");
+		bus_expect_graph(b, "random events");
 	}
 	c->each = NULL;
 	KUNIT_EXPECT_EQ(test, w.offline, 0u);

@@ -14,17 +14,6 @@ enum { HUB, A1, A2, B1, B2, X1, X2 };
 
 #define N	5
 
-static void command(struct bus *b, const char *text)
-{
-	struct ec_sim_error err;
-	struct ec_sim_fault f;
-
-	KUNIT_ASSERT_EQ_MSG(b->test, ec_sim_command(b->sim, &ec_sim_kernel_ops, text, strlen(text),
-						    &f, &err), 0, "%s: %s", text, err.text);
-	f.at_ns = ktime_get_ns();
-	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
-}
-
 static u8 *mem(struct bus *b, u32 index)
 {
 	return bus_esc(b, index)->mem;
@@ -124,10 +113,10 @@ static void ports_new_slaves(struct kunit *test)
 	struct bus *b = c->b;
 	u32 i;
 
-	command(b, "old x1 station=5 state=OP");
+	bus_command(b, "old x1 station=5 state=OP");
 	cyc_run(c, 5);
 	old_fmmus(b, X1, A1);
-	command(b, "plug a2.1 x1.0");
+	bus_command(b, "plug a2.1 x1.0");
 	cyc_run(c, 50);
 	KUNIT_EXPECT_EQ_MSG(test, bus_n_slaves(b), N, "the link is not stable yet");
 	for (i = 0; i < 2000 && !(bus_n_slaves(b) == N + 2 &&
@@ -158,11 +147,11 @@ static void ports_branch_returns(struct kunit *test)
 	u16 station[2] = { bus_slave(b, 3)->station, bus_slave(b, 4)->station };
 	u32 i;
 
-	command(b, "unplug hub.2");
+	bus_command(b, "unplug hub.2");
 	cyc_run(c, 300);
 	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 3u);
 	KUNIT_EXPECT_EQ(test, loops(b, HUB), 0x34);
-	command(b, "plug hub.2 b1.0");
+	bus_command(b, "plug hub.2 b1.0");
 	for (i = 0; i < 2000 && bus_n_slaves(b) < N; i++)
 		cyc_run(c, 1);
 	bus_figure("a branch of two back in the list %u cycles after its link came", i);
@@ -181,10 +170,10 @@ static void ports_drives_return(struct kunit *test)
 	struct bus *b = c->b;
 	u64 t0;
 
-	command(b, "unplug hub.1");
+	bus_command(b, "unplug hub.1");
 	cyc_run(c, 300);
 	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 3u);
-	command(b, "plug hub.1 a1.0");
+	bus_command(b, "plug hub.1 a1.0");
 	t0 = ktime_get_ns();
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	bus_figure("two drives back in OP %llu ms after their link came",
@@ -233,16 +222,16 @@ static u32 try_at(struct cyc *c, const struct healthy *h, const char *what, u32 
 
 	/* as after a rest: losses of the try before do not count */
 	memset(bus_slave(b, A2)->ports.loss, 0, sizeof(bus_slave(b, A2)->ports.loss));
-	command(b, "plug a2.1 x1.0");
+	bus_command(b, "plug a2.1 x1.0");
 	cyc_run(c, 95);
 	snprintf(text, sizeof(text), what, n);
-	command(b, text);
+	bus_command(b, text);
 	for (k = 0; k < 1500; k++) {
 		bool all = true;
 
 		cyc_run(c, 1);
 		if (k == 2 * FRAMES)
-			command(b, "heal a2.1");
+			bus_command(b, "heal a2.1");
 		for (i = 0; i < HEALTHY; i++) {
 			take(b, i, &is);
 			all &= !memcmp(is.station, h[i].station, 2);
@@ -256,7 +245,7 @@ static u32 try_at(struct cyc *c, const struct healthy *h, const char *what, u32 
 			break;
 	}
 	KUNIT_EXPECT_EQ_MSG(b->test, bus_n_slaves(b), N + 2u, "%s", text);
-	command(b, "unplug a2.1");
+	bus_command(b, "unplug a2.1");
 	cyc_run(c, 300);
 	KUNIT_EXPECT_EQ_MSG(b->test, bus_n_slaves(b), (u32)N, "%s", text);
 	return wrong;
@@ -302,15 +291,55 @@ static void ports_no_reply(struct kunit *test)
 	for (i = 0; i < ARRAY_SIZE(commands); i++) {
 		u32 lines = bus_log_lines("no slave replies behind it");
 
-		command(c->b, commands[i]);
+		bus_command(c->b, commands[i]);
 		cyc_run(c, 12000);
 		KUNIT_EXPECT_EQ_MSG(test, bus_log_lines("no slave replies behind it") - lines,
 				    i ? 2u : 1u, "%s", commands[i]);
 		KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
 		KUNIT_EXPECT_EQ(test, loops(c->b, B2), 0x0c);
-		command(c->b, "unplug b2.1");
+		bus_command(c->b, "unplug b2.1");
 		cyc_run(c, 100);
 	}
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+}
+
+/* A device behind a new slave that swallows all frames does not keep the slave out, nor gets any. */
+static void ports_slave_with_host_behind(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i;
+
+	bus_command(c->b, "unplug x1.1");
+	bus_command(c->b, "host x1.1 every=1ms");
+	bus_command(c->b, "plug a2.1 x1.0");
+	for (i = 0; i < 3000 && bus_n_slaves(c->b) == N; i++)
+		cyc_run(c, 1);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), N + 1u);
+	KUNIT_EXPECT_EQ(test, loops(c->b, X1), 0x0c);
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+}
+
+/* One whose loops are fixed is let in alone; with others behind it the port stays closed. */
+static void ports_slave_with_fixed_loops(struct kunit *test)
+{
+	u32 lines = bus_log_lines("does not keep register 0x0101");
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i;
+
+	bus_esc(c->b, X1)->cfg.loops_fixed = true;
+	old_fmmus(c->b, X2, A1);
+	bus_command(c->b, "plug a2.1 x1.0");
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("does not keep register 0x0101") - lines, 1u);
+	bus_command(c->b, "unplug x1.1");
+	for (i = 0; i < 20000 && bus_n_slaves(c->b) == N; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), N + 1u);
+	KUNIT_EXPECT_EQ(test, w.foreign, 0u);
 	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
 }
 
@@ -322,9 +351,9 @@ static void ports_flapping(struct kunit *test)
 	u32 i, lines = bus_log_lines("has lost its link 3 times");
 
 	for (i = 0; i < 8; i++) {
-		command(c->b, "cut hub.2");
+		bus_command(c->b, "cut hub.2");
 		cyc_run(c, 40);
-		command(c->b, "heal hub.2");
+		bus_command(c->b, "heal hub.2");
 		cyc_run(c, 400);
 	}
 	KUNIT_EXPECT_EQ(test, bus_log_lines("has lost its link 3 times") - lines, 1u);
@@ -342,6 +371,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_drives_return),
 	KUNIT_CASE(ports_fault_at_each_frame),
 	KUNIT_CASE(ports_no_reply),
+	KUNIT_CASE(ports_slave_with_host_behind),
+	KUNIT_CASE(ports_slave_with_fixed_loops),
 	KUNIT_CASE(ports_flapping),
 	{}
 };
