@@ -205,8 +205,8 @@ static int greet(struct trial *t, struct guest *g)
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
 	/*
-	 * A device behind the guest may let no frame return, but the guest executes what it gets. That
-	 * no slave of the bus has its address is certain by now.
+	 * A device behind the guest may let no frame return, but the guest executes what it gets.
+	 * That no slave of the bus has its address is certain by now.
 	 */
 	if (g->mute) {
 		g->mute = false;

@@ -303,7 +303,7 @@ static void ports_no_reply(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
 }
 
-/* A device behind a new slave that swallows all frames does not keep the slave out, nor gets any. */
+/* A device behind a new slave swallows all frames: the slave gets in, the device no frames. */
 static void ports_slave_with_host_behind(struct kunit *test)
 {
 	struct watch w = { 0 };
