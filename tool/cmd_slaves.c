@@ -190,7 +190,7 @@ const struct cmd cmd_slaves = {
 		"slaves[] (position, device_number, alias, relative_position, device,\n"
 		"state, al_error, flag_error, cause, warning, differs,\n"
 		"not_in_op (or null), name, vendor_id, product_code, revision_number,\n"
-		"serial_number, own_alias, station_address, al_status, al_status_code,\n"
+		"serial_number, station_address, own_alias, identification, al_status, al_status_code,\n"
 		"al_status_text, requested_state, dl_status, fmmu_bit_operation, dc, dc_delay_ns,\n"
 		"dc_state (not_set, in_step, off, delay_uncertain), dc_offset_ns,\n"
 		"dc_difference_ns (when set), ports[] (type, link_up, loop_closed, signal,\n"

@@ -199,6 +199,9 @@ static void diagnosis(const struct ect_slave *s)
 	out_text("Diagnosis:\n");
 	out_u("station_address", s->station, "  Station address: 0x%04x\n", s->station);
 	out_u("own_alias", s->alias, NULL);
+	out_u("identification", s->identification, NULL);
+	if (s->identification)
+		out_text("  Identification: %u\n", s->identification);
 	out_u("al_status", s->al_status, "  AL status: 0x%04x\n", s->al_status);
 	out_u("al_status_code", s->al_code, "  AL status code: 0x%04x (%s)\n", s->al_code,
 	      ec_al_code_text(s->al_code));

@@ -133,6 +133,8 @@ struct ect_slave {
 	char name[ECT_STRING];
 	char why[ECT_TEXT];	/* @cause in words, or "" */
 	char warning[ECT_TEXT];
+	uint16_t identification;	/* explicit device identification, 0: none */
+	uint16_t reserved[3];
 };
 
 /**

@@ -73,6 +73,7 @@ static void convert_slave(struct ect_slave *to, const struct ec_ioc_slave *from)
 	COPY(device_index);
 	COPY(dl_status);
 	COPY(features);
+	COPY(identification);
 	COPY(transmission_delay);
 	COPY(sii_words);
 	COPY(dc_offset);

@@ -92,7 +92,7 @@ int ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
 		bool with_reason, const char *fmt, ...)
 {
 	struct va_format vaf = { .fmt = fmt };
-	char reason[EC_UAPI_REASON], slave[32] = "";
+	char reason[EC_UAPI_REASON], slave[EC_CONFIG_NAME + 16] = "";
 	struct ec_file *f;
 	va_list args;
 
@@ -104,8 +104,7 @@ int ec_complain(const struct ec_master *m, const ec_slave_config_t *sc, int err,
 	strscpy(reason, with_reason ? f->reason : "", sizeof(reason));
 	raw_spin_unlock(&f->lock);
 	if (sc)
-		snprintf(slave, sizeof(slave), " of slave %u:%u", ec_api_config(sc)->alias,
-			 ec_api_config(sc)->position);
+		snprintf(slave, sizeof(slave), " of slave %s", ec_api_config(sc)->name);
 	va_start(args, fmt);
 	vaf.va = &args;
 	ec_err(f->master, "kernel API: cannot %pV%s (%pe)%s%s\n", &vaf, slave, ERR_PTR(err),

@@ -247,8 +247,8 @@ static int check_maps(struct ec_call *call, const struct ec_config *c)
 
 		if (ec_config_changed(c, fm))
 			return ec_refuse(call, -EBUSY,
-					 "slave %u:%u: SM%u was registered in domain %u with %u bytes of %s; now it has %u of %s: set directions, PDOs and entries before the first of them is registered",
-					 c->alias, c->position, fm->sm, fm->domain->index,
+					 "slave %s: SM%u was registered in domain %u with %u bytes of %s; now it has %u of %s: set directions, PDOs and entries before the first of them is registered",
+					 c->name, fm->sm, fm->domain->index,
 					 fm->size, dir_name(fm->dir),
 					 ec_pdo_list_bytes(&c->sm[fm->sm].pdos),
 					 dir_name(c->sm[fm->sm].dir));
@@ -270,16 +270,16 @@ static void not_mapped(struct ec_call *call, const struct ec_config *c,
 		scnprintf(entry, sizeof(entry), "entry 0x%04x:%02x", i->entry_index, i->subindex);
 	if (c->slave) {
 		ec_refuse(call, -ENOENT,
-			  "%s is not mapped in slave %u:%u; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
-			  entry, c->alias, c->position);
+			  "%s is not mapped in slave %s; see 'ethercat pdos', or name the PDOs with ecrt_slave_config_pdos()",
+			  entry, c->name);
 		return;
 	}
 	down_read(&call->master->bus.topo);
 	ec_config_why(c, why, sizeof(why), &cause);
 	up_read(&call->master->bus.topo);
 	ec_refuse(call, -ENOENT,
-		  "%s is not known, no slave is attached to %u:%u (%s); name its PDOs with ecrt_slave_config_pdos()",
-		  entry, c->alias, c->position, why);
+		  "%s is not known, no slave is attached to %s (%s); name its PDOs with ecrt_slave_config_pdos()",
+		  entry, c->name, why);
 }
 
 int ec_ioc_reg_entry(struct ec_call *call)
@@ -305,17 +305,17 @@ int ec_ioc_reg_entry(struct ec_call *call)
 		check_maps(call, c);
 	else if (ret == -EFAULT)
 		ec_refuse(call, ret,
-			  "the entry is not byte-aligned in slave %u:%u; pass bit_position",
-			  c->alias, c->position);
+			  "the entry is not byte-aligned in slave %s; pass bit_position",
+			  c->name);
 	else if (ret == -EOVERFLOW)
 		ec_refuse(call, ret,
-			  "slave %u:%u: its configuration has %u of at most %u FMMUs, domain %u %u bytes; limits: %u bytes in the SyncManager, %u in all domains",
-			  c->alias, c->position, c->n_fmmus, EC_MAX_FMMU, i->domain,
+			  "slave %s: its configuration has %u of at most %u FMMUs, domain %u %u bytes; limits: %u bytes in the SyncManager, %u in all domains",
+			  c->name, c->n_fmmus, EC_MAX_FMMU, i->domain,
 			  s->wanted.domains[i->domain]->size, EC_MAX_SM_BYTES, EC_MAX_IMAGE);
 	else if (ret == -EINVAL)
 		ec_refuse(call, ret,
-			  "slave %u:%u: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
-			  c->alias, c->position, EC_MAX_SM - 1);
+			  "slave %s: a SyncManager above %u or without direction; set it with ecrt_slave_config_sync_manager()",
+			  c->name, EC_MAX_SM - 1);
 	return ret;
 }
 

@@ -330,6 +330,7 @@ int ec_ioc_slave(struct ec_call *call)
 	i->dc_odd = i->dc_supported &&
 		    (READ_ONCE(c->delay_unreliable) || READ_ONCE(s->topology_inconsistent));
 	i->features = feat;
+	i->identification = READ_ONCE(s->identification);
 	i->sm_count = s->n_sms;
 	i->fmmu_count = s->regs[EC_REG_FMMUS];
 	i->dl_status = s->dl_status;

@@ -7,6 +7,7 @@
 #include "../link/links.h"
 #include "../base/once64.h"
 #include "../carry/xfer.h"
+#include "identify.h"
 #include "leave_init.h"
 #include "scan_int.h"
 
@@ -271,6 +272,7 @@ static int read_new(struct scan *sc)
 				      s->sii_bytes);
 	}
 	ec_leave_init_all(sc->bus, fresh, n, sc->fresh);
+	ec_identify_all(sc->bus, fresh, n);
 	plan_retries(sc, fresh, n);
 	kvfree(fresh);
 	return 0;

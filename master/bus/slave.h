@@ -72,6 +72,7 @@ struct ec_break {
  * @dl_seen: the same, read later than @dl_status because of an event; the monitor's
  * @ports: loop control; the monitor's
  * @alias: effective alias
+ * @identification: explicit device identification as read when it was found, 0: none
  * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
  * @recv: receive times at the ports
  * @delay_only: it has receive times, but no other register of a clock (0x0928)
@@ -167,6 +168,7 @@ struct ec_slave {
 	u16 dl_seen;
 	struct ec_ports ports;
 	u16 alias;
+	u16 identification;
 	u16 alias_first;
 	u32 recv[EC_MAX_PORT];
 	bool delay_only;

@@ -68,6 +68,7 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 	c->position = position;
 	c->vendor = vendor;
 	c->product = product;
+	scnprintf(c->name, sizeof(c->name), "%u:%u", alias, position);
 	INIT_LIST_HEAD(&c->startup);
 	INIT_LIST_HEAD(&c->flags);
 	w->configs[w->n_configs++] = c;
@@ -189,8 +190,8 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo)
 		ec_budget_release(&c->wanted->budget, p->n_entries * sizeof(*p->entries));
 		ec_pdo_clear_entries(p);
 	} else {
-		ec_warn(c->wanted, "slave %u:%u: PDO 0x%04x is not assigned, nothing to clear\n",
-			c->alias, c->position, pdo);
+		ec_warn(c->wanted, "slave %s: PDO 0x%04x is not assigned, nothing to clear\n",
+			c->name, pdo);
 	}
 	return 0;
 }
@@ -306,8 +307,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	/* the EEPROM is the slave's from PREOP on anyway */
 	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
 	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, "AssignToPdi"))
-		ec_info(c->wanted, "slave %u:%u: flag %s has no effect\n", c->alias,
-			c->position, key);
+		ec_info(c->wanted, "slave %s: flag %s has no effect\n", c->name, key);
 	flag->value = value;
 	list_add_tail(&flag->list, &c->flags);
 	c->n_flags++;

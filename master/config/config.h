@@ -15,7 +15,10 @@
 #include "startup.h"
 
 struct ec_domain;
+struct ec_group;
 struct ec_slave;
+
+#define EC_CONFIG_NAME	(EC_UAPI_STRING + 8)
 
 /* values of the application interface */
 #define EC_CFG_DIR_OUTPUT	1
@@ -79,9 +82,13 @@ struct ec_config_flag {
  *	configured is compared in takeover.c
  * @wanted: owner
  * @index: number there
+ * @name: for messages: alias and position, or group and member
+ * @group: hot connect group of which it is member @position, or NULL
  * @alias: 0: @position is the ring position
  * @position: else slaves behind the one with @alias
  * @alias_at: ring position of the first slave with @alias at the last search
+ * @place: with hot connect groups: ring position that it means, as slaves of groups do not count;
+ *	the number of slaves: there is none; of the last search
  * @vendor: expected
  * @product: expected
  * @sm: SyncManagers
@@ -111,9 +118,12 @@ struct ec_config_flag {
 struct ec_config {
 	struct ec_wanted *wanted;
 	u32 index;
+	char name[EC_CONFIG_NAME];
+	struct ec_group *group;
 	u16 alias;
 	u16 position;
 	u32 alias_at;
+	u32 place;
 	u32 vendor;
 	u32 product;
 	struct ec_config_sm sm[EC_MAX_SM];

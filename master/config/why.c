@@ -129,12 +129,12 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 	*cause = *EC_CAUSE(TAKEN, .position = pos, .code = has ? has->index : 0);
 	if (has && c->wanted->active && !twice(has, pos))
 		return scnprintf(buf, size,
-				 "no slave: position %u holds the slave attached to %u:%u; this slave or one upstream is disconnected",
-				 pos, has->alias, has->position);
+				 "no slave: position %u holds the slave attached to %s; this slave or one upstream is disconnected",
+				 pos, has->name);
 	if (has)
 		return scnprintf(buf, size,
-				 "slave %u has another configuration, %u:%u; use one of the two",
-				 pos, has->alias, has->position);
+				 "slave %u has another configuration, %s; use one of the two",
+				 pos, has->name);
 	*cause = *EC_CAUSE(UNATTACHED, .position = pos);
 	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
 }
@@ -282,8 +282,7 @@ static void log_difference(const struct ec_config *c, bool line)
 	}
 	up_read(&w->bus->topo);
 	if (line)
-		ec_warn_each(w, c->index + 1, "configuration %u:%u: %.160s\n", c->alias,
-			     c->position, text);
+		ec_warn_each(w, c->index + 1, "configuration %s: %.160s\n", c->name, text);
 }
 
 /**

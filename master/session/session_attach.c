@@ -101,12 +101,12 @@ static void log_taken(const struct ec_session *s, const struct ec_config *c,
 
 	if (s->wanted.active)
 		ec_slave_warn(slave,
-			      "slave attached to %u:%u since activation; configuration %u:%u expects this position and has no slave: reconnect the missing slave or restart the application\n",
-			      has->alias, has->position, c->alias, c->position);
+			      "slave attached to %s since activation; configuration %s expects this position and has no slave: reconnect the missing slave or restart the application\n",
+			      has->name, c->name);
 	else
 		ec_slave_warn(slave,
-			      "two configurations for this slave, %u:%u and %u:%u; use one of them\n",
-			      has->alias, has->position, c->alias, c->position);
+			      "two configurations for this slave, %s and %s; use one of them\n",
+			      has->name, c->name);
 }
 
 /* Reasons name the lost slave even when another one is at its position. */
@@ -268,8 +268,8 @@ void ec_session_begin_active(struct ec_session *s)
 		first = bus->slaves[c->alias_at];
 		if (first->alias == c->alias && first->alias_first)
 			ec_warn_each(s->sessions, c->index + 1,
-				     "configuration %u:%u: alias %u is not unique; slave %u, the first one, is used\n",
-				     c->alias, c->position, c->alias, first->position);
+				     "configuration %s: alias %u is not unique; slave %u, the first one, is used\n",
+				     c->name, c->alias, first->position);
 	}
 	up_read(&bus->topo);
 }

@@ -34,8 +34,6 @@ static __printf(2, 3) bool differs(const struct text *t, const char *fmt, ...)
 #define CONTENT(m, fmt, ...) \
 	(memcmp(&a->m, &b->m, sizeof(a->m)) && differs(t, fmt, ##__VA_ARGS__))
 
-#define SLAVE(c)	(c)->alias, (c)->position
-
 static bool sms_differ(const struct ec_config *a, const struct ec_config *b,
 		       const struct text *t)
 {
@@ -46,8 +44,8 @@ static bool sms_differ(const struct ec_config *a, const struct ec_config *b,
 
 		if (x->dir != y->dir || x->watchdog != y->watchdog || x->explicit != y->explicit ||
 		    !ec_pdo_list_same(&x->pdos, &y->pdos))
-			return differs(t, "slave %u:%u, SM%u: its direction, watchdog or PDOs",
-				       SLAVE(a), i);
+			return differs(t, "slave %s, SM%u: its direction, watchdog or PDOs",
+				       a->name, i);
 	}
 	return false;
 }
@@ -73,14 +71,14 @@ static bool name_command(const struct ec_config *c, const struct ec_startup *u,
 {
 	switch (u->type) {
 	case EC_STARTUP_SDO:
-		return differs(t, "slave %u:%u, startup SDO 0x%04x:%02x", SLAVE(c), u->index,
+		return differs(t, "slave %s, startup SDO 0x%04x:%02x", c->name, u->index,
 			       u->sub);
 	case EC_STARTUP_IDN:
-		return differs(t, "slave %u:%u, startup IDN 0x%04x", SLAVE(c), u->index);
+		return differs(t, "slave %s, startup IDN 0x%04x", c->name, u->index);
 	case EC_STARTUP_IP:
-		return differs(t, "slave %u:%u, IP parameters", SLAVE(c));
+		return differs(t, "slave %s, IP parameters", c->name);
 	default:
-		return differs(t, "slave %u:%u, watchdog", SLAVE(c));
+		return differs(t, "slave %s, watchdog", c->name);
 	}
 }
 
@@ -110,11 +108,11 @@ static bool flags_differ(const struct ec_config *a, const struct ec_config *b,
 {
 	const struct ec_config_flag *x, *y = list_first_entry(&b->flags, typeof(*y), list);
 
-	if (NUMBER(n_flags, "slave %u:%u has %u flags, not %u", SLAVE(a)))
+	if (NUMBER(n_flags, "slave %s has %u flags, not %u", a->name))
 		return true;
 	list_for_each_entry(x, &a->flags, list) {
 		if (strcmp(x->key, y->key) || x->value != y->value)
-			return differs(t, "slave %u:%u, flag %.32s", SLAVE(a), x->key);
+			return differs(t, "slave %s, flag %.32s", a->name, x->key);
 		y = list_next_entry(y, list);
 	}
 	return false;
@@ -124,19 +122,19 @@ static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 			   const struct text *t)
 {
 	if (a->alias != b->alias || a->position != b->position)
-		return differs(t, "slave configuration %u is %u:%u, not %u:%u", a->index,
-			       SLAVE(a), SLAVE(b));
-	return NUMBER(vendor, "slave %u:%u has vendor id 0x%08x, not 0x%08x", SLAVE(a)) ||
-	       NUMBER(product, "slave %u:%u has product code 0x%08x, not 0x%08x", SLAVE(a)) ||
+		return differs(t, "slave configuration %u is %s, not %s", a->index,
+			       a->name, b->name);
+	return NUMBER(vendor, "slave %s has vendor id 0x%08x, not 0x%08x", a->name) ||
+	       NUMBER(product, "slave %s has product code 0x%08x, not 0x%08x", a->name) ||
 	       sms_differ(a, b, t) || startup_differs(a, b, t) || flags_differ(a, b, t) ||
 	       (fmmus_differ(a, b) &&
-		differs(t, "slave %u:%u, its place in the domains", SLAVE(a))) ||
-	       CONTENT(sync.assign, "slave %u:%u, distributed clock", SLAVE(a)) ||
-	       CONTENT(sync.period, "slave %u:%u, distributed clock", SLAVE(a)) ||
-	       CONTENT(sync.shift, "slave %u:%u, distributed clock", SLAVE(a)) ||
-	       CONTENT(timeout_ms, "slave %u:%u, time limits of its states", SLAVE(a)) ||
-	       NUMBER(reply_ms, "slave %u:%u has %u ms for a reply, not %u", SLAVE(a)) ||
-	       NUMBER(emergencies, "slave %u:%u keeps %u emergencies, not %u", SLAVE(a));
+		differs(t, "slave %s, its place in the domains", a->name)) ||
+	       CONTENT(sync.assign, "slave %s, distributed clock", a->name) ||
+	       CONTENT(sync.period, "slave %s, distributed clock", a->name) ||
+	       CONTENT(sync.shift, "slave %s, distributed clock", a->name) ||
+	       CONTENT(timeout_ms, "slave %s, time limits of its states", a->name) ||
+	       NUMBER(reply_ms, "slave %s has %u ms for a reply, not %u", a->name) ||
+	       NUMBER(emergencies, "slave %s keeps %u emergencies, not %u", a->name);
 }
 
 static bool domain_differs(const struct ec_domain *a, const struct ec_domain *b,

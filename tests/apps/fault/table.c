@@ -19,7 +19,7 @@ const struct cmd cmds[] = {
 	CMD(REASON),
 	CMD(MASTER),
 	CMD(DEVICE),
-	CMD(SLAVE, RSV1(ec_ioc_slave)),
+	CMD(SLAVE),
 	CMD(SLAVE_NAMES, RSV1(ec_ioc_slave_names)),
 	CMD(SLAVE_WHY, RSV1(ec_ioc_slave_why)),
 	CMD(PORT, RSV1(ec_ioc_port)),

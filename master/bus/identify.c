@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The EEPROM says how a device tells its identification: in a word of its memory, or on a request
+ * in AL control (ETG.1020 clause 8). All new slaves are asked together.
+ */
+#include <linux/delay.h>
+#include <linux/ktime.h>
+#include <linux/slab.h>
+#include "../carry/xfer.h"
+#include "identify.h"
+#include "slave.h"
+
+/* One with identification 0 does not answer the request. */
+#define WAIT_NS		(50 * NSEC_PER_MSEC)
+#define POLL_US		500
+#define REPLY		(EC_REG_AL_CODE + 2 - EC_REG_AL_STATUS)
+
+/* a device that is asked */
+struct asked {
+	struct ec_slave *slave;
+	bool by_al;		/* with AL control, else from its memory */
+	u8 control[2];
+	u8 reply[REPLY];
+};
+
+struct identify {
+	struct ec_links *links;
+	struct asked *list;
+	struct ec_dg *dg;
+	unsigned int n;
+};
+
+static bool is_asked(const struct ec_slave *s)
+{
+	return s->sii && s->has_general && !READ_ONCE(s->error) &&
+	       s->general.flags & (EC_SII_FLAG_ID_AL | EC_SII_FLAG_ID_MEM);
+}
+
+/* In PREOP, as the request names the state, and a slave with an error does not answer it. */
+static bool asks_by_al(const struct ec_slave *s)
+{
+	return s->general.flags & EC_SII_FLAG_ID_AL && READ_ONCE(s->al_status) == EC_AL_PREOP;
+}
+
+static void add(struct identify *id, struct ec_slave *s)
+{
+	struct asked *a = &id->list[id->n];
+
+	a->by_al = asks_by_al(s);
+	if (!a->by_al && !(s->general.flags & EC_SII_FLAG_ID_MEM))
+		return;
+	a->slave = s;
+	id->n++;
+}
+
+/* AL control of those that have to be asked; @bits: EC_AL_ID, or 0 to end the request. */
+static void request(struct identify *id, u16 bits)
+{
+	unsigned int i, n = 0;
+
+	for (i = 0; i < id->n; i++) {
+		struct asked *a = &id->list[i];
+
+		put_unaligned_le16(EC_AL_PREOP | bits, a->control);
+		if (a->by_al)
+			id->dg[n++] = EC_FPWR(a->slave->station, EC_REG_AL_CONTROL, 2, a->control);
+	}
+	if (n)
+		ec_xfer(id->links, id->dg, n);
+}
+
+/* The reply of a device: whether it is complete, with its identification */
+static bool take(const struct asked *a, const struct ec_dg *dg, u16 *identification)
+{
+	if (dg->err || dg->wkc != 1)
+		return false;
+	if (!a->by_al)
+		*identification = get_unaligned_le16(a->reply);
+	else if (get_unaligned_le16(a->reply) == (EC_AL_PREOP | EC_AL_ID))
+		*identification = get_unaligned_le16(a->reply + EC_REG_AL_CODE - EC_REG_AL_STATUS);
+	return *identification;
+}
+
+/* Read once from those that have not answered so far. Returns how many these are. */
+static unsigned int read_replies(struct identify *id)
+{
+	unsigned int i, n = 0, left = 0;
+
+	for (i = 0; i < id->n; i++) {
+		struct asked *a = &id->list[i];
+
+		if (READ_ONCE(a->slave->identification))
+			continue;
+		id->dg[n++] = a->by_al ?
+			EC_FPRD(a->slave->station, EC_REG_AL_STATUS, REPLY, a->reply) :
+			EC_FPRD(a->slave->station, a->slave->general.id_address, 2, a->reply);
+	}
+	ec_xfer(id->links, id->dg, n);
+	n = 0;
+	for (i = 0; i < id->n; i++) {
+		struct asked *a = &id->list[i];
+		u16 identification = 0;
+
+		if (READ_ONCE(a->slave->identification))
+			continue;
+		if (take(a, &id->dg[n++], &identification))
+			WRITE_ONCE(a->slave->identification, identification);
+		else
+			left += a->by_al;
+	}
+	return left;
+}
+
+/**
+ * ec_identify_all() - read the explicit device identification of new slaves
+ * @bus: bus
+ * @slaves: slaves that are not in the list of the bus yet, so that no worker writes AL control
+ * @n: how many
+ *
+ * Of those whose EEPROM says that they have one: general category, flags bit 3 (AL control,
+ * registers 0x0120 and 0x0134) or bit 4 (a word of their memory).
+ *
+ * Context: The monitor thread. Waits for bus traffic, and at most some 50 ms for replies.
+ */
+void ec_identify_all(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
+{
+	struct identify id = { .links = bus->links };
+	unsigned int i, asked = 0;
+	u64 until;
+
+	for (i = 0; i < n; i++)
+		asked += is_asked(slaves[i]);
+	if (!asked)
+		return;
+	id.list = kvcalloc(asked, sizeof(*id.list), GFP_KERNEL);
+	id.dg = kvcalloc(asked, sizeof(*id.dg), GFP_KERNEL);
+	if (id.list && id.dg) {
+		for (i = 0; i < n; i++)
+			if (is_asked(slaves[i]))
+				add(&id, slaves[i]);
+		until = ktime_get_ns() + WAIT_NS;
+		request(&id, EC_AL_ID);
+		while (id.n && read_replies(&id) && ktime_get_ns() < until &&
+		       !READ_ONCE(bus->base->stopping))
+			usleep_range(POLL_US, 2 * POLL_US);
+		request(&id, 0);
+	}
+	kvfree(id.list);
+	kvfree(id.dg);
+}
