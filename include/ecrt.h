@@ -120,6 +120,8 @@
 #define EC_HAVE_FOE_REQUESTS
 /* ecrt_slave_config_sdo_timeout(): limit of replies to SDOs */
 #define EC_HAVE_SDO_TIMEOUT
+/* ecrt_master_group(), ecrt_master_group_config(): hot connect groups */
+#define EC_HAVE_GROUPS
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -412,6 +414,74 @@ EC_PUBLIC_API int ecrt_master_reserve(ec_master_t *master);
  * Return: the domain, or NULL: no memory, not reserved, active, too many.
  */
 EC_PUBLIC_API ec_domain_t *ecrt_master_create_domain(ec_master_t *master);
+
+#ifdef EC_HAVE_GROUPS
+typedef enum {
+	EC_GROUP_ALIAS = 1,	/* station alias (register 0x0012) of its first slave */
+	EC_GROUP_ID = 2,	/* explicit device identification, for example switches */
+	EC_GROUP_PORT = 3,	/* the port where its first slave is connected */
+} ec_group_by_t;
+
+/* ec_group_info_t.flags: without the group the bus is not complete */
+#define EC_GROUP_MANDATORY	1
+
+/**
+ * struct ec_group_info_t - a hot connect group: slaves that come and go together
+ * @name: for messages: a letter, then letters, digits, '_', '-' and '.', at most 63
+ * @by: what its first slave, the head, is known by
+ * @value: alias or identification, not 0; with %EC_GROUP_PORT 0
+ * @port: port of @at where the head has to be: 1 to 3; 0 without @at
+ * @at: configuration of that slave; NULL: it may be connected anywhere
+ * @flags: %EC_GROUP_MANDATORY or 0
+ */
+typedef struct {
+	const char *name;
+	ec_group_by_t by;
+	uint16_t value;
+	uint8_t port;
+	ec_slave_config_t *at;
+	uint32_t flags;
+} ec_group_info_t;
+
+/**
+ * ecrt_master_group() - create or find a hot connect group
+ * @master: a reserved master
+ * @info: the group
+ *
+ * Extension (%EC_HAVE_GROUPS). Slaves of groups do not count for the ring positions of
+ * ecrt_master_slave_config(): create groups, with their members, before the configurations that
+ * are known by ring position, except the ones at whose ports they are. A group may be absent at
+ * any time: the expected working counters count its slaves once they are in OP, and those of a
+ * mandatory group always. When all its members are on the bus they are configured and brought to
+ * OP; when one is missing or another device, none is, and ecrt_slave_config_reason() says why.
+ *
+ * Context: Process. May sleep.
+ * Return: number of the group; %-EINVAL the description is not valid; %-EEXIST another group has
+ * the same name, alias, identification or port; %-ENOSPC there are 128; %-EBUSY @master is active;
+ * %-EPERM not reserved; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_group(ec_master_t *master, const ec_group_info_t *info);
+
+/**
+ * ecrt_master_group_config() - create or find the configuration of a member of a group
+ * @master: a reserved master
+ * @group: number of the group
+ * @member: 0: the head; then one by one in the order of the ring
+ * @vendor_id: expected in the SII of the slave
+ * @product_code: expected in the SII of the slave
+ *
+ * Extension (%EC_HAVE_GROUPS). The flag "ExpectedSerial" (ecrt_slave_config_flag()) is a serial
+ * number that the slave has to have. With a domain of its own for a group its working counter is
+ * that of the group alone.
+ *
+ * Context: Process. May sleep.
+ * Return: the configuration, also while @master is active; NULL: no memory, no such group, the
+ * member before it has no configuration, active, or it exists with another identity.
+ */
+EC_PUBLIC_API ec_slave_config_t *ecrt_master_group_config(ec_master_t *master,
+		unsigned int group, uint16_t member, uint32_t vendor_id,
+		uint32_t product_code);
+#endif
 
 /**
  * ecrt_master_slave_config() - create or find the configuration of a slave

@@ -65,13 +65,14 @@ struct ec_domain {
 	unsigned int n_inputs;
 };
 
-/* @overruns: of its emergencies, when they were cleared */
+/* @group: hot connect group + 1, whose member @position is; @overruns: see emerg.c */
 struct ec_slave_config {
 	struct ec_master *master;
 	struct ec_slave_config *next;
 	unsigned int index;
 	__u16 alias;
 	__u16 position;
+	__u32 group;
 	__u32 overruns;
 };
 

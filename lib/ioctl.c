@@ -30,7 +30,7 @@ int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int
 		bool with_reason, const char *fmt, ...)
 {
 	struct ec_ioc_reason reason = { 0 };
-	char what[160], slave[32] = "";
+	char what[160], slave[48] = "";
 	va_list ap;
 
 	if (!err || (with_reason && !m))
@@ -42,7 +42,10 @@ int ec_complain(const struct ec_master *m, const struct ec_slave_config *sc, int
 	va_start(ap, fmt);
 	vsnprintf(what, sizeof(what), fmt, ap);
 	va_end(ap);
-	if (sc)
+	if (sc && sc->group)
+		snprintf(slave, sizeof(slave), " of member %u of group %u", sc->position,
+			 sc->group - 1);
+	else if (sc)
 		snprintf(slave, sizeof(slave), " of slave %u:%u", sc->alias, sc->position);
 	errno = -err;	/* for %m */
 	/* one write per line, so that lines of several threads stay whole */

@@ -73,6 +73,27 @@ static struct ec_slave_config *config_find(struct ec_master *m,
 	return NULL;
 }
 
+/* The handle of configuration @index: a new one is named as in @what. */
+static struct ec_slave_config *config_handle(struct ec_master *m, unsigned int index,
+					     struct ec_slave_config what)
+{
+	struct ec_slave_config *sc = config_find(m, index);
+
+	if (sc)
+		return sc;
+	sc = calloc(1, sizeof(*sc));
+	if (!sc) {
+		ec_fail(NULL, -ENOMEM, "configure a slave");
+		return NULL;
+	}
+	*sc = what;
+	sc->master = m;
+	sc->index = index;
+	sc->next = m->configs;
+	m->configs = sc;
+	return sc;
+}
+
 ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 					    uint16_t alias, uint16_t position,
 					    uint32_t vendor_id,
@@ -84,31 +105,35 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master,
 		.vendor_id = vendor_id,
 		.product_code = product_code,
 	};
-	struct ec_slave_config *sc;
-	int ret;
 
 	if (!master)
 		return ec_no_handle(-EINVAL);
-	ret = ec_do(master, EC_IOC_SLAVE_CONFIG, &arg, "configure slave %u:%u as 0x%08x/0x%08x",
-		    alias, position, vendor_id, product_code);
-	if (ret)
+	if (ec_do(master, EC_IOC_SLAVE_CONFIG, &arg, "configure slave %u:%u as 0x%08x/0x%08x",
+		  alias, position, vendor_id, product_code))
 		return NULL;
-	sc = config_find(master, arg.index);
-	if (sc)
-		return sc;
-	sc = calloc(1, sizeof(*sc));
-	if (!sc) {
-		ec_fail(NULL, -ENOMEM, "configure slave %u:%u", alias,
-			position);
+	return config_handle(master, arg.index, (struct ec_slave_config){
+		.alias = alias, .position = position,
+	});
+}
+
+ec_slave_config_t *ecrt_master_group_config(ec_master_t *master, unsigned int group,
+					    uint16_t member, uint32_t vendor_id,
+					    uint32_t product_code)
+{
+	struct ec_ioc_group_config arg = {
+		.group = group, .member = member, .vendor_id = vendor_id,
+		.product_code = product_code,
+	};
+
+	if (!master)
+		return ec_no_handle(-EINVAL);
+	if (ec_do(master, EC_IOC_GROUP_CONFIG, &arg,
+		  "configure member %u of group %u as 0x%08x/0x%08x", member, group, vendor_id,
+		  product_code))
 		return NULL;
-	}
-	sc->master = master;
-	sc->index = arg.index;
-	sc->alias = alias;
-	sc->position = position;
-	sc->next = master->configs;
-	master->configs = sc;
-	return sc;
+	return config_handle(master, arg.index, (struct ec_slave_config){
+		.position = member, .group = group + 1,
+	});
 }
 
 /* activation ---------------------------------------------------------------*/

@@ -23,6 +23,7 @@
 #include "ethercat_common.h"
 #include "ethercat_config.h"
 #include "ethercat_event.h"
+#include "ethercat_group.h"
 #include "ethercat_info.h"
 #include "ethercat_map.h"
 #include "ethercat_mbox.h"
@@ -120,6 +121,9 @@
 #define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
 #define EC_IOC_DIVISION		EC_IOC_W(0x62, struct ec_ioc_division)
 #define EC_IOC_COPY		EC_IOC_W(0x63, struct ec_ioc_copy)
+#define EC_IOC_GROUP		EC_IOC_RW(0x68, struct ec_ioc_group)
+#define EC_IOC_GROUP_CONFIG	EC_IOC_RW(0x69, struct ec_ioc_group_config)
+#define EC_IOC_CONFIG_GROUP	EC_IOC_RW(0x6a, struct ec_ioc_config_group)
 #define EC_IOC_SC_OVERLAP	EC_IOC_W(0x78, struct ec_ioc_sc_overlap)
 #define EC_IOC_LATE		EC_IOC_W(0x7a, struct ec_ioc_late)
 #define EC_IOC_DOMAIN_AGE	EC_IOC_W(0x7b, struct ec_ioc_domain_age)

@@ -24,7 +24,7 @@ struct ec_ioc_config {
 	__u32 sdo_count;
 	__u32 state;		/* EC_STATUS_SC_*, as in struct ec_status */
 	__u32 flag_count;
-	__u32 reserved;
+	__u32 group;		/* hot connect group, its member @position: index + 1; 0: none */
 	__u64 device;		/* number of the attached device, 0: none */
 };
 

@@ -44,6 +44,37 @@ void ecrt_master_deactivate_slaves(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_master_deactivate_slaves);
 
+/* hot connect groups --------------------------------------------------------*/
+
+_Static_assert((int)EC_GROUP_ALIAS == EC_GROUP_BY_ALIAS, "groups");
+_Static_assert((int)EC_GROUP_ID == EC_GROUP_BY_ID, "groups");
+_Static_assert((int)EC_GROUP_PORT == EC_GROUP_BY_PORT, "groups");
+_Static_assert(EC_GROUP_MANDATORY == EC_GROUP_FLAG_MANDATORY, "groups");
+
+int ecrt_master_group(ec_master_t *master, const ec_group_info_t *info)
+{
+	struct ec_ioc_group arg = { .at = EC_UAPI_NONE32 };
+	int ret;
+
+	if (!master || !info)
+		return -EINVAL;
+	if (!info->name || strlen(info->name) >= sizeof(arg.name))
+		return ec_fail(master, -EINVAL, "create a group without name, or with a long one");
+	if (info->at && ec_sc_master(info->at) != master)
+		return ec_fail(master, -EINVAL, "create group %s at another master's slave",
+			       info->name);
+	strcpy(arg.name, info->name);
+	arg.flags = info->flags;
+	arg.by = info->by;
+	arg.value = info->value;
+	arg.port = info->port;
+	if (info->at)
+		arg.at = ec_sc_index(info->at);
+	ret = ec_do(master, EC_IOC_GROUP, &arg, "create group %s", info->name);
+	return ret ?: (int)arg.index;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_group);
+
 /* domains ------------------------------------------------------------------*/
 
 int ecrt_domain_set_options(ec_domain_t *domain, uint32_t options)

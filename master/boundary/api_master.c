@@ -101,6 +101,23 @@ ec_slave_config_t *ecrt_master_slave_config(ec_master_t *master, uint16_t alias,
 }
 EXPORT_SYMBOL_GPL(ecrt_master_slave_config);
 
+ec_slave_config_t *ecrt_master_group_config(ec_master_t *master, unsigned int group,
+					    uint16_t member, uint32_t vendor_id,
+					    uint32_t product_code)
+{
+	struct ec_ioc_group_config i = {
+		.group = group, .member = member, .vendor_id = vendor_id,
+		.product_code = product_code,
+	};
+
+	if (ec_do(master, EC_IOC_GROUP_CONFIG, &i,
+		  "configure member %u of group %u as 0x%08x/0x%08x", member, group, vendor_id,
+		  product_code))
+		return NULL;
+	return (ec_slave_config_t *)session_of(master)->wanted.configs[i.index];
+}
+EXPORT_SYMBOL_GPL(ecrt_master_group_config);
+
 /*
  * Memory for process data of the domains while the kernel runs the cycle. It belongs to the
  * application, as each cycle exchanges images. External memory of domains has the first outputs.

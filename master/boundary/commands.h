@@ -17,7 +17,7 @@ CMD(EC_IOC_PDO, ec_ioc_pdo, 0, SLAVE(ec_ioc_pdo), RSV2(ec_ioc_pdo))
 CMD(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, SLAVE(ec_ioc_pdo_entry), RSV2(ec_ioc_pdo_entry))
 CMD(EC_IOC_SII, ec_ioc_sii, 0, SLAVE(ec_ioc_sii), OUT(ec_ioc_sii, EC_MAX_SII_BYTES),
 	RSV1(ec_ioc_sii))
-CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config), RSV1(ec_ioc_config))
+CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config))
 CMD(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, SHOW_CONFIG(ec_ioc_config_sm), RSV1(ec_ioc_config_sm))
 CMD(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, SHOW_CONFIG(ec_ioc_config_pdo),
 	RSV1(ec_ioc_config_pdo))
@@ -33,6 +33,8 @@ CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
 	RSV1(ec_ioc_config_why))
 CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
+CMD(EC_IOC_CONFIG_GROUP, ec_ioc_config_group, 0, SHOW_CONFIG(ec_ioc_config_group),
+	RSV1(ec_ioc_config_group))
 CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies),
 	OUT(ec_ioc_emergencies, EC_EMERGENCIES * sizeof(struct ec_emergency)))
 CMD(EC_IOC_EVENTS, ec_ioc_events, 0, FLAGS(EC_EVENTS_FLAG_NEW))
@@ -76,6 +78,8 @@ CMD(EC_IOC_RESERVE, ec_ioc_reserve, F_WRITE)
 CMD(EC_IOC_RELEASE, ec_ioc_release, F_WRITE)
 CMD(EC_IOC_CREATE_DOMAIN, ec_ioc_create_domain, F_WRITE, IDLE)
 CMD(EC_IOC_SLAVE_CONFIG, ec_ioc_slave_config, F_WRITE)
+CMD(EC_IOC_GROUP, ec_ioc_group, F_WRITE, IDLE, RSV2(ec_ioc_group), FLAGS(EC_GROUP_FLAG_MANDATORY))
+CMD(EC_IOC_GROUP_CONFIG, ec_ioc_group_config, F_WRITE, RSV1(ec_ioc_group_config))
 CMD(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE, CONFIG(ec_ioc_sc_sync), RSV1(ec_ioc_sc_sync))
 CMD(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE, CONFIG(ec_ioc_sc_watchdog))
 CMD(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE, CONFIG(ec_ioc_sc_pdo))

@@ -3,6 +3,7 @@
 #include "../config/config.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
+#include "../config/group.h"
 #include "ioctl.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
@@ -39,6 +40,7 @@ int ec_ioc_config(struct ec_call *call)
 	i->sdo_count = c->n_startup[EC_STARTUP_SDO];
 	i->state = ec_config_status(c);
 	i->flag_count = c->n_flags;
+	i->group = c->group ? c->group->index + 1 : 0;
 	return 0;
 }
 

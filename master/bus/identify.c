@@ -42,7 +42,7 @@ static bool asks_by_al(const struct ec_slave *s)
 	return s->general.flags & EC_SII_FLAG_ID_AL && READ_ONCE(s->al_status) == EC_AL_PREOP;
 }
 
-static void add(struct identify *id, struct ec_slave *s)
+static void identify_add(struct identify *id, struct ec_slave *s)
 {
 	struct asked *a = &id->list[id->n];
 
@@ -54,7 +54,7 @@ static void add(struct identify *id, struct ec_slave *s)
 }
 
 /* AL control of those that have to be asked; @bits: EC_AL_ID, or 0 to end the request. */
-static void request(struct identify *id, u16 bits)
+static void identify_request(struct identify *id, u16 bits)
 {
 	unsigned int i, n = 0;
 
@@ -70,7 +70,7 @@ static void request(struct identify *id, u16 bits)
 }
 
 /* The reply of a device: whether it is complete, with its identification */
-static bool take(const struct asked *a, const struct ec_dg *dg, u16 *identification)
+static bool identify_take(const struct asked *a, const struct ec_dg *dg, u16 *identification)
 {
 	if (dg->err || dg->wkc != 1)
 		return false;
@@ -103,7 +103,7 @@ static unsigned int read_replies(struct identify *id)
 
 		if (READ_ONCE(a->slave->identification))
 			continue;
-		if (take(a, &id->dg[n++], &identification))
+		if (identify_take(a, &id->dg[n++], &identification))
 			WRITE_ONCE(a->slave->identification, identification);
 		else
 			left += a->by_al;
@@ -137,13 +137,13 @@ void ec_identify_all(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 	if (id.list && id.dg) {
 		for (i = 0; i < n; i++)
 			if (is_asked(slaves[i]))
-				add(&id, slaves[i]);
+				identify_add(&id, slaves[i]);
 		until = ktime_get_ns() + WAIT_NS;
-		request(&id, EC_AL_ID);
+		identify_request(&id, EC_AL_ID);
 		while (id.n && read_replies(&id) && ktime_get_ns() < until &&
 		       !READ_ONCE(bus->base->stopping))
 			usleep_range(POLL_US, 2 * POLL_US);
-		request(&id, 0);
+		identify_request(&id, 0);
 	}
 	kvfree(id.list);
 	kvfree(id.dg);

@@ -24,7 +24,7 @@ struct ec_config *ec_config_find(const struct ec_wanted *w, u16 alias, u16 posit
 {
 	lockdep_assert_held(w->lock);
 	ec_for_each_config(c, w) {
-		if (c->alias == alias && c->position == position)
+		if (!c->group && c->alias == alias && c->position == position)
 			return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
 	}
 	return NULL;
@@ -306,7 +306,7 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	strscpy(flag->key, key, sizeof(flag->key));
 	/* the EEPROM is the slave's from PREOP on anyway */
 	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
-	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, "AssignToPdi"))
+	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, EC_FLAG_SERIAL) && strcmp(key, "AssignToPdi"))
 		ec_info(c->wanted, "slave %s: flag %s has no effect\n", c->name, key);
 	flag->value = value;
 	list_add_tail(&flag->list, &c->flags);

@@ -67,6 +67,9 @@ struct ec_config_fmmu {
 /* not 0: to OP although the slave has other process data than those registered */
 #define EC_FLAG_ANY_PDOS	"AcceptOtherPdos"
 
+/* the serial number that a member of a hot connect group has to have; 0: any */
+#define EC_FLAG_SERIAL		"ExpectedSerial"
+
 /* the revision number that the slave should have; another one is reported */
 #define EC_FLAG_REVISION	"ExpectedRevision"
 
@@ -171,6 +174,8 @@ struct ec_setup {
 	bool mapped;
 	/** @made: SyncManagers whose PDOs the startup SDOs have made, and were read, a bit each */
 	u16 made;
+	/** @group: index + 1 of the hot connect group that it belongs to, 0: none; topo held */
+	u8 group;
 	/** @mailbox: claim of the worker, for the way through INIT */
 	struct ec_claim mailbox;
 	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */
@@ -217,19 +222,27 @@ struct ec_wanted {
 	struct ec_domain *domains[EC_MAX_DOMAINS];
 	/** @n_domains: entries in @domains */
 	unsigned int n_domains;
+	/** @groups: hot connect groups */
+	struct ec_group *groups[EC_MAX_GROUPS];
+	/** @n_groups: entries in @groups */
+	unsigned int n_groups;
 	/** @active: activated: the configurations do not change any more, workers use them */
 	bool active;
 	/** @before: the same of the running session that is to be taken over, NULL: none */
 	const struct ec_wanted *before;
 };
 
-/* each configuration, domain of @w: declares @c, @d */
+/* each configuration, domain, group of @w: declares @c, @d, @g */
 #define ec_for_each_config(c, w) \
 	for (struct ec_config **c##_at = (w)->configs, *c; \
 	     c##_at < (w)->configs + (w)->n_configs && (c = *c##_at, true); c##_at++)
 #define ec_for_each_domain(d, w) \
 	for (struct ec_domain *const *d##_at = (w)->domains, *d; \
 	     d##_at < (w)->domains + (w)->n_domains && (d = *d##_at, true); d##_at++)
+
+#define ec_for_each_group(g, w) \
+	for (struct ec_group *const *g##_at = (w)->groups, *g; \
+	     g##_at < (w)->groups + (w)->n_groups && (g = *g##_at, true); g##_at++)
 
 /* For what reads configurations: the lock of the session is held, or they are shown. */
 static inline void ec_wanted_assert_stays(const struct ec_wanted *w)

@@ -36,11 +36,14 @@ static int slave_defaults(struct ec_config *c, const struct ec_slave *slave)
 static const struct ec_config *predecessor(const struct ec_config *c)
 {
 	const struct ec_wanted *w = c->wanted->before;
-	const struct ec_config *p;
 
 	lockdep_assert_held(c->wanted->lock);
-	p = w ? ec_config_find(w, c->alias, c->position, c->vendor, c->product) : NULL;
-	return IS_ERR(p) ? NULL : p;
+	if (!w)
+		return NULL;
+	ec_for_each_config(x, w)
+		if (!strcmp(x->name, c->name))
+			return x->vendor == c->vendor && x->product == c->product ? x : NULL;
+	return NULL;
 }
 
 /* Start as that configuration did, whether the slave was connected then, or is now. */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
 #include "config.h"
+#include "group.h"
 #include "../link/links.h"
 #include "ethercat_map.h"
 #include "../bus/find.h"
@@ -17,12 +18,33 @@
  * @place: result, also when the ring ends before it
  *
  * Context: Topo held, or after ec_show_begin().
- * Return: false: no slave has its alias.
+ * Return: false: no slave has its alias, or its place is that of its hot connect group.
  */
 bool ec_config_place(const struct ec_config *c, unsigned int *place)
 {
+	unsigned int at;
+
 	ec_bus_assert_stays(c->wanted->bus);
+	if (c->group)
+		return false;
+	if (c->wanted->n_groups) {
+		*place = c->place;
+		return !c->alias || ec_find_place(c->wanted->bus, c->alias, c->alias_at, 0, &at);
+	}
 	return ec_find_place(c->wanted->bus, c->alias, c->alias_at, c->position, place);
+}
+
+/* Slaves of hot connect groups do not count: they come and go. */
+static u32 place_between_groups(const struct ec_config *c)
+{
+	const struct ec_bus *bus = c->wanted->bus;
+	unsigned int at = c->alias ? c->alias_at : 0, left = c->position;
+
+	ec_bus_assert_stays(bus);
+	for (; at < bus->n_slaves; at++)
+		if (!ec_setup_of(bus->slaves[at])->group && !left--)
+			return at;
+	return bus->n_slaves + left;
 }
 
 /**
@@ -41,11 +63,13 @@ void ec_config_locate(struct ec_config *c)
 	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
-	if (!c->alias && !c->lost.text[0])
+	if (!c->alias && !c->lost.text[0] && !c->wanted->n_groups)
 		return;
 	down_read(&bus->topo);
 	if (c->alias)
 		c->alias_at = ec_find_alias(bus, c->alias);
+	if (c->wanted->n_groups)
+		c->place = place_between_groups(c);
 	for (i = 0; c->lost.text[0] && i < bus->n_slaves &&
 	     bus->slaves[i]->station != c->lost.at.station; i++)
 		;
@@ -89,6 +113,18 @@ static size_t no_link(struct ec_links *l, char *buf, size_t size, struct ec_caus
 			 l->base->index);
 }
 
+/* The whole group is there, or none of its slaves is used. */
+static size_t group_absent(const struct ec_group *g, char *buf, size_t size,
+			   struct ec_cause *cause)
+{
+	*cause = *EC_CAUSE(UNATTACHED, .position = g->position);
+	if (g->cause == EC_CAUSE_NONE)
+		return scnprintf(buf, size, "group %s is not attached yet", g->name);
+	*cause = (struct ec_cause){ .kind = g->cause, .position = g->position };
+	return scnprintf(buf, size, "%sgroup %s: %s", g->mandatory ? "" : "optional ", g->name,
+			 g->why);
+}
+
 /* No slave is attached: which one is at this position instead? @topo is held, or it is shown. */
 static size_t absent(const struct ec_config *c, char *buf, size_t size, struct ec_cause *cause)
 {
@@ -102,6 +138,8 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 	ec_bus_assert_stays(c->wanted->bus);
 	if (len)
 		return len;
+	if (c->group)
+		return group_absent(c->group, buf, size, cause);
 	*cause = lost_at(c);
 	if (c->wanted->active && c->lost.text[0])
 		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
@@ -297,7 +335,7 @@ void ec_config_log_differences(const struct ec_wanted *w)
 
 	lockdep_assert_held(w->lock);
 	ec_for_each_config(c, w) {
-		if (c->slave && !other_revision(c, c->slave))
+		if (c->slave ? !other_revision(c, c->slave) : !!c->group)
 			continue;
 		if (n < EVENTS_MAX)
 			log_difference(c, n < LOG_MAX);

@@ -8,7 +8,8 @@
 
 /**
  * struct ec_cyc_domain - received data of a domain
- * @expected: working counter if every slave processes its datagrams
+ * @expected: working counter if every slave processes its datagrams that does so now
+ * @spare: as in its datagrams
  * @send: number of the newest send of which data were received
  * @wkc: sum of the working counters of that send
  * @partial: one of these working counters is not the expected one, even if their sum is
@@ -25,6 +26,7 @@
 struct ec_cyc_domain {
 	u8 *image;
 	u32 expected;
+	u32 spare;
 	u32 send;
 	u32 wkc;
 	u32 age;
@@ -37,5 +39,10 @@ struct ec_cyc_domain {
 	u32 noted_state;
 	struct ec_event_rate rate;
 };
+
+static inline bool ec_cyc_domain_is_complete(const struct ec_cyc_domain *d, u32 wkc)
+{
+	return wkc - READ_ONCE(d->expected) <= READ_ONCE(d->spare);
+}
 
 #endif

@@ -5,6 +5,7 @@
 #include "../base/limits.h"
 #include "../config/config.h"
 #include "../config/domain.h"
+#include "../config/group.h"
 #include "layout.h"
 #include "logical.h"
 
@@ -18,21 +19,28 @@ struct adding {
 	struct ec_logical l;
 };
 
+/* Has one of the FMMUs before number @i in the stretch the same slave and direction? */
+static bool is_counted(const struct adding *o, const struct ec_stretch *st, unsigned int i)
+{
+	const struct ec_domain_fmmu *r = o->l.refs;
+	unsigned int j;
+
+	for (j = st->first; j < i; j++)
+		if (r[j].config == r[i].config && r[j].fmmu->dir == r[i].fmmu->dir &&
+		    r[j].fmmu->size)
+			return true;
+	return false;
+}
+
 /* Slaves with data of @dir in the stretch; each counts once. */
 static u16 layout_count_slaves(const struct adding *o, const struct ec_stretch *st, u8 dir)
 {
 	const struct ec_domain_fmmu *r = o->l.refs;
-	unsigned int i, j;
+	unsigned int i;
 	u16 n = 0;
 
-	for (i = st->first; i < st->last; i++) {
-		if (r[i].fmmu->dir != dir || !r[i].fmmu->size)
-			continue;
-		for (j = st->first; j < i; j++)
-			if (r[j].config == r[i].config && r[j].fmmu->dir == dir && r[j].fmmu->size)
-				break;
-		n += j == i;
-	}
+	for (i = st->first; i < st->last; i++)
+		n += r[i].fmmu->dir == dir && r[i].fmmu->size && !is_counted(o, st, i);
 	return n;
 }
 
@@ -51,7 +59,7 @@ static struct ec_cyc_dgram *add_dgram(struct adding *o, const struct ec_stretch 
 	g += l->n_dgrams++;
 	*g = (struct ec_cyc_dgram){
 		.domain = o->d->index, .cmd = cmd, .logical = o->d->offset + st->start,
-		.expected = expected, .first_copy = l->n_areas,
+		.expected = expected, .full = expected, .first_copy = l->n_areas,
 	};
 	return g;
 }
@@ -209,6 +217,30 @@ static int layout_fill_dgram(struct adding *o, const struct ec_stretch *st, u8 c
 	return ret;
 }
 
+/* What each slave of an optional group adds to the counter of the datagram added last. */
+static int add_shares(struct adding *o, const struct ec_stretch *st, u16 out, u16 in)
+{
+	struct ec_layout *l = o->to;
+	unsigned int i;
+
+	for (i = st->first; i < st->last; i++) {
+		const struct ec_config *c = o->l.refs[i].config;
+		const struct ec_stretch alone = { .first = i, .last = i + 1 };
+		u16 wkc = out * layout_count_slaves(o, &alone, EC_CFG_DIR_OUTPUT) +
+			  in * layout_count_slaves(o, &alone, EC_CFG_DIR_INPUT);
+		struct ec_cyc_share *p;
+
+		if (!ec_group_is_optional(c->group) || !wkc || is_counted(o, st, i))
+			continue;
+		p = ec_grow(l->shares, l->n_shares, sizeof(*p));
+		if (!p)
+			return -ENOMEM;
+		l->shares = p;
+		p[l->n_shares++] = (struct ec_cyc_share){ c, l->n_dgrams - 1, wkc };
+	}
+	return 0;
+}
+
 static int add_stretch(struct adding *o, const struct ec_stretch *st)
 {
 	u16 out = layout_count_slaves(o, st, EC_CFG_DIR_OUTPUT);
@@ -220,13 +252,14 @@ static int add_stretch(struct adding *o, const struct ec_stretch *st)
 		for (i = st->first; i < st->last; i++)
 			o->l.refs[i].config->lrw = true;
 		o->d->expected += 2 * out + in;
-		return layout_fill_dgram(o, st, EC_CMD_LRW, 2 * out + in);
+		return layout_fill_dgram(o, st, EC_CMD_LRW, 2 * out + in) ?:
+		       add_shares(o, st, 2, 1);
 	}
 	o->d->expected += out + in;
 	if (out)
-		ret = layout_fill_dgram(o, st, EC_CMD_LWR, out);
+		ret = layout_fill_dgram(o, st, EC_CMD_LWR, out) ?: add_shares(o, st, 1, 0);
 	if (in && !ret)
-		ret = layout_fill_dgram(o, st, EC_CMD_LRD, in);
+		ret = layout_fill_dgram(o, st, EC_CMD_LRD, in) ?: add_shares(o, st, 0, 1);
 	return ret;
 }
 
@@ -338,6 +371,7 @@ int ec_layout_make(struct ec_layout *l, struct ec_wanted *w, unsigned int max_da
 void ec_layout_free(struct ec_layout *l)
 {
 	kvfree(l->dgrams);
+	kvfree(l->shares);
 	kvfree(l->areas);
 	kvfree(l->cuts);
 	kvfree(l->stage);

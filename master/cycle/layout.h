@@ -6,6 +6,7 @@
 #include <linux/types.h>
 #include "../wire/frame.h"
 
+struct ec_config;
 struct ec_wanted;
 
 /**
@@ -20,7 +21,10 @@ struct ec_wanted;
  * @before: the same without what incomplete replies of that receive have written
  * @logical: logical address
  * @len: bytes
- * @expected: working counter if every slave processes it
+ * @expected: working counter if every slave processes it that does so now: slaves of optional
+ *	groups count from OP on; written by counts.c while the cycle runs
+ * @spare: so much more is complete as well: of slaves of such groups that are not yet in OP
+ * @full: working counter with all slaves
  * @first_copy: first area that is copied into it, in struct ec_layout.areas
  * @n_copies: how many
  * @first_input: first of its inputs there
@@ -39,6 +43,8 @@ struct ec_cyc_dgram {
 	u32 logical;
 	u16 len;
 	u16 expected;
+	u16 spare;
+	u16 full;
 	u32 first_copy;
 	u16 n_copies;
 	u16 n_plain;
@@ -46,6 +52,12 @@ struct ec_cyc_dgram {
 	u16 n_inputs;
 	u32 first_input;
 };
+
+/* Did every slave process it that does so now? */
+static inline bool ec_cyc_is_complete(const struct ec_cyc_dgram *d, u16 wkc)
+{
+	return (u16)(wkc - READ_ONCE(d->expected)) <= READ_ONCE(d->spare);
+}
 
 /* It has inputs only, and their last values are in the image. */
 static inline bool ec_cyc_from_image(const struct ec_cyc_dgram *d)
@@ -91,6 +103,18 @@ struct ec_cyc_cut {
 };
 
 /**
+ * struct ec_cyc_share - what a slave of an optional group adds to a working counter
+ * @config: its configuration
+ * @dgram: number of the datagram
+ * @wkc: what it adds
+ */
+struct ec_cyc_share {
+	const struct ec_config *config;
+	u16 dgram;
+	u16 wkc;
+};
+
+/**
  * struct ec_cyc_wire - frames, and how long they occupy the wire
  * @frames: how many
  * @ns: at 100 Mbit/s, preamble, padding, FCS and gap included
@@ -100,7 +124,7 @@ struct ec_cyc_wire {
 	u32 ns;
 };
 
-/** struct ec_layout - datagrams of a cycle; immutable while it is active */
+/** struct ec_layout - datagrams of a cycle; immutable while it is active but for the counts */
 struct ec_layout {
 	/** @dgrams: datagrams in the order of their domains */
 	struct ec_cyc_dgram *dgrams;
@@ -114,6 +138,10 @@ struct ec_layout {
 	struct ec_cyc_cut *cuts;
 	/** @n_cuts: entries in @cuts */
 	unsigned int n_cuts;
+	/** @shares: of slaves that may be absent */
+	struct ec_cyc_share *shares;
+	/** @n_shares: entries in @shares */
+	unsigned int n_shares;
 	/** @stage: an image in which their parts are collected, or NULL; of the cycle owner */
 	u8 *stage;
 	/** @plain: frames of a cycle that sends all domains */

@@ -87,6 +87,7 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 {
 	struct ec_cyc_domain *dom = &c->domains[d->domain];
 	u16 wkc = get_unaligned_le16(data + d->len);
+	bool complete = ec_cyc_is_complete(d, wkc);
 
 	/* by their ages: the numbers may be any distance apart after a pause */
 	if (c->send - f->send > c->send - dom->send)
@@ -98,10 +99,10 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	}
 	dom->wkc += wkc;
 	c->back |= BIT_ULL(d->domain);
-	if (unlikely(wkc != d->expected))
+	if (unlikely(!complete))
 		dom->partial = true;
 	if (wkc)
-		take_inputs(c, d, f, data, wkc == d->expected);
+		take_inputs(c, d, f, data, complete);
 }
 
 /* Take the data of a reply. Return: ECAT events of the slaves in its IRQ fields. */
@@ -181,7 +182,7 @@ static void note_wkc(struct ec_cycle *c, struct ec_cyc_domain *d, unsigned int i
 static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 		      const struct ec_status_domain *st, u32 wkc)
 {
-	return wkc == d->expected && d->send == c->send && !d->partial &&
+	return ec_cyc_domain_is_complete(d, wkc) && d->send == c->send && !d->partial &&
 	       READ_ONCE(st->working_counter) == wkc &&
 	       READ_ONCE(st->wc_state) == EC_STATUS_WC_COMPLETE && !d->age && !d->rate.more;
 }
@@ -201,7 +202,7 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		if (likely(is_steady(c, d, st, wkc)))
 			continue;
 		state = !wkc ? EC_STATUS_WC_ZERO :
-			wkc == d->expected && !d->partial ? EC_STATUS_WC_COMPLETE :
+			ec_cyc_domain_is_complete(d, wkc) && !d->partial ? EC_STATUS_WC_COMPLETE :
 							    EC_STATUS_WC_INCOMPLETE;
 		WRITE_ONCE(st->working_counter, wkc);
 		WRITE_ONCE(st->wc_state, state);

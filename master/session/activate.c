@@ -14,6 +14,7 @@
 #include "request.h"
 #include "request_layout.h"
 #include "session_attach.h"
+#include "session_groups.h"
 #include "session_status.h"
 
 static const struct ec_cycle_ops cycle_ops = {
@@ -156,6 +157,7 @@ int ec_session_activate(struct ec_session *s)
 	activate_slaves(s);
 	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
+	ec_session_log_groups(s);
 	ec_session_begin_active(s);
 	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
 		s->wanted.n_domains, bytes, s->cycle.layout.n_dgrams);

@@ -2,6 +2,7 @@
 /* The end of what an application has configured. */
 #include <linux/slab.h>
 #include "../bus/slave.h"
+#include "../config/group.h"
 #include "clear.h"
 #include "ref_clock.h"
 #include "session_attach.h"
@@ -24,6 +25,8 @@ void ec_session_clear(struct ec_session *s)
 		ec_session_detach(c);
 		ec_config_free(c);
 	}
+	ec_for_each_group(g, &s->wanted)
+		ec_group_free(g);
 	ec_for_each_domain(d, &s->wanted)
 		ec_domain_free(d);
 	kvfree(s->wanted.configs);

@@ -5,6 +5,7 @@
 #include "../mailbox/emerg.h"
 #include "request.h"
 #include "session_attach.h"
+#include "session_groups.h"
 
 /**
  * ec_session_owns() - is the slave of a configuration its own?
@@ -120,9 +121,18 @@ static void note_loss(struct ec_config *c)
 	c->lost.list = READ_ONCE(c->wanted->bus->lists);
 }
 
-/* Give @slave, with the caller's reference, to @c; false: another configuration has it. */
-static bool give(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
+/**
+ * ec_session_give() - connect a configuration with a slave
+ * @s: session
+ * @c: its configuration, without slave
+ * @slave: slave with a reference, which the configuration takes over
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: false: another configuration has it.
+ */
+bool ec_session_give(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
 {
+	lockdep_assert_held(s->wanted.lock);
 	/* interrupt the worker: the monitor must not wait as long as the worker does */
 	ec_stop_interrupt(&slave->stop, true);
 	mutex_lock(&slave->lock);
@@ -147,6 +157,25 @@ static bool give(struct ec_session *s, struct ec_config *c, struct ec_slave *sla
 	return true;
 }
 
+/* The slave at the place of @c, with a reference, if it is what @c expects */
+static struct ec_slave *find_at_place(const struct ec_session *s, const struct ec_config *c)
+{
+	struct ec_bus *bus = s->sessions->bus;
+	struct ec_slave *x = NULL;
+	unsigned int place;
+
+	down_read(&bus->topo);
+	if (ec_config_place(c, &place) && place < bus->n_slaves)
+		x = bus->slaves[place];
+	if (x && (x->info.vendor != c->vendor || x->info.product != c->product ||
+		  READ_ONCE(x->stop.gone)))
+		x = NULL;
+	if (x)
+		ec_slave_ref(x);
+	up_read(&bus->topo);
+	return x;
+}
+
 /**
  * ec_session_attach_one() - connect a configuration with the slave at its place
  * @s: session, not active
@@ -159,8 +188,10 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	struct ec_slave *slave;
 
 	lockdep_assert_held(s->wanted.lock);
+	if (c->group)
+		return;
 	ec_config_locate(c);
-	slave = ec_session_find(s->sessions, c->alias, c->position, c->vendor, c->product);
+	slave = find_at_place(s, c);
 	if (slave == c->slave) {
 		ec_slave_unref(slave);
 		return;
@@ -169,7 +200,7 @@ void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
 	if (slave && s == s->sessions->candidate)	/* only to read from it */
 		c->slave = slave;
 	else if (slave)
-		give(s, c, slave);
+		ec_session_give(s, c, slave);
 }
 
 /* The device that @c had: it has kept its station address, or has a serial number. */
@@ -193,8 +224,7 @@ static struct ec_slave *find_same(const struct ec_session *s, const struct ec_co
 /* The slave at the place of @c, if it was not on the bus when @c lost its own. */
 static struct ec_slave *find_new(const struct ec_session *s, const struct ec_config *c)
 {
-	struct ec_slave *x = ec_session_find(s->sessions, c->alias, c->position, c->vendor,
-					     c->product);
+	struct ec_slave *x = find_at_place(s, c);
 
 	if (!x || x->found >= c->lost.list || ec_config_of(x))
 		return x;
@@ -211,6 +241,22 @@ static bool has_alike(const struct ec_session *s, const struct ec_config *c)
 	return false;
 }
 
+/* Slaves of hot connect groups are found by the group. */
+static bool may_take(const struct ec_config *c)
+{
+	return !c->slave && !c->group;
+}
+
+static void detach_lost(struct ec_session *s)
+{
+	ec_for_each_config(c, &s->wanted) {
+		if (!c->slave || !READ_ONCE(c->slave->stop.gone))
+			continue;
+		note_loss(c);
+		ec_session_detach(c);
+	}
+}
+
 /*
  * An active session keeps a slave while it is connected: when another one upstream is disconnected
  * its position changes, but it must not get outputs of another slave. A lost slave is attached
@@ -223,22 +269,15 @@ static void reattach(struct ec_session *s)
 	unsigned int alike = 0;
 
 	ec_for_each_config(c, &s->wanted) {
-		if (c->slave && READ_ONCE(c->slave->stop.gone)) {
-			note_loss(c);
-			ec_session_detach(c);
-		}
-		ec_config_locate(c);
-	}
-	ec_for_each_config(c, &s->wanted) {
-		slave = !c->slave && c->lost.text[0] ? find_same(s, c) : NULL;
+		slave = may_take(c) && c->lost.text[0] ? find_same(s, c) : NULL;
 		if (slave)
-			give(s, c, slave);
+			ec_session_give(s, c, slave);
 	}
 	ec_for_each_config(c, &s->wanted)
-		c->lost.waits = !c->slave && c->lost.text[0];
+		c->lost.waits = may_take(c) && c->lost.text[0];
 	ec_for_each_config(c, &s->wanted) {
-		slave = c->slave ? NULL : find_new(s, c);
-		if (slave && give(s, c, slave) && c->lost.waits)
+		slave = may_take(c) ? find_new(s, c) : NULL;
+		if (slave && ec_session_give(s, c, slave) && c->lost.waits)
 			alike += has_alike(s, c);
 	}
 	if (alike)
@@ -307,6 +346,39 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 	return ERR_PTR(ret);
 }
 
+static void locate(struct ec_session *s)
+{
+	ec_session_mark(s);
+	ec_for_each_config(c, &s->wanted)
+		ec_config_locate(c);
+}
+
+/**
+ * ec_session_attach_all() - attach the slaves that are on the bus now
+ * @s: session
+ *
+ * Slaves of groups do not count for the places of others, and groups may be known by these.
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_attach_all(struct ec_session *s)
+{
+	unsigned int rounds = s->wanted.n_groups ? 2 : 1;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (s->wanted.active)
+		detach_lost(s);
+	while (rounds--) {
+		locate(s);
+		if (s->wanted.active)
+			reattach(s);
+		else
+			ec_for_each_config(c, &s->wanted)
+				ec_session_attach_one(s, c);
+	}
+	ec_session_attach_groups(s);
+}
+
 /**
  * ec_session_attach() - after a scan: attach slaves to configurations again
  * @ss: sessions of a master
@@ -316,14 +388,10 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 void ec_session_attach(struct ec_sessions *ss)
 {
 	ec_sessions_lock(ss);
-	if (ss->session && ss->session->wanted.active)
-		reattach(ss->session);
-	else if (ss->session)
-		ec_for_each_config(c, &ss->session->wanted)
-			ec_session_attach_one(ss->session, c);
+	if (ss->session)
+		ec_session_attach_all(ss->session);
 	if (ss->candidate)
-		ec_for_each_config(c, &ss->candidate->wanted)
-			ec_config_locate(c);
+		locate(ss->candidate);
 	ec_sessions_unlock(ss);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The state of the bus for an active session, and log messages about its application. */
 #include "../config/why.h"
+#include "../cycle/counts.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
@@ -136,6 +137,7 @@ static void status_configs(struct ec_session *s)
 	s->configs_ns = ktime_get_ns();
 	ec_for_each_config(c, &s->wanted)
 		WRITE_ONCE(st->configs[c->index], ec_config_status(c));
+	ec_counts_update(&s->cycle);
 }
 
 /**

@@ -4,6 +4,7 @@
  * the same: all that is sent to a slave, and all that determines places in the mapped memory. The
  * two are compared, not hashes of them, so that the first difference can be reported.
  */
+#include "../config/group.h"
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
 #include "clear.h"
@@ -121,7 +122,7 @@ static bool flags_differ(const struct ec_config *a, const struct ec_config *b,
 static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 			   const struct text *t)
 {
-	if (a->alias != b->alias || a->position != b->position)
+	if (strcmp(a->name, b->name))
 		return differs(t, "slave configuration %u is %s, not %s", a->index,
 			       a->name, b->name);
 	return NUMBER(vendor, "slave %s has vendor id 0x%08x, not 0x%08x", a->name) ||
@@ -173,6 +174,11 @@ static bool wanted_differs(const struct ec_wanted *a, const struct ec_wanted *b,
 	for (i = 0; i < a->n_configs; i++)
 		if (config_differs(a->configs[i], b->configs[i], t))
 			return true;
+	if (NUMBER(n_groups, "it has %u groups, not %u"))
+		return true;
+	for (i = 0; i < a->n_groups; i++)
+		if (ec_group_differs(a->groups[i], b->groups[i]))
+			return differs(t, "group %s", a->groups[i]->name);
 	if (NUMBER(n_domains, "it has %u domains, not %u"))
 		return true;
 	for (i = 0; i < a->n_domains; i++)

@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Where a hot connect group is on the bus. The head is what has its alias or identification, or
+ * what is at its port; the members are the slaves from the head on, in the order of the ring, but
+ * for those of a group that is connected behind one of them.
+ */
+#include "../bus/graph.h"
+#include "../bus/slave.h"
+#include "config.h"
+#include "group.h"
+
+static bool is_at(const struct ec_group *g, const struct ec_slave *s)
+{
+	return g->at && g->at->slave && g->at->slave->at[g->port] == s;
+}
+
+/* Is @s a head of @g, whether it may be used or not? */
+static bool is_head(const struct ec_group *g, const struct ec_slave *s)
+{
+	switch (g->by) {
+	case EC_GROUP_BY_ALIAS:
+		return s->alias == g->value;
+	case EC_GROUP_BY_ID:
+		return s->identification == g->value;
+	default:
+		return is_at(g, s);
+	}
+}
+
+/* The group of which @s is a head. What a slave tells of itself counts more than its port. */
+static const struct ec_group *headed_by(const struct ec_wanted *w, const struct ec_slave *s)
+{
+	const struct ec_group *at_port = NULL;
+
+	ec_for_each_group(g, w) {
+		if (!is_head(g, s))
+			continue;
+		if (g->by != EC_GROUP_BY_PORT)
+			return g;
+		at_port = g;
+	}
+	return at_port;
+}
+
+/**
+ * ec_groups_mark() - note which slaves belong to hot connect groups
+ * @w: what an application configures
+ *
+ * A slave belongs to the group of the nearest head towards the main device. These slaves do not
+ * count for the ring positions of other configurations.
+ *
+ * Context: Process, lock of the session and topo held.
+ */
+void ec_groups_mark(struct ec_wanted *w)
+{
+	const struct ec_group *g;
+
+	lockdep_assert_held(w->lock);
+	lockdep_assert_held(&w->bus->topo);
+	if (!w->n_groups)
+		return;
+	/* a slave is behind its parent in the order of the ring */
+	ec_for_each_slave(s, w->bus) {
+		const struct ec_slave *up = ec_graph_parent(s);
+
+		g = headed_by(w, s);
+		ec_setup_of(s)->group = g ? g->index + 1 : up ? ec_setup_of(up)->group : 0;
+	}
+}
+
+static bool is_member(const struct ec_group *g, const struct ec_slave *s)
+{
+	return ec_setup_of(s)->group == g->index + 1;
+}
+
+static bool is_behind(const struct ec_slave *s, const struct ec_slave *head)
+{
+	while (s && s != head)
+		s = ec_graph_parent(s);
+	return s;
+}
+
+/* The group cannot be used: @pos is the slave to look at. Always false. */
+static __printf(3, 4) bool no(struct ec_group *g, u32 pos, const char *fmt, ...)
+{
+	va_list args;
+
+	va_start(args, fmt);
+	vscnprintf(g->why, sizeof(g->why), fmt, args);
+	va_end(args);
+	g->position = pos;
+	g->cause = pos == EC_UAPI_NONE16 ? EC_CAUSE_NO_GROUP : EC_CAUSE_GROUP;
+	return false;
+}
+
+static bool find_none(struct ec_group *g)
+{
+	if (g->by == EC_GROUP_BY_ALIAS)
+		return no(g, EC_UAPI_NONE16, "no slave has alias %u", g->value);
+	if (g->by == EC_GROUP_BY_ID)
+		return no(g, EC_UAPI_NONE16, "no slave has identification %u", g->value);
+	if (!g->at->slave)
+		return no(g, EC_UAPI_NONE16, "slave %s is absent", g->at->name);
+	return no(g, EC_UAPI_NONE16, "no slave at port %u of slave %u", g->port,
+		  g->at->slave->position);
+}
+
+/* The head: of two that are alike none, but for one that is in use. */
+static struct ec_slave *find_head(struct ec_group *g)
+{
+	const struct ec_slave *used = g->n_members ? g->members[0]->slave : NULL;
+	struct ec_slave *head = NULL, *second = NULL;
+
+	ec_for_each_slave(s, g->wanted->bus) {
+		if (headed_by(g->wanted, s) != g)
+			continue;
+		if (s == used)
+			return s;
+		second = second ?: head ? s : NULL;
+		head = head ?: s;
+	}
+	if (!head) {
+		find_none(g);
+		return NULL;
+	}
+	if (!second)
+		return head;
+	no(g, second->position, "slaves %u and %u have the same %s %u: change one of them",
+	   head->position, second->position,
+	   g->by == EC_GROUP_BY_ALIAS ? "alias" : "identification", g->value);
+	return NULL;
+}
+
+static bool check_place(struct ec_group *g, const struct ec_slave *head)
+{
+	if (g->at && !g->at->slave)
+		return no(g, head->position, "slave %s is absent, at whose port %u it has to be",
+			  g->at->name, g->port);
+	if (g->at && !is_at(g, head))
+		return no(g, head->position, "slave %u is not at port %u of slave %u: connect it there",
+			  head->position, g->port, g->at->slave->position);
+	if (head->upstream)
+		return no(g, head->position,
+			  "slave %u is connected by its port %u: connect port 0 (IN) towards the main device",
+			  head->position, head->upstream);
+	return true;
+}
+
+static bool check_member(struct ec_group *g, const struct ec_config *c, struct ec_slave *s)
+{
+	u32 serial = ec_config_flag(c, EC_FLAG_SERIAL), pos = s->position;
+	const struct ec_config *has = ec_config_of(s);
+
+	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		return no(g, pos, "slave %u could not be read: see 'ethercat why'", pos);
+	if (s->info.vendor != c->vendor || s->info.product != c->product)
+		return no(g, pos, "slave %u is 0x%08x/0x%08x, member %u is 0x%08x/0x%08x", pos,
+			  s->info.vendor, s->info.product, c->position, c->vendor, c->product);
+	if (serial && serial != s->info.serial)
+		return no(g, pos, "slave %u has serial number 0x%08x, member %u has 0x%08x", pos,
+			  s->info.serial, c->position, serial);
+	if ((READ_ONCE(s->al_status) & EC_AL_STATE_MASK) == EC_AL_BOOT)
+		return no(g, pos, "slave %u is in BOOT: 'ethercat states -p %u PREOP' ends that",
+			  pos, pos);
+	if (has && has->wanted == g->wanted && has != c)
+		return no(g, pos, "slave %u has configuration %s", pos, has->name);
+	return true;
+}
+
+/**
+ * ec_group_find() - find the slaves of a hot connect group
+ * @g: group; @head, @position, @cause and @why are set
+ * @found: result, one for each member; no references
+ *
+ * All members are there, or none may be used.
+ *
+ * Context: Process, lock of the session and topo held, after ec_groups_mark().
+ * Return: whether they are there.
+ */
+bool ec_group_find(struct ec_group *g, struct ec_slave **found)
+{
+	struct ec_bus *bus = g->wanted->bus;
+	struct ec_slave *head;
+	unsigned int pos, k;
+
+	lockdep_assert_held(g->wanted->lock);
+	lockdep_assert_held(&bus->topo);
+	g->head = 0;
+	head = find_head(g);
+	if (!head || !check_place(g, head))
+		return false;
+	pos = head->position;
+	for (k = 0; k < g->n_members; k++, pos++) {
+		while (pos < bus->n_slaves && !is_member(g, bus->slaves[pos]))
+			pos++;
+		if (pos >= bus->n_slaves || !is_behind(bus->slaves[pos], head))
+			return no(g, head->position,
+				  "member %u (0x%08x/0x%08x) is not behind slave %u", k,
+				  g->members[k]->vendor, g->members[k]->product, head->position);
+		if (!check_member(g, g->members[k], bus->slaves[pos]))
+			return false;
+		found[k] = bus->slaves[pos];
+	}
+	g->head = head->device;
+	g->position = head->position;
+	g->cause = EC_CAUSE_NONE;
+	g->why[0] = '\0';
+	return true;
+}

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include <linux/slab.h>
+#include "../config/group.h"
+#include "session_attach.h"
+#include "session_groups.h"
+
+/**
+ * ec_session_mark() - note which slaves belong to hot connect groups
+ * @s: session
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_mark(struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	down_read(&s->sessions->bus->topo);
+	ec_groups_mark(&s->wanted);
+	up_read(&s->sessions->bus->topo);
+}
+
+/* Each change of an active session once */
+static void log_group(const struct ec_session *s, struct ec_group *g)
+{
+	if (!s->wanted.active || g->logged == g->cause)
+		return;
+	if (g->cause == EC_CAUSE_NONE)
+		ec_info(s->sessions, "group %s: connected, %u slave(s) from slave %u on\n", g->name,
+			g->n_members, g->position);
+	else if (g->cause == EC_CAUSE_NO_GROUP && !g->mandatory)
+		ec_info(s->sessions, "group %s: not connected: %s\n", g->name, g->why);
+	else if (g->cause == EC_CAUSE_NO_GROUP)
+		ec_warn(s->sessions, "mandatory group %s: not connected: %s\n", g->name, g->why);
+	else
+		ec_warn(s->sessions, "group %s: not started: %s\n", g->name, g->why);
+	g->logged = g->cause;
+}
+
+/**
+ * ec_session_log_groups() - report which groups are not on the bus
+ * @s: session that has just been activated
+ *
+ * Context: Process, session lock held.
+ */
+void ec_session_log_groups(struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	ec_for_each_group(g, &s->wanted)
+		log_group(s, g);
+}
+
+/* A running session keeps the slave that a member has; @slave: with a reference, or NULL. */
+static void settle(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
+{
+	if (c->slave == slave || (c->slave && s->wanted.active)) {
+		ec_slave_unref(slave);
+		return;
+	}
+	ec_session_detach(c);
+	if (slave && s == s->sessions->candidate)	/* only to read from it */
+		c->slave = slave;
+	else if (slave)
+		ec_session_give(s, c, slave);
+}
+
+static void attach_group(struct ec_session *s, struct ec_group *g)
+{
+	struct ec_slave **found = kvcalloc(g->n_members + 1, sizeof(*found), GFP_KERNEL);
+	unsigned int k;
+	bool whole;
+
+	/* nothing changes until the next scan */
+	if (!found)
+		return;
+	down_read(&s->sessions->bus->topo);
+	whole = ec_group_find(g, found);
+	for (k = 0; whole && k < g->n_members; k++)
+		ec_slave_ref(found[k]);
+	up_read(&s->sessions->bus->topo);
+	log_group(s, g);
+	for (k = 0; k < g->n_members; k++)
+		settle(s, g->members[k], whole ? found[k] : NULL);
+	kvfree(found);
+}
+
+/**
+ * ec_session_attach_groups() - connect the members of groups that are on the bus with their slaves
+ * @s: session, after ec_session_mark()
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_attach_groups(struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	ec_for_each_group(g, &s->wanted)
+		attach_group(s, g);
+}
+
+/**
+ * ec_session_find_member() - the slave that a member of a group is now
+ * @s: session
+ * @g: group
+ * @member: 0: the head; it need not have a configuration
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: slave with a reference, or NULL.
+ */
+struct ec_slave *ec_session_find_member(struct ec_session *s, const struct ec_group *g,
+					unsigned int member)
+{
+	struct ec_bus *bus = s->sessions->bus;
+	struct ec_slave *found = NULL;
+
+	lockdep_assert_held(s->wanted.lock);
+	down_read(&bus->topo);
+	ec_groups_mark(&s->wanted);
+	ec_for_each_slave(x, bus)
+		if (!found && ec_setup_of(x)->group == g->index + 1 && !member--)
+			found = ec_slave_ref(x);
+	up_read(&bus->topo);
+	return found;
+}
+
+/**
+ * ec_session_configure_member() - find or make the configuration of a member of a group
+ * @s: session; active: only to find it
+ * @g: group
+ * @member: 0: the head
+ * @vendor: expected vendor id
+ * @product: expected product code
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: configuration, or ERR_PTR as ec_group_config() or ec_config_begin().
+ */
+struct ec_config *ec_session_configure_member(struct ec_session *s, struct ec_group *g, u16 member,
+					      u32 vendor, u32 product)
+{
+	unsigned int n = g->n_members;
+	struct ec_config *c;
+	int ret;
+
+	lockdep_assert_held(s->wanted.lock);
+	c = ec_group_config(g, member, vendor, product);
+	if (IS_ERR(c) || g->n_members == n)
+		return c;
+	ec_session_attach_all(s);
+	ret = ec_config_begin(c);
+	if (!ret)
+		return c;
+	ec_session_detach(c);
+	ec_group_drop(c);
+	ec_config_drop(c);
+	return ERR_PTR(ret);
+}
