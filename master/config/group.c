@@ -15,7 +15,7 @@ static bool same(const struct ec_group *g, const struct ec_ioc_group *what)
 	       g->port == what->port && g->mandatory == (what->flags & EC_GROUP_FLAG_MANDATORY);
 }
 
-/* A group with the same sign could not be told from this one. */
+/* Is the head of this group known by the same? */
 static bool has_sign_of(const struct ec_group *g, const struct ec_ioc_group *what)
 {
 	u32 at = g->at ? g->at->index : EC_UAPI_NONE32;
@@ -97,7 +97,7 @@ struct ec_group *ec_group_create(struct ec_wanted *w, const struct ec_ioc_group 
 
 /**
  * ec_group_free() - free a group
- * @g: group whose members are gone
+ * @g: group whose members are freed
  *
  * Context: Process.
  */

@@ -27,7 +27,7 @@ static bool is_head(const struct ec_group *g, const struct ec_slave *s)
 	}
 }
 
-/* The group of which @s is a head. What a slave tells of itself counts more than its port. */
+/* The group of which @s is a head. Alias and identification count more than its port. */
 static const struct ec_group *headed_by(const struct ec_wanted *w, const struct ec_slave *s)
 {
 	const struct ec_group *at_port = NULL;
@@ -80,7 +80,7 @@ static bool is_behind(const struct ec_slave *s, const struct ec_slave *head)
 	return s;
 }
 
-/* The group cannot be used: @pos is the slave to look at. Always false. */
+/* The group cannot be used: because of the slave at @pos. Always false. */
 static __printf(3, 4) bool no(struct ec_group *g, u32 pos, const char *fmt, ...)
 {
 	va_list args;
@@ -172,10 +172,10 @@ static bool check_member(struct ec_group *g, const struct ec_config *c, struct e
  * @g: group; @head, @position, @cause and @why are set
  * @found: result, one for each member; no references
  *
- * All members are there, or none may be used.
+ * All members are on the bus, or none may be used.
  *
  * Context: Process, lock of the session and topo held, after ec_groups_mark().
- * Return: whether they are there.
+ * Return: whether they are on the bus.
  */
 bool ec_group_find(struct ec_group *g, struct ec_slave **found)
 {

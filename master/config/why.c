@@ -113,7 +113,7 @@ static size_t no_link(struct ec_links *l, char *buf, size_t size, struct ec_caus
 			 l->base->index);
 }
 
-/* The whole group is there, or none of its slaves is used. */
+/* The whole group is connected, or none of its slaves is used. */
 static size_t group_absent(const struct ec_group *g, char *buf, size_t size,
 			   struct ec_cause *cause)
 {
