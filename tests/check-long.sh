@@ -41,13 +41,15 @@ run() {
 	bench-legacy) EC_INTERRUPT=legacy tests/bench/cycle.sh ;;
 	reboot) tests/reboot/run.sh {generic,native}{,+off,+kexec,+suspend} ;;
 	ports) EC_UML_TIMEOUT=3000 EC_UML_ARGS=random_kunit.runs=80 tests/uml/run.sh bus_random ;;
+	groups) EC_UML_TIMEOUT=3000 EC_UML_ARGS=groups_random_kunit.events=10000 \
+		tests/uml/run.sh bus_groups_random ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
 	esac
 }
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
-for k in ${*:-ports uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan 6.1-kasan \
+for k in ${*:-ports groups uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan 6.1-kasan \
 	nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages \
 	packages-13 check-13 reboot bench bench-legacy}; do
 	echo "=== $k"

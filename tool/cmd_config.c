@@ -16,6 +16,8 @@ static int order(const void *a, const void *b)
 {
 	const struct ect_config *x = a, *y = b;
 
+	if (x->group != y->group)
+		return x->group < y->group ? -1 : 1;
 	if (x->alias != y->alias)
 		return x->alias < y->alias ? -1 : 1;
 	return (x->position > y->position) - (x->position < y->position);
@@ -63,21 +65,29 @@ static void cells(const struct ect_config *c, char *slave, char *state)
 	al_state_text(c->al_status, state, 16);
 }
 
+/* What its position counts from: an alias, or a hot connect group */
+static const char *first(const struct ect_config *c, char alias[8])
+{
+	snprintf(alias, 8, "%u", c->alias);
+	return c->group ? c->group_name : alias;
+}
+
 static void table(const struct ect_config *c, size_t n, const char *indent)
 {
-	char slave[12], state[16];
+	char slave[12], state[16], alias[8];
 	int w[3] = { 0 };
 
 	for (size_t i = 0; i < n; i++) {
 		cells(&c[i], slave, state);
-		w[0] = max(w[0], digits(c[i].alias));
+		w[0] = max(w[0], (int)strlen(first(&c[i], alias)));
 		w[1] = max(w[1], digits(c[i].position));
 		w[2] = max(w[2], (int)strlen(slave));
 	}
 	for (size_t i = 0; i < n; i++) {
 		cells(&c[i], slave, state);
-		out_text("%s%*u:%-*u  0x%08x/0x%08x  %-*s  %s\n", indent, w[0], c[i].alias, w[1],
-			 c[i].position, c[i].vendor_id, c[i].product_code, w[2], slave, state);
+		out_text("%s%*s:%-*u  0x%08x/0x%08x  %-*s  %s\n", indent, w[0],
+			 first(&c[i], alias), w[1], c[i].position, c[i].vendor_id,
+			 c[i].product_code, w[2], slave, state);
 	}
 }
 
@@ -121,11 +131,13 @@ const struct cmd cmd_config = {
 	.args = "",
 	.opts = "mapv",
 	.summary = "Show the slave configurations of the application",
-	.help = "Columns: alias:position, expected vendor/product, ring position of the attached\n"
-		"slave or '-', AL state of this slave or '-'. -a selects configurations by alias and\n"
-		"-p by position; -p alone selects configurations with alias 0.\n",
+	.help = "Columns: alias:position, or group:member of a hot connect group, expected\n"
+		"vendor/product, ring position of the attached slave or '-', AL state of this slave\n"
+		"or '-'. -a selects configurations by alias and -p by position; -p alone selects\n"
+		"configurations with alias 0.\n",
 	.json = "masters[]: master, configs[]: alias, relative_position, vendor_id,\n"
-		"product_code, position (of the attached slave, or null), state, not_in_op (reason or\n"
+		"product_code, group (name, mandatory, known_by, value, port, at_configuration; or\n"
+		"null), position (of the attached slave, or null), state, not_in_op (reason or\n"
 		"null), warning (or null), watchdog_divider, watchdog_intervals,\n"
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"

@@ -2,6 +2,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
+#include "config_info.h"
 #include "domain.h"
 #include "out.h"
 
@@ -12,17 +13,22 @@ static int fmmu(struct dev *d, const struct ect_domain *dom, unsigned int i, con
 {
 	struct ect_fmmu f = { .struct_size = sizeof(f) };
 	int err = ect_domain_fmmu(d->h, dom->index, i, &f);
-	char indent[16];
+	char indent[16], name[CONFIG_NAME];
+	struct ect_config c = { .struct_size = sizeof(c), .alias = f.alias,
+				.position = f.position };
 	size_t n;
 
+	if (!err && f.config)
+		err = ect_config_read(d->h, f.config - 1, &c);
 	if (err)
 		return dev_fail(d, err, "Master%u: FMMU %u of domain %u: no data", d->master, i,
 				dom->index);
 	n = f.offset < size ? min(size - f.offset, (size_t)f.size) : 0;
 	snprintf(indent, sizeof(indent), "%s    ", in);
 	out_object(NULL);
-	out_u("alias", f.alias, "%s  SlaveConfig %u", in, f.alias);
-	out_u("relative_position", f.position, ":%u", f.position);
+	out_u("alias", f.alias, "%s  SlaveConfig %s", in, config_name(&c, name, sizeof(name)));
+	out_u("relative_position", f.position, NULL);
+	out_str("group", c.group_name, NULL);
 	out_u("sync_manager", f.sm, ", SM%u", f.sm);
 	out_str("direction", f.dir == 1 ? "output" : "input", " (%6s)",
 		f.dir == 1 ? "Output" : "Input");

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "config_info.h"
 #include "dev.h"
 #include "out.h"
 #include "slave_info.h"
@@ -93,14 +94,16 @@ static void missing(struct dev *d, unsigned int configs)
 
 	for (unsigned int i = 0; i < configs; i++) {
 		struct ect_config c = { .struct_size = sizeof(c) };
-		char why[ECT_TEXT];
+		char why[ECT_TEXT], name[CONFIG_NAME];
 
 		if (ect_config_read(d->h, i, &c))
 			break;	/* the application has exited meanwhile */
-		if (c.slave_position >= 0 || n++ >= MISSING_LINES)
+		/* the whole group is there, or none of it is used */
+		if (c.slave_position >= 0 || (c.group && c.position) || n++ >= MISSING_LINES)
 			continue;
 		dev_config_why(d, i, why, sizeof(why));
-		note("Master%u: configuration %u:%u: %s", d->master, c.alias, c.position, why);
+		note("Master%u: configuration %s: %s", d->master,
+		     config_name(&c, name, sizeof(name)), why);
 	}
 	if (n > MISSING_LINES)
 		note("Master%u: %u more configurations without slave, see 'ethercat config'",

@@ -3,6 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "config_info.h"
 #include "dev.h"
 #include "out.h"
 
@@ -67,11 +68,6 @@ static bool shown(const struct report *r, const struct chosen *c, size_t i)
 	return false;
 }
 
-static void config_text(const struct ect_explained *e, char *buf, size_t size)
-{
-	snprintf(buf, size, "%u:%u", e->config.alias, e->config.position);
-}
-
 /* with its order number */
 static void place_text(const struct report *r, int slave)
 {
@@ -92,10 +88,10 @@ static void number_or_null(const char *key, int v)
 
 static void place(const struct report *r, const struct ect_finding *f)
 {
-	char text[16] = "";
+	char text[CONFIG_NAME] = "";
 
 	if (f->config != ECT_NONE)
-		config_text(config(r, (size_t)f->config), text, sizeof(text));
+		config_name(&config(r, (size_t)f->config)->config, text, sizeof(text));
 	number_or_null("slave", f->slave);
 	number_or_null("port", f->port);
 	number_or_null("domain", f->domain);
@@ -118,13 +114,13 @@ static void affected(const struct report *r, size_t i)
 {
 	const char *sep = "  Affected: ";
 	const struct ect_explained *e;
-	char text[16];
+	char text[CONFIG_NAME];
 
 	out_array("affected");
 	for (size_t k = 0; (e = config(r, k)); k++) {
 		if (e->finding != i + 1)
 			continue;
-		config_text(e, text, sizeof(text));
+		config_name(&e->config, text, sizeof(text));
 		out_str("", text, NULL);
 		if (finding(r, i)->config == (int)k)
 			continue;

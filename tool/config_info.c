@@ -12,10 +12,22 @@
 #define SMS		16
 #define SHOWN		1024	/* bytes of an SDO */
 
+/* Alias and position, or group and member. Return: @buf */
+const char *config_name(const struct ect_config *c, char *buf, size_t size)
+{
+	if (c->group)
+		snprintf(buf, size, "%s:%u", c->group_name, c->position);
+	else
+		snprintf(buf, size, "%u:%u", c->alias, c->position);
+	return buf;
+}
+
 static int failed(struct dev *d, int err, const struct ect_config *c)
 {
-	return dev_fail(d, err, "Master%u: cannot read the state of configuration %u:%u", d->master,
-			c->alias, c->position);
+	char name[CONFIG_NAME];
+
+	return dev_fail(d, err, "Master%u: cannot read the state of configuration %s", d->master,
+			config_name(c, name, sizeof(name)));
 }
 
 static int entries(struct dev *d, const struct ect_config *c, const char *in, unsigned int sm,
@@ -293,6 +305,38 @@ static void warning(struct dev *d, const struct ect_config *c, const char *in)
 		out_null("warning", NULL);
 }
 
+/* Its hot connect group, and what this is known by */
+static void group(const struct ect_config *c, const char *in)
+{
+	static const char *const by[] = { "", "alias", "identification", "port" };
+	const char *what = by[c->group_by < ARRAY_SIZE(by) ? c->group_by : 0];
+
+	if (!c->group) {
+		out_null("group", NULL);
+		return;
+	}
+	out_object("group");
+	out_str("name", c->group_name, "%sGroup: %s, member %u, %s, %s", in, c->group_name,
+		c->position, c->group_mandatory ? "mandatory" : "optional", what);
+	out_bool("mandatory", c->group_mandatory, NULL);
+	out_str("known_by", what, NULL);
+	if (c->group_value)
+		out_u("value", c->group_value, " %u", c->group_value);
+	else
+		out_null("value", NULL);
+	if (c->group_at != ECT_NONE32) {
+		out_u("port", c->group_port, c->group_by == ECT_GROUP_PORT ? " %u" : ", port %u",
+		      c->group_port);
+		out_u("at_configuration", c->group_at, " of the slave of configuration %u",
+		      c->group_at);
+	} else {
+		out_null("port", NULL);
+		out_null("at_configuration", NULL);
+	}
+	out_text("\n");
+	out_end();
+}
+
 /* Return: 0, or 1 after printing the error. */
 int config_info(struct dev *d, const struct ect_config *c, const char *in)
 {
@@ -303,6 +347,7 @@ int config_info(struct dev *d, const struct ect_config *c, const char *in)
 	out_u("relative_position", c->position, "%sPosition: %u\n", in, c->position);
 	out_u("vendor_id", c->vendor_id, "%sVendor Id: 0x%08x\n", in, c->vendor_id);
 	out_u("product_code", c->product_code, "%sProduct code: 0x%08x\n", in, c->product_code);
+	group(c, in);
 	attached(c, in);
 	reason(d, c, in);
 	warning(d, c, in);

@@ -4,6 +4,9 @@
 
 #include "dev.h"
 
+#define CONFIG_NAME	(ECT_STRING + 8)
+
+const char *config_name(const struct ect_config *c, char *buf, size_t size);
 int config_info(struct dev *d, const struct ect_config *c, const char *indent);
 
 #endif

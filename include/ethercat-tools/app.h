@@ -30,7 +30,20 @@ struct ect_config {
 	uint32_t sdo_count;
 	uint32_t flag_count;
 	uint64_t device;	/* number of its slave, 0: none */
+	uint32_t group;		/* hot connect group, its member @position: number + 1; 0: none */
+	uint32_t group_at;	/* configuration at whose slave it is, ECT_NONE32: anywhere */
+	uint16_t group_value;	/* alias or identification */
+	uint8_t group_by;	/* ECT_GROUP_* */
+	uint8_t group_port;	/* with @group_at */
+	uint8_t group_mandatory;
+	uint8_t reserved2[3];
+	char group_name[ECT_STRING];
 };
+
+/* struct ect_config.group_by */
+#define ECT_GROUP_ALIAS	1
+#define ECT_GROUP_ID	2
+#define ECT_GROUP_PORT	3
 
 /**
  * ect_config_read() - a slave configuration
@@ -232,6 +245,7 @@ struct ect_fmmu {
 	uint32_t logical;	/* address */
 	uint32_t size;		/* bytes */
 	uint32_t offset;	/* in the domain */
+	uint32_t config;	/* index of the configuration + 1; 0: an older module */
 };
 
 /**

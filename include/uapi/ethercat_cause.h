@@ -19,7 +19,7 @@
 #define EC_CAUSE_DIFFERENT	6	/* the slave at @position has another identity */
 #define EC_CAUSE_TAKEN		7	/* the one at @position is that of configuration @code */
 #define EC_CAUSE_UNATTACHED	8	/* the one at @position matches and is not attached yet */
-#define EC_CAUSE_NO_GROUP	9	/* nothing has the sign of its hot connect group */
+#define EC_CAUSE_NO_GROUP	9	/* its hot connect group is not connected */
 #define EC_CAUSE_GROUP		10	/* the slave at @position keeps its group from use */
 /* it is connected, and the cause is not its own */
 #define EC_CAUSE_INACTIVE	16	/* the application has not activated the master */

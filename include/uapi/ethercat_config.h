@@ -24,8 +24,10 @@ struct ec_ioc_config {
 	__u32 sdo_count;
 	__u32 state;		/* EC_STATUS_SC_*, as in struct ec_status */
 	__u32 flag_count;
-	__u32 group;		/* hot connect group, its member @position: index + 1; 0: none */
+	__u32 reserved;
 	__u64 device;		/* number of the attached device, 0: none */
+	__u32 group;		/* hot connect group, its member @position: index + 1; 0: none */
+	__u32 reserved2;
 };
 
 struct ec_ioc_config_sm {
@@ -113,6 +115,7 @@ struct ec_ioc_domain_fmmu {
 	__u32 logical;
 	__u32 size;
 	__u32 offset;		/* in the domain */
+	__u32 config;		/* its configuration: index + 1; 0: an older module */
 };
 
 struct ec_ioc_domain_data {

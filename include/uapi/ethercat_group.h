@@ -20,7 +20,7 @@ struct ec_ioc_group {
 	__u16 value;		/* in */
 	__u8 port;		/* in: 1 to 3, with @at */
 	__u8 reserved;
-	__u32 at;		/* in: configuration at whose slave it is; EC_UAPI_NONE32: anywhere */
+	__u32 at;		/* in: configuration of the slave; EC_UAPI_NONE32: anywhere */
 	__u32 reserved2;
 	char name[EC_UAPI_STRING];	/* in: letter, then letters, digits, '_', '-', '.' */
 };

@@ -183,7 +183,7 @@ struct ec_ioc_slave {
 	__u8 device_index;	/* 0 main, 1 backup */
 	__u16 dl_status;
 	__u16 features;		/* register 0x0008 */
-	__u16 identification;	/* explicit device identification, 0: none, or an older module */
+	__u16 reserved;
 	__u32 transmission_delay;
 	__u32 sii_words;
 	__u32 differs;		/* identity differs from @config */
@@ -191,6 +191,8 @@ struct ec_ioc_slave {
 	__s32 dc_diff;		/* difference to the reference clock at the last read, ns */
 	__u16 dc_set;		/* synchronized for the active application */
 	__u16 dc_odd;		/* delay unreliable: receive times contradict the topology */
+	__u16 identification;	/* explicit device identification, 0: none */
+	__u16 reserved2[3];
 };
 
 /* what the EEPROM of a slave calls it */

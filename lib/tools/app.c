@@ -23,6 +23,25 @@ static void convert_config(struct ect_config *to, const struct ec_ioc_config *fr
 	COPY(sdo_count);
 	COPY(flag_count);
 	COPY(device);
+	COPY(group);
+}
+
+/* A group of which it is a member */
+static int get_group(struct ect_handle *h, struct ect_config *to)
+{
+	struct ec_ioc_config_group from = { .index = to->index };
+	int ret = to->group ? ect_command(h, EC_IOC_CONFIG_GROUP, &from) : 0;
+
+	if (ret || !to->group)
+		return ret;
+	to->group_at = from.at;
+	to->group_value = from.value;
+	to->group_by = (uint8_t)from.by;
+	to->group_port = from.port;
+	to->group_mandatory = from.mandatory;
+	memcpy(to->group_name, from.name, sizeof(to->group_name));
+	string_clean(to->group_name, sizeof(to->group_name));
+	return 0;
 }
 
 int ect_config_read(struct ect_handle *h, unsigned int index, struct ect_config *c)
@@ -34,6 +53,9 @@ int ect_config_read(struct ect_handle *h, unsigned int index, struct ect_config 
 	if (ret)
 		return ret;
 	convert_config(&own, &i);
+	ret = get_group(h, &own);
+	if (ret)
+		return ret;
 	return ect_give(h, c, &own, sizeof(own));
 }
 
@@ -184,7 +206,7 @@ int ect_domain_fmmu(struct ect_handle *h, unsigned int index, unsigned int fmmu,
 
 	own = (struct ect_fmmu){
 		.alias = i.alias, .position = i.position, .sm = i.sm, .dir = i.dir,
-		.logical = i.logical, .size = i.size, .offset = i.offset,
+		.logical = i.logical, .size = i.size, .offset = i.offset, .config = i.config,
 	};
 	return ret ? ret : ect_give(h, f, &own, sizeof(own));
 }

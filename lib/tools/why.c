@@ -37,6 +37,9 @@ static int read_config(struct why *w, u32 index)
 	ret = ret ? ret : ect_config_why(w->h, index, &why);
 	if (ret)
 		return ret;
+	/* an optional group that is not connected is no fault */
+	if (config.group && !config.group_mandatory && why.cause.kind == ECT_CAUSE_NO_GROUP)
+		return 0;
 	c = ect_list_add(w->configs);
 	if (!c)
 		return ect_no_memory(w->h);

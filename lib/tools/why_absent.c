@@ -182,6 +182,14 @@ static const struct ect_slave *elsewhere(const struct why *w, const struct ect_e
 	return NULL;
 }
 
+static bool has_groups(const struct why *w)
+{
+	for (size_t i = 0; i < w->configs->n; i++)
+		if (why_config(w, i)->config.group)
+			return true;
+	return false;
+}
+
 /* Slaves are missing at one place, so that all behind it have moved up. */
 static void missing(struct why *w)
 {
@@ -190,6 +198,9 @@ static void missing(struct why *w)
 	struct ect_finding *f;
 	char name[96];
 
+	/* slaves of hot connect groups do not count: places are not known here */
+	if (has_groups(w))
+		return;
 	/* a device that stands elsewhere on a complete bus is at the wrong place, not missing */
 	if (!first || (w->bus->n > last && elsewhere(w, first)))
 		return;
@@ -299,6 +310,23 @@ static void no_alias(struct why *w, struct ect_explained *c)
 			   why_slave_name(w, s->position, name, sizeof(name)), s->alias);
 }
 
+/* One finding for a group; the kernel says what is missing or wrong. */
+static void group(struct why *w, struct ect_explained *c)
+{
+	struct ect_finding *f;
+
+	if (c->cause.kind == ECT_CAUSE_NO_GROUP)
+		f = why_add(w, GROUP_ABSENT, c->text);
+	else
+		f = why_add(w, GROUP_WRONG, c->text);
+	f->config = config_index(w, c);
+	if (c->cause.kind == ECT_CAUSE_GROUP)
+		f->slave = c->cause.position;
+	for (size_t i = 0; i < w->configs->n; i++)
+		if (why_config(w, i)->config.group == c->config.group)
+			why_explain(w, why_config(w, i));
+}
+
 static void other(struct why *w, struct ect_explained *c)
 {
 	struct ect_finding *f;
@@ -332,6 +360,10 @@ void why_absent(struct why *w)
 			break;
 		case ECT_CAUSE_NO_ALIAS:
 			no_alias(w, c);
+			break;
+		case ECT_CAUSE_NO_GROUP:
+		case ECT_CAUSE_GROUP:
+			group(w, c);
 			break;
 		case ECT_CAUSE_NO_SLAVE:
 		case ECT_CAUSE_TAKEN:

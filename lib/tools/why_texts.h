@@ -83,6 +83,10 @@
 	  "no slave has alias %u; %s is such a device, alias %u") \
 	X(ATTACHING, "attaching", UNDER_WAY, "", "repeat the command", "%s") \
 	X(TAKEN, "taken", FAULT, "", "connect the missing slave or restart the application", "%s") \
+	X(GROUP_ABSENT, "group_absent", FAULT, "", \
+	  "connect the group, or configure it as optional", "%s") \
+	X(GROUP_WRONG, "group_not_started", FAULT, "", \
+	  "connect what the application expects of this group, or change its configuration", "%s") \
 	/* slaves; "%s" is a text of the kernel */ \
 	X(REQUESTED, "not_requested", FAULT, "", "", "%s") \
 	X(UNDER_WAY, "under_way", UNDER_WAY, "", \

@@ -14,14 +14,19 @@
 #define FMMU_TYPE	11	/* byte of the page: 1 reads, 2 writes */
 #define FMMU_ENABLE	12
 
-static struct ect_explained *config_at(const struct why *w, u16 alias, u16 position)
+static bool is_of(const struct ect_explained *c, const struct ect_fmmu *f)
 {
-	for (size_t i = 0; i < w->configs->n; i++) {
-		struct ect_explained *c = why_config(w, i);
+	if (f->config)
+		return c->config.index + 1 == f->config;
+	return c->config.alias == f->alias && c->config.position == f->position;
+}
 
-		if (c->config.alias == alias && c->config.position == position)
-			return c;
-	}
+/* NULL: that of an optional group which is not connected */
+static struct ect_explained *config_of(const struct why *w, const struct ect_fmmu *f)
+{
+	for (size_t i = 0; i < w->configs->n; i++)
+		if (is_of(why_config(w, i), f))
+			return why_config(w, i);
 	return NULL;
 }
 
@@ -34,8 +39,8 @@ static bool all_in_op(struct why *w, const struct ect_domain *dom)
 
 		if (ect_domain_fmmu(w->h, dom->index, i, &f))
 			return false;
-		c = config_at(w, f.alias, f.position);
-		if (!c || !why_in_op(c))
+		c = config_of(w, &f);
+		if (c && !why_in_op(c))
 			return false;
 	}
 	return true;
@@ -72,7 +77,7 @@ static bool is_given(struct why *w, const struct ect_domain *dom, unsigned int s
 		if (ect_domain_fmmu(w->h, dom->index, i, &f))
 			return true;
 		*meets |= at < f.logical + f.size && f.logical < at + len;
-		c = config_at(w, f.alias, f.position);
+		c = config_of(w, &f);
 		/* inputs of one slave and outputs of another may have the same address */
 		if (c && c->config.slave_position == (int)slave && f.logical == at &&
 		    page[FMMU_TYPE] == (f.dir == ECT_DIR_OUTPUT ? 2 : 1))
@@ -150,8 +155,7 @@ static void explain_domain(struct why *w, const struct ect_domain *dom)
 		for (size_t k = 0; k < w->configs->n; k++) {
 			struct ect_explained *c = why_config(w, k);
 
-			if (c->config.alias == f.alias && c->config.position == f.position &&
-			    !why_in_op(c) && follows(&c->cause))
+			if (is_of(c, &f) && !why_in_op(c) && follows(&c->cause))
 				why_explain(w, c);
 		}
 	}

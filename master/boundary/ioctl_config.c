@@ -217,6 +217,7 @@ int ec_ioc_domain_fmmu(struct ec_call *call)
 	fm = d->fmmus[i->fmmu].fmmu;
 	i->alias = d->fmmus[i->fmmu].config->alias;
 	i->position = d->fmmus[i->fmmu].config->position;
+	i->config = d->fmmus[i->fmmu].config->index + 1;
 	i->sm = fm->sm;
 	i->dir = fm->dir;
 	i->offset = fm->offset;

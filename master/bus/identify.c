@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The EEPROM says how a device tells its identification: in a word of its memory, or on a request
+ * The EEPROM says how to read the identification of a device: in a word of its memory, or on a request
  * in AL control (ETG.1020 clause 8). All new slaves are asked together.
  */
 #include <linux/delay.h>

@@ -67,6 +67,37 @@ static void refused(void)
 	bench_down(&b);
 }
 
+/* A group that is not connected, in a domain of its own */
+static void groups(void)
+{
+	ec_group_info_t g = { .name = "tool", .by = EC_GROUP_ID, .value = 4711 };
+	ec_slave_config_state_t cs;
+	struct bench b;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_group)(b.m, &g), 0);
+	IS(ecrt_master_group(b.m, &g), 0);
+	NEED(CALL(ecrt_master_group_config)(b.m, 0, 0, 0xec51, 0x402));
+	YES(ecrt_master_group_config(b.m, 0, 0, 0xec51, 0x402) ==
+	    ecrt_master_group_config(b.m, 0, 0, 0xec51, 0x402));
+	YES(!ecrt_master_group_config(b.m, 0, 0, 0xec51, 0x403));
+	YES(!ecrt_master_group_config(b.m, 0, 2, 0xec51, 0x402));
+	YES(!ecrt_master_group_config(b.m, 1, 0, 0xec51, 0x402));
+	g.name = "other";
+	SAYS(ecrt_master_group(b.m, &g), -EEXIST);
+	g.value = 0;
+	SAYS(ecrt_master_group(b.m, &g), -EINVAL);
+	g.name = NULL;
+	SAYS(ecrt_master_group(b.m, &g), -EINVAL);
+	NEED(bench_activate(&b));
+	IS(ecrt_slave_config_state(ecrt_master_group_config(b.m, 0, 0, 0xec51, 0x402), &cs), 0);
+	YES(!cs.online && !cs.operational);
+	g.name = "late";
+	g.value = 5;
+	SAYS(ecrt_master_group(b.m, &g), -EBUSY);
+	bench_down(&b);
+}
+
 const struct api_case layout_cases[] = {
 	{ "as it is without options", plain },
 	{ "a slave whose process data overlap", overlapping },
@@ -74,6 +105,7 @@ const struct api_case layout_cases[] = {
 	{ "separate", separate },
 	{ "own frame", own_frame },
 	{ "late cycles", late_cycles },
+	{ "hot connect groups", groups },
 	{ "what cannot be is refused", refused },
 	{ NULL, NULL },
 };

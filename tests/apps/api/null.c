@@ -45,6 +45,8 @@ static void master(void)
 	IS(ecrt_master_activate(NULL), -EINVAL);
 	IS(ecrt_master_deactivate(NULL), -EINVAL);
 	IS(ecrt_master_set_late_cycles(NULL, 1), -EINVAL);
+	IS(ecrt_master_group(NULL, NULL), -EINVAL);
+	YES(!ecrt_master_group_config(NULL, 0, 0, 1, 1));
 	IS(ecrt_master_set_send_interval(NULL, 1000), -EINVAL);
 	IS(ecrt_master_send(NULL), -EINVAL);
 	IS(ecrt_master_receive(NULL), -EINVAL);
