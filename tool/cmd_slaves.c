@@ -98,7 +98,7 @@ static void missing(struct dev *d, unsigned int configs)
 
 		if (ect_config_read(d->h, i, &c))
 			break;	/* the application has exited meanwhile */
-		/* the whole group is there, or none of it is used */
+		/* the whole group is connected, or none of its slaves is used */
 		if (c.slave_position >= 0 || (c.group && c.position) || n++ >= MISSING_LINES)
 			continue;
 		dev_config_why(d, i, why, sizeof(why));

@@ -7,7 +7,7 @@
 #include "config.h"
 #include "group.h"
 
-static bool same(const struct ec_group *g, const struct ec_ioc_group *what)
+static bool group_is_same(const struct ec_group *g, const struct ec_ioc_group *what)
 {
 	u32 at = g->at ? g->at->index : EC_UAPI_NONE32;
 
@@ -27,7 +27,7 @@ static bool has_sign_of(const struct ec_group *g, const struct ec_ioc_group *wha
 }
 
 /* Names are for messages and files: letters first, so that they are no numbers. */
-static bool is_name(const char *name)
+static bool group_is_name(const char *name)
 {
 	size_t len = strnlen(name, EC_UAPI_STRING), i;
 
@@ -67,11 +67,11 @@ struct ec_group *ec_group_create(struct ec_wanted *w, const struct ec_ioc_group 
 	int ret;
 
 	lockdep_assert_held(w->lock);
-	if (!is_name(what->name) || !is_possible(w, what))
+	if (!group_is_name(what->name) || !is_possible(w, what))
 		return ERR_PTR(-EINVAL);
 	ec_for_each_group(x, w) {
 		if (!strcmp(x->name, what->name))
-			return same(x, what) ? x : ERR_PTR(-EEXIST);
+			return group_is_same(x, what) ? x : ERR_PTR(-EEXIST);
 		if (has_sign_of(x, what))
 			return ERR_PTR(-EEXIST);
 	}
@@ -173,5 +173,5 @@ bool ec_group_differs(const struct ec_group *a, const struct ec_group *b)
 	};
 
 	lockdep_assert_held(a->wanted->lock);
-	return strcmp(a->name, b->name) || a->n_members != b->n_members || !same(a, &what);
+	return strcmp(a->name, b->name) || a->n_members != b->n_members || !group_is_same(a, &what);
 }

@@ -73,7 +73,7 @@ static bool is_member(const struct ec_group *g, const struct ec_slave *s)
 	return ec_setup_of(s)->group == g->index + 1;
 }
 
-static bool is_behind(const struct ec_slave *s, const struct ec_slave *head)
+static bool hangs_behind(const struct ec_slave *s, const struct ec_slave *head)
 {
 	while (s && s != head)
 		s = ec_graph_parent(s);
@@ -193,7 +193,7 @@ bool ec_group_find(struct ec_group *g, struct ec_slave **found)
 	for (k = 0; k < g->n_members; k++, pos++) {
 		while (pos < bus->n_slaves && !is_member(g, bus->slaves[pos]))
 			pos++;
-		if (pos >= bus->n_slaves || !is_behind(bus->slaves[pos], head))
+		if (pos >= bus->n_slaves || !hangs_behind(bus->slaves[pos], head))
 			return no(g, head->position,
 				  "member %u (0x%08x/0x%08x) is not behind slave %u", k,
 				  g->members[k]->vendor, g->members[k]->product, head->position);
