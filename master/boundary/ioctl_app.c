@@ -9,6 +9,7 @@
 #include "../session/reserve.h"
 #include "../session/session.h"
 #include "../session/session_attach.h"
+#include "../session/session_slave.h"
 #include "../session/takeover.h"
 #include "../bus/slave.h"
 #include "../config/why.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * The EEPROM says how to read the identification of a device: in a word of its memory, or on a request
- * in AL control (ETG.1020 clause 8). All new slaves are asked together.
+ * The EEPROM says how to read the identification of a device: in a word of its memory, or by a
+ * request in AL control (ETG.1020 clause 8). All new slaves are asked together.
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>

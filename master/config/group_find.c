@@ -9,7 +9,7 @@
 #include "config.h"
 #include "group.h"
 
-static bool is_at(const struct ec_group *g, const struct ec_slave *s)
+static bool is_at_port(const struct ec_group *g, const struct ec_slave *s)
 {
 	return g->at && g->at->slave && g->at->slave->at[g->port] == s;
 }
@@ -23,7 +23,7 @@ static bool is_head(const struct ec_group *g, const struct ec_slave *s)
 	case EC_GROUP_BY_ID:
 		return s->identification == g->value;
 	default:
-		return is_at(g, s);
+		return is_at_port(g, s);
 	}
 }
 
@@ -80,8 +80,10 @@ static bool hangs_behind(const struct ec_slave *s, const struct ec_slave *head)
 	return s;
 }
 
+static bool no(struct ec_group *g, u32 pos, const char *fmt, ...) __printf(3, 4);
+
 /* The group cannot be used: because of the slave at @pos. Always false. */
-static __printf(3, 4) bool no(struct ec_group *g, u32 pos, const char *fmt, ...)
+static bool no(struct ec_group *g, u32 pos, const char *fmt, ...)
 {
 	va_list args;
 
@@ -136,7 +138,7 @@ static bool check_place(struct ec_group *g, const struct ec_slave *head)
 	if (g->at && !g->at->slave)
 		return no(g, head->position, "slave %s is absent, at whose port %u it has to be",
 			  g->at->name, g->port);
-	if (g->at && !is_at(g, head))
+	if (g->at && !is_at_port(g, head))
 		return no(g, head->position, "slave %u is not at port %u of slave %u: connect it there",
 			  head->position, g->port, g->at->slave->position);
 	if (head->upstream)

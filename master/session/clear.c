@@ -5,7 +5,7 @@
 #include "../config/group.h"
 #include "clear.h"
 #include "ref_clock.h"
-#include "session_attach.h"
+#include "session_slave.h"
 
 /**
  * ec_session_clear() - free what an application has configured, and detach its slaves

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "../config/group.h"
-#include "session_attach.h"
 #include "session_groups.h"
+#include "session_slave.h"
 
 /**
  * ec_session_mark() - note which slaves belong to hot connect groups
@@ -118,36 +118,4 @@ struct ec_slave *ec_session_find_member(struct ec_session *s, const struct ec_gr
 			found = ec_slave_ref(x);
 	up_read(&bus->topo);
 	return found;
-}
-
-/**
- * ec_session_configure_member() - find or make the configuration of a member of a group
- * @s: session; active: only to find it
- * @g: group
- * @member: 0: the head
- * @vendor: expected vendor id
- * @product: expected product code
- *
- * Context: Process, session lock held. May sleep.
- * Return: configuration, or ERR_PTR as ec_group_config() or ec_config_begin().
- */
-struct ec_config *ec_session_configure_member(struct ec_session *s, struct ec_group *g, u16 member,
-					      u32 vendor, u32 product)
-{
-	unsigned int n = g->n_members;
-	struct ec_config *c;
-	int ret;
-
-	lockdep_assert_held(s->wanted.lock);
-	c = ec_group_config(g, member, vendor, product);
-	if (IS_ERR(c) || g->n_members == n)
-		return c;
-	ec_session_attach_all(s);
-	ret = ec_config_begin(c);
-	if (!ret)
-		return c;
-	ec_session_detach(c);
-	ec_group_drop(c);
-	ec_config_drop(c);
-	return ERR_PTR(ret);
 }

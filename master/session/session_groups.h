@@ -12,7 +12,5 @@ void ec_session_log_groups(struct ec_session *s);
 void ec_session_attach_groups(struct ec_session *s);
 struct ec_slave *ec_session_find_member(struct ec_session *s, const struct ec_group *g,
 					unsigned int member);
-struct ec_config *ec_session_configure_member(struct ec_session *s, struct ec_group *g, u16 member,
-					      u32 vendor, u32 product);
 
 #endif
