@@ -17,6 +17,7 @@
  *	effect, writes that may be executed twice)
  * @keep: the reply leaves @data unchanged; only such datagrams in flight may share @data
  * @last: of ec_xfer_train(): the next datagram is in another frame
+ * @first: of ec_xfer_clock(): its frame is the first clock frame of a cyclic send
  * @adp: low half of the address
  * @ado: high half of the address
  * @len: data bytes
@@ -35,6 +36,7 @@ struct ec_dg {
 	bool repeat : 1;
 	bool keep : 1;
 	bool last : 1;
+	bool first : 1;
 	u16 adp;
 	u16 ado;
 	u16 len;

@@ -62,6 +62,9 @@ static bool next_post(struct ec_carry *c, enum ec_post_class *class, unsigned in
 	normal = ec_flight_first(c, EC_POST_NORMAL);
 	urgent = ec_flight_first(c, EC_POST_URGENT);
 	clock = c->share.clock_credit >= 1000 ? ec_flight_first(c, EC_POST_CLOCK) : NULL;
+	/* others may have taken the place of a clock frame in the send before */
+	if (clock && clock->dg[0].first && c->share.clocks)
+		clock = NULL;
 	next = urgent && !(c->share.was_urgent && normal) ? urgent : normal;
 	if (clock && (!next || !c->share.clock_last))
 		next = clock;
@@ -128,8 +131,10 @@ static void share_count(struct ec_carry *c, enum ec_post_class class, u32 frame_
 	c->share.wire_ns += frame_ns;
 	c->share.was_urgent = class == EC_POST_URGENT;
 	c->share.clock_last = class == EC_POST_CLOCK;
-	if (c->share.clock_last)
+	if (c->share.clock_last) {
+		c->share.clocks++;
 		c->share.clock_credit -= 1000;
+	}
 	if (unlikely(ec_read64(&c->stuck_ns)))
 		ec_write64(&c->stuck_ns, 0);
 }

@@ -17,6 +17,8 @@ struct ec_share {
 	u32 wire_ns;
 	/** @clock_credit: clock frames that may be sent, 1/1000 */
 	u32 clock_credit;
+	/** @clocks: clock frames among @frames */
+	u32 clocks;
 	/** @was_urgent: the last one was urgent */
 	bool was_urgent;
 	/** @clock_last: the last one was a clock frame */
@@ -48,6 +50,7 @@ static inline void ec_share_begin(struct ec_share *share, u32 interval_us)
 	u32 more = interval_us * EC_SHARE_CLOCKS_PER_MS;
 
 	share->frames = 0;
+	share->clocks = 0;
 	share->wire_ns = 0;
 	share->clock_credit = min(share->clock_credit + more, max(more, 1000u));
 }

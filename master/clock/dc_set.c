@@ -190,13 +190,15 @@ static unsigned int per_send(const struct ec_dc_job *j)
 static unsigned int add_frames(struct ec_dc_job *j, unsigned int frames, unsigned int first,
 			       unsigned int more, unsigned int gap)
 {
-	unsigned int i, at, n = 0, per = per_send(j);
+	unsigned int i, at, start, n = 0, per = per_send(j);
 
 	/* if the reference clock does not reply; written again when the frame leaves */
 	put_unaligned_le64(ec_dc_clock_now(j->dc), j->time);
 	for (i = 0; i < frames; i++) {
 		at = i % per;
+		start = n;
 		n = add_frame(j, n, !at ? first : at % gap ? 0 : more);
+		j->dg[start].first = !at;
 	}
 	for (i = 0; i < n; i++)
 		j->dg[i].repeat = false;
