@@ -422,8 +422,12 @@ typedef enum {
 	EC_GROUP_PORT = 3,	/* the port where its first slave is connected */
 } ec_group_by_t;
 
-/* ec_group_info_t.flags: without the group the bus is not complete */
+/*
+ * ec_group_info_t.flags: without the group the bus is not complete; its port is opened at once, not
+ * after 100 ms of link and longer times after losses: a contact that bounces there costs frames
+ */
 #define EC_GROUP_MANDATORY	1
+#define EC_GROUP_FAST		2
 
 /**
  * struct ec_group_info_t - a hot connect group: slaves that come and go together
@@ -432,7 +436,7 @@ typedef enum {
  * @value: alias or identification, not 0; with %EC_GROUP_PORT 0
  * @port: port of @at where the head has to be: 1 to 3; 0 without @at
  * @at: configuration of that slave; NULL: it may be connected anywhere
- * @flags: %EC_GROUP_MANDATORY or 0
+ * @flags: %EC_GROUP_MANDATORY; with @at %EC_GROUP_FAST
  */
 typedef struct {
 	const char *name;

@@ -12,6 +12,7 @@
 #define EC_GROUP_BY_PORT	3	/* @at and @port */
 
 #define EC_GROUP_FLAG_MANDATORY	1	/* without it the working counters are not complete */
+#define EC_GROUP_FLAG_FAST	2	/* its port is opened as soon as it has a link; with @at */
 
 struct ec_ioc_group {
 	__u32 flags;		/* in: EC_GROUP_FLAG_* */

@@ -50,6 +50,7 @@ _Static_assert((int)EC_GROUP_ALIAS == EC_GROUP_BY_ALIAS, "groups");
 _Static_assert((int)EC_GROUP_ID == EC_GROUP_BY_ID, "groups");
 _Static_assert((int)EC_GROUP_PORT == EC_GROUP_BY_PORT, "groups");
 _Static_assert(EC_GROUP_MANDATORY == EC_GROUP_FLAG_MANDATORY, "groups");
+_Static_assert(EC_GROUP_FAST == EC_GROUP_FLAG_FAST, "groups");
 
 int ecrt_master_group(ec_master_t *master, const ec_group_info_t *info)
 {

@@ -7,6 +7,7 @@
 #include "../session/reserve.h"
 #include "../session/session.h"
 #include "../session/session_attach.h"
+#include "../bus/ports.h"
 #include "../bus/slave.h"
 #include "../carry/xfer.h"
 
@@ -129,6 +130,7 @@ int ec_ioc_rescan(struct ec_call *call)
 	if (ec_bus_scan_awaited(&m->bus))
 		return ec_refuse(call, -EBUSY,
 				 "another program waits until scans have ended and slaves have settled; try again later");
+	ec_ports_retry(&m->bus);
 	ec_bus_rescan(&m->bus);
 	return 0;
 }

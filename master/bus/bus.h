@@ -77,6 +77,8 @@ struct ec_bus {
 	bool down;
 	/** @guarded: process data run: ports behind which nothing is known are closed */
 	bool guarded;
+	/** @retry: ports that wait after losses or a trial without reply are tried at once */
+	bool retry;
 	/** @scan_lock: no scan begins while an application reserves the master */
 	spinlock_t scan_lock;
 	/**

@@ -223,6 +223,8 @@ static bool is_stable(struct ec_slave *s, unsigned int port, u8 lost, u64 now)
 	}
 	s->ports.lost[port] = lost;
 	d->link_ns = d->link_ns ?: now;
+	if (READ_ONCE(s->ports.fast) & BIT(port) && !d->wait_ms)
+		return now >= d->next_ns;
 	return now >= d->next_ns &&
 	       now - d->link_ns >= max(STABLE_NS, s->ports.loss[port].wait_s * (u64)NSEC_PER_SEC);
 }
@@ -294,6 +296,21 @@ static bool work_at_doors_of(struct ec_slave *s)
 	return false;
 }
 
+/* Forget why ports wait: what kept them closed may be repaired. */
+static void forget_waits(struct ec_bus *bus)
+{
+	unsigned int p;
+
+	ec_for_each_slave(s, bus) {
+		memset(s->ports.loss, 0, sizeof(s->ports.loss));
+		for (p = 0; p < EC_MAX_PORT; p++) {
+			s->ports.door[p].next_ns = 0;
+			s->ports.door[p].wait_ms = 0;
+			s->ports.door[p].logged = false;
+		}
+	}
+}
+
 /* Check the doors; at most one is opened in a pass, as positions change by it. */
 static enum ec_ports_result work_at_doors(struct ec_bus *bus)
 {
@@ -319,6 +336,8 @@ static enum ec_ports_result work_at_doors(struct ec_bus *bus)
 enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned)
 {
 	write_loops(bus);
+	if (xchg(&bus->retry, false))
+		forget_waits(bus);
 	return scanned && is_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
 }
 
@@ -337,7 +356,7 @@ void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open)
 	struct ec_loss *l = &s->ports.loss[port];
 	u64 now = ktime_get_ns();
 
-	if (!is_guarded(s->bus))
+	if (!is_guarded(s->bus) || READ_ONCE(s->ports.fast) & BIT(port))
 		return;
 	if (now - l->since_ns > LOSS_NS + l->wait_s * (u64)NSEC_PER_SEC)
 		*l = (struct ec_loss){ .since_ns = now };
@@ -352,6 +371,29 @@ void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open)
 	l->wait_s = 1;
 	ec_slave_warn(s, "port %u has lost its link %u times in %llu s; opened after 1 s of link, then after up to %u s: check cable and plugs\n",
 		      port, LOSSES, LOSS_NS / NSEC_PER_SEC, LOSS_WAIT_MAX_S);
+}
+
+/**
+ * ec_ports_retry() - try ports that wait at once
+ * @bus: bus
+ *
+ * Context: Any.
+ */
+void ec_ports_retry(struct ec_bus *bus)
+{
+	WRITE_ONCE(bus->retry, true);
+}
+
+/**
+ * ec_ports_set_fast() - which ports are opened as soon as they have a link
+ * @s: slave
+ * @ports: a bit each; a contact that bounces there costs frames
+ *
+ * Context: Process.
+ */
+void ec_ports_set_fast(struct ec_slave *s, u8 ports)
+{
+	WRITE_ONCE(s->ports.fast, ports);
 }
 
 /**

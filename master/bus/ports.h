@@ -20,6 +20,8 @@ enum ec_ports_result {
 void ec_ports_guard(struct ec_bus *bus, bool on);
 enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned);
 void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open);
+void ec_ports_retry(struct ec_bus *bus);
+void ec_ports_set_fast(struct ec_slave *s, u8 ports);
 void ec_ports_open_all(struct ec_bus *bus);
 
 #endif

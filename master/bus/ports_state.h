@@ -38,6 +38,7 @@ struct ec_loss {
  * @loops: register 0x0101 as read or written last
  * @fixed: the slave does not keep what is written there
  * @doors: a port is a door
+ * @fast: ports that are opened as soon as they have a link, a bit each; of the session
  * @lost: its counters of lost links, 0x0310, as read last
  * @door: by port
  * @loss: by port
@@ -47,6 +48,7 @@ struct ec_ports {
 	u8 loops;
 	bool fixed;
 	bool doors;
+	u8 fast;
 	u8 lost[EC_MAX_PORT];
 	struct ec_door door[EC_MAX_PORT];
 	struct ec_loss loss[EC_MAX_PORT];

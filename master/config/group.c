@@ -12,7 +12,8 @@ static bool group_is_same(const struct ec_group *g, const struct ec_ioc_group *w
 	u32 at = g->at ? g->at->index : EC_UAPI_NONE32;
 
 	return g->by == what->by && g->value == what->value && at == what->at &&
-	       g->port == what->port && g->mandatory == (what->flags & EC_GROUP_FLAG_MANDATORY);
+	       g->port == what->port && g->mandatory == !!(what->flags & EC_GROUP_FLAG_MANDATORY) &&
+	       g->fast == !!(what->flags & EC_GROUP_FLAG_FAST);
 }
 
 /* Is the head of this group known by the same? */
@@ -44,7 +45,7 @@ static bool is_possible(const struct ec_wanted *w, const struct ec_ioc_group *wh
 	if (what->at != EC_UAPI_NONE32 && (what->at >= w->n_configs || what->port >= EC_MAX_PORT ||
 					   !what->port))
 		return false;
-	if (what->at == EC_UAPI_NONE32 && what->port)
+	if (what->at == EC_UAPI_NONE32 && (what->port || what->flags & EC_GROUP_FLAG_FAST))
 		return false;
 	if (what->by == EC_GROUP_BY_PORT)
 		return what->at != EC_UAPI_NONE32 && !what->value;
@@ -88,7 +89,8 @@ struct ec_group *ec_group_create(struct ec_wanted *w, const struct ec_ioc_group 
 	*g = (struct ec_group){
 		.wanted = w, .index = w->n_groups, .by = what->by, .value = what->value,
 		.at = what->at == EC_UAPI_NONE32 ? NULL : w->configs[what->at], .port = what->port,
-		.mandatory = what->flags & EC_GROUP_FLAG_MANDATORY, .cause = EC_CAUSE_NO_GROUP,
+		.mandatory = what->flags & EC_GROUP_FLAG_MANDATORY,
+		.fast = what->flags & EC_GROUP_FLAG_FAST, .cause = EC_CAUSE_NO_GROUP,
 	};
 	strscpy(g->name, what->name, sizeof(g->name));
 	w->groups[w->n_groups++] = g;
@@ -169,7 +171,8 @@ bool ec_group_differs(const struct ec_group *a, const struct ec_group *b)
 	const struct ec_ioc_group what = {
 		.by = b->by, .value = b->value, .port = b->port,
 		.at = b->at ? b->at->index : EC_UAPI_NONE32,
-		.flags = b->mandatory ? EC_GROUP_FLAG_MANDATORY : 0,
+		.flags = (b->mandatory ? EC_GROUP_FLAG_MANDATORY : 0) |
+			 (b->fast ? EC_GROUP_FLAG_FAST : 0),
 	};
 
 	lockdep_assert_held(a->wanted->lock);

@@ -19,6 +19,7 @@ struct ec_wanted;
  * @at: configuration of the slave at whose port the head has to be, NULL: anywhere
  * @port: that port
  * @mandatory: without it the bus is not complete
+ * @fast: @port is opened as soon as it has a link
  * @members: their configurations in the order of the ring, the head first
  * @n_members: how many
  * @head: device number of the head at the last search, 0: there is none that may be used
@@ -36,6 +37,7 @@ struct ec_group {
 	struct ec_config *at;
 	u8 port;
 	bool mandatory;
+	bool fast;
 	struct ec_config **members;
 	unsigned int n_members;
 	u64 head;

@@ -2,9 +2,9 @@
 /* The end of what an application has configured. */
 #include <linux/slab.h>
 #include "../bus/slave.h"
-#include "../config/group.h"
 #include "clear.h"
 #include "ref_clock.h"
+#include "session_groups.h"
 #include "session_slave.h"
 
 /**
@@ -21,12 +21,11 @@ void ec_session_clear(struct ec_session *s)
 	ec_for_each_config(c, &s->wanted)
 		if (ec_session_owns(c))
 			ec_stop_interrupt(&c->slave->stop, true);
+	ec_session_drop_groups(s);
 	ec_for_each_config(c, &s->wanted) {
 		ec_session_detach(c);
 		ec_config_free(c);
 	}
-	ec_for_each_group(g, &s->wanted)
-		ec_group_free(g);
 	ec_for_each_domain(d, &s->wanted)
 		ec_domain_free(d);
 	kvfree(s->wanted.configs);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
+#include "../bus/ports.h"
 #include "../config/group.h"
 #include "session_groups.h"
 #include "session_slave.h"
@@ -82,6 +83,16 @@ static void attach_group(struct ec_session *s, struct ec_group *g)
 	kvfree(found);
 }
 
+static u8 fast_ports(const struct ec_wanted *w, const struct ec_config *at)
+{
+	u8 ports = 0;
+
+	ec_for_each_group(g, w)
+		if (g->fast && g->at == at)
+			ports |= BIT(g->port);
+	return ports;
+}
+
 /**
  * ec_session_attach_groups() - connect the members of groups that are on the bus with their slaves
  * @s: session, after ec_session_mark()
@@ -93,6 +104,26 @@ void ec_session_attach_groups(struct ec_session *s)
 	lockdep_assert_held(s->wanted.lock);
 	ec_for_each_group(g, &s->wanted)
 		attach_group(s, g);
+	ec_for_each_group(g, &s->wanted)
+		if (g->fast && g->at->slave)
+			ec_ports_set_fast(g->at->slave, fast_ports(&s->wanted, g->at));
+}
+
+/**
+ * ec_session_drop_groups() - free the hot connect groups
+ * @s: session, with the slaves of its configurations
+ *
+ * Context: Process, session lock held.
+ */
+void ec_session_drop_groups(struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	ec_for_each_group(g, &s->wanted) {
+		if (g->fast && g->at->slave && ec_session_owns(g->at))
+			ec_ports_set_fast(g->at->slave, 0);
+		ec_group_free(g);
+	}
+	s->wanted.n_groups = 0;
 }
 
 /**

@@ -351,6 +351,30 @@ static void groups_by_port(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, in_op(t, second));
 }
 
+/* Its port is opened at once, and again and again after losses. */
+static void groups_fast(struct kunit *test)
+{
+	u32 lines = bus_log_lines("has lost its link 3 times"), i, cycles;
+	struct tools *t = begin(test, NULL, 0);
+	struct bus *b = t->c->b;
+
+	add_fixed(t);
+	t->group = add_group(t, "tool", EC_GROUP_BY_ID, 6, t->hub, 1, EC_GROUP_FLAG_FAST);
+	t->head = add_drive(t, t->group, 0, 0);
+	add_drive(t, t->group, 1, 0);
+	run(t);
+	for (i = 0; i < 6; i++) {
+		bus_command(b, "plug hub.1 x1.0");
+		cycles = wait_op(t);
+		bus_figure("a fast group of two in OP %u cycles after its link came", cycles);
+		/* the first time with its EEPROM */
+		KUNIT_EXPECT_LE(test, cycles, i ? 250u : 600u);
+		bus_command(b, "unplug hub.1");
+		wait_slaves(t, N);
+	}
+	KUNIT_EXPECT_EQ(test, bus_log_lines("has lost its link 3 times") - lines, 0u);
+}
+
 /* One with an identification that has to be at a port, and one with a serial number */
 static void groups_pinned_and_serial(struct kunit *test)
 {
@@ -428,6 +452,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(groups_twin_of_running),
 	KUNIT_CASE(groups_twins),
 	KUNIT_CASE(groups_by_port),
+	KUNIT_CASE(groups_fast),
 	KUNIT_CASE(groups_pinned_and_serial),
 	KUNIT_CASE(groups_refused),
 	{}

@@ -363,6 +363,28 @@ static void ports_flapping(struct kunit *test)
 	KUNIT_EXPECT_LE(test, w.incomplete, 3u);
 }
 
+/* A port that waits is opened at once when a user asks for a scan. */
+static void ports_retry(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i;
+
+	for (i = 0; i < 8; i++) {
+		bus_command(c->b, "cut hub.2");
+		cyc_run(c, 40);
+		bus_command(c->b, "heal hub.2");
+		cyc_run(c, 40);
+	}
+	cyc_run(c, 400);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), 3u);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_RESCAN, NULL), 0);
+	for (i = 0; i < 3000 && bus_n_slaves(c->b) < N; i++)
+		cyc_run(c, 1);
+	bus_figure("a port that waits after losses opened, and two slaves read, %u cycles after the request", i);
+	KUNIT_EXPECT_LE(test, i, 500u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_closed_while_active),
 	KUNIT_CASE(ports_open_after_unload),
@@ -374,6 +396,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_slave_with_host_behind),
 	KUNIT_CASE(ports_slave_with_fixed_loops),
 	KUNIT_CASE(ports_flapping),
+	KUNIT_CASE(ports_retry),
 	{}
 };
 
