@@ -64,6 +64,7 @@ struct watch {
 	u64 ports_ns;		/* last read of all ports */
 	u64 lost_ns;		/* since when no frame returns, 0: frames do */
 	bool door;		/* a closed port has a link */
+	u32 path;		/* changes of ports before this look */
 	unsigned int dl_stays;	/* looks in a row that did not clear the event of a port */
 	u64 event;		/* number of the next one for the kernel log */
 	struct ec_quiet quiet;	/* looks of the timer */
@@ -561,6 +562,9 @@ static void maybe_scan(struct watch *w)
 			WRITE_ONCE(m->bus.due, false);
 		WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
+		/* the ports are proven to be as the scan has found them */
+		w->path = ec_dc_path(&m->dc);
+		WRITE_ONCE(m->dc.path_scanned, w->path);
 		/* before their workers ask for their clocks */
 		if (result.changed)
 			WRITE_ONCE(m->dc.changed, true);
@@ -652,6 +656,16 @@ static void quiet_sleep(struct watch *w)
 		w->ride_ns = q->ride_ns;
 }
 
+/* Ports have changed, but no slave has: the delays are as before. */
+static void note_path(struct watch *w)
+{
+	struct ec_dc *dc = &w->m->dc;
+	bool event = w->irq & EC_ECAT_EVENT_DL && w->dl_stays < STAYS;
+
+	if (w->scanned && !event && !READ_ONCE(dc->changed) && !ec_dc_busy(dc))
+		ec_dc_path_is_known(dc, w->path);
+}
+
 static int monitor(void *data)
 {
 	struct watch w = { .m = data };
@@ -663,6 +677,7 @@ static int monitor(void *data)
 	while (!kthread_should_stop()) {
 		if (READ_ONCE(m->pause))
 			stand_still(m);
+		w.path = ec_dc_path(&m->dc);
 		check_links(&w);
 		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_CYCLIC &&
 		    ec_access_timed_out(&m->links))
@@ -683,6 +698,7 @@ static int monitor(void *data)
 			WRITE_ONCE(m->bus.looked, true);
 		ec_bus_settled(&m->bus);
 		ec_session_status(&m->sessions, w.scanned);
+		note_path(&w);
 		ec_pending_flush(&m->bus, false);
 		ec_event_log(m->base, &w.event);
 		ec_log_flush(m->base, false);

@@ -63,6 +63,8 @@ struct ec_bus {
 	unsigned int n_slaves;
 	/** @known: device numbers */
 	struct ec_known known;
+	/** @trials: attempts to open a port; only the monitor writes it */
+	u32 trials;
 
 	/** @pending: slaves have changed, and there is no event of it so far */
 	bool pending;

@@ -465,6 +465,7 @@ int ec_trial(struct ec_slave *s, unsigned int port)
 	struct guest g;
 	int ret;
 
+	WRITE_ONCE(s->bus->trials, s->bus->trials + 1);
 	t.next = t.position < s->bus->n_slaves ? s->bus->slaves[t.position] : NULL;
 	ret = trial_one(&t, &g);
 	s->ports.loops = t.host.loops;

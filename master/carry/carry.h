@@ -52,6 +52,11 @@ struct ec_carry {
 	const struct ec_carry_ops *ops;
 	/** @ref_minus_ktime: time of the reference clock less ktime, ns, or NULL; immutable */
 	const atomic64_t *ref_minus_ktime;
+	/**
+	 * @clocks_held: posts do not give the time of the reference clock to other clocks;
+	 * written by the cycle owner
+	 */
+	bool clocks_held;
 	/** @monitor: thread whose posts overtake those of other callers, NULL: none */
 	const struct task_struct *monitor;
 

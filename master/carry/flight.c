@@ -89,9 +89,13 @@ static void stamp(const struct ec_carry *c, u8 *frame, size_t len, u64 sent_ns)
 	if (!c->ref_minus_ktime || ec_frame_iter_init(&it, frame, len))
 		return;
 	put_unaligned_le64(atomic64_read(c->ref_minus_ktime) + sent_ns, time);
-	while (ec_frame_iter_next(&it, &d) == 1)
-		if (d.cmd == EC_CMD_FRMW && d.ado == EC_REG_DC_SYSTIME && d.len <= sizeof(time))
-			memcpy(d.data, time, d.len);
+	while (ec_frame_iter_next(&it, &d) == 1) {
+		if (d.cmd != EC_CMD_FRMW || d.ado != EC_REG_DC_SYSTIME || d.len > sizeof(time))
+			continue;
+		memcpy(d.data, time, d.len);
+		if (READ_ONCE(c->clocks_held))
+			d.data[-EC_DGRAM_HDR] = EC_CMD_FPRD;
+	}
 }
 
 /* Count a frame as in flight, before it is sent: see ecdev_awaits(). */

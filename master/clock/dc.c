@@ -9,9 +9,12 @@
 #include "../base/once64.h"
 
 #define EXTRA_DGRAMS	16000	/* of drift compensation by the cycle */
+#define LESS_DGRAMS	4400	/* beside clocks in use */
 #define APP_WAIT_MS	2000	/* for the first application time of the cycle */
 #define APP_CYCLES	20	/* or for so many cycles without one */
 #define APP_MEDIAN	5	/* cycles with one: a single cycle may be late */
+#define FIRST_CYCLES	8	/* in which the cycle alone compensates clocks in use */
+#define FIRST_MS	100	/* or so long */
 #define TRIES		20	/* to set the clocks while frames are lost */
 #define TRY_MS		50	/* between them */
 
@@ -233,8 +236,10 @@ static int set_clocks(struct ec_dc_job *j)
 		change_ref(j, false);
 	for (try = 0; j->ref < j->n && try < TRIES; try++) {
 		ret = ec_dc_get_delays(j) ?: ec_dc_latch(j) ?: ec_dc_write(j);
-		if (!ret)
+		if (!ret) {
+			ec_dc_path_is_known(dc, j->path);
 			change_ref(j, true);
+		}
 		if (!dc_is_transient(ret) || READ_ONCE(dc->stop))
 			break;
 		if (ret == -EAGAIN)
@@ -248,22 +253,50 @@ static int set_clocks(struct ec_dc_job *j)
 	return -ENXIO;
 }
 
-/* Set and compensate all clocks of the job; the cycle uses them meanwhile as far as it can. */
+/* Have clocks in use the reference clock that they had before? */
+static bool same_ref(const struct ec_dc_job *j)
+{
+	return j->compensated && j->ref < j->n && j->slaves[j->ref]->station == j->followed;
+}
+
+static bool all_set(const struct ec_dc_job *j)
+{
+	unsigned int i;
+
+	for (i = 0; i < j->n; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) &&
+		    READ_ONCE(ec_job_clock(j, i)->state) != EC_CLOCK_SET)
+			return false;
+	return true;
+}
+
+/*
+ * Set and compensate all clocks of the job; the cycle uses them meanwhile as far as it can. Where
+ * no clock is new, it continues: each datagram more would disturb the rates of those in use.
+ */
 static int synchronize(struct ec_dc_job *j)
 {
 	struct ec_dc *dc = j->dc;
+	bool quiet;
 	int ret;
 
 	mutex_lock(&dc->lock);
 	j->compensated = READ_ONCE(dc->mode) == EC_DC_COMPENSATE;
 	WRITE_ONCE(dc->mode, EC_DC_IDLE);
+	WRITE_ONCE(dc->extra_dgrams, 0);
+	quiet = same_ref(j) && all_set(j);
 	ret = set_clocks(j);
 	ec_write64(&dc->since_ns, ktime_get_ns());
+	/* a clock measures its rate again by few datagrams before it gets many */
+	if (!ret && j->compensated)
+		ec_dc_correct_between(j, FIRST_CYCLES, FIRST_MS);
 	/* clocks that were set before need the cycle in any case */
 	if (!ret || (j->compensated && ret != -ENXIO))
 		WRITE_ONCE(dc->mode, EC_DC_COMPENSATE);
-	WRITE_ONCE(dc->extra_dgrams, ret ? 0 : EXTRA_DGRAMS);
-	ret = ret ?: ec_dc_near(j) ?: ec_dc_check(j);
+	if (!ret && !quiet)
+		WRITE_ONCE(dc->extra_dgrams, same_ref(j) ? LESS_DGRAMS : EXTRA_DGRAMS);
+	ret = ret ?: quiet ? 0 : ec_dc_near(j);
+	ret = ret ?: ec_dc_check(j);
 	mutex_unlock(&dc->lock);
 	if (ret) {
 		WRITE_ONCE(dc->extra_dgrams, 0);

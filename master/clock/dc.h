@@ -250,6 +250,12 @@ struct ec_dc {
 
 	/** @mode: enum ec_dc_mode */
 	int mode;
+	/** @path_events: changes of ports that the cycle has seen; only its owner writes it */
+	u32 path_events;
+	/** @path_scanned: ec_dc_path() that the last scan has taken into account */
+	u32 path_scanned;
+	/** @path_known: ec_dc_path() for which the delays are right, else the clocks are held */
+	u32 path_known;
 	/** @extra_dgrams: drift compensation datagrams that the cycle adds to one per send */
 	u32 extra_dgrams;
 	/** @since_ns: since when drift is compensated (ktime) */
@@ -357,6 +363,24 @@ static inline bool ec_dc_busy(const struct ec_dc *dc)
 	int state = READ_ONCE(dc->state);
 
 	return state == EC_DC_BUSY || state == EC_DC_AWAIT_CYCLE;
+}
+
+/* Changes of ports, seen by the cycle or made by the master, for ec_dc_path_is_known(). */
+static inline u32 ec_dc_path(const struct ec_dc *dc)
+{
+	return READ_ONCE(dc->path_events) + READ_ONCE(dc->bus->trials);
+}
+
+/* After these changes of ports (ec_dc_path()) the delays are right, as measured or as before. */
+static inline void ec_dc_path_is_known(struct ec_dc *dc, u32 path)
+{
+	WRITE_ONCE(dc->path_known, path);
+}
+
+/* May the delays be wrong? RT-safe */
+static inline bool ec_dc_path_changed(const struct ec_dc *dc)
+{
+	return ec_dc_path(dc) != READ_ONCE(dc->path_known);
 }
 
 /* Is the monitor to call ec_dc_begin() for the active session? */

@@ -174,6 +174,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 	unsigned int i;
 
 	*j = (struct ec_dc_job){ .dc = dc };
+	j->path = READ_ONCE(dc->path_scanned);
 	down_read(&dc->bus->topo);
 	j->n = dc->bus->n_slaves;
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
@@ -409,7 +410,8 @@ static int dc_job_measure(struct ec_dc_job *j)
 		if (latched && !ret) {
 			sum_up(j);
 			rounds++;
-			if (j->compensated && rounds < ROUNDS && rounds % TOGETHER == 0)
+			if (j->compensated && rounds < ROUNDS && rounds % TOGETHER == 0 &&
+			    !ec_dc_path_changed(j->dc))
 				ec_dc_correct_between(j, CORRECT_CYCLES, CORRECT_MS);
 		}
 		latched = !j->dg[n - 1].err;

@@ -27,6 +27,7 @@
  * @followed: station address of the clock that the others are synchronized to, or 0
  * @ref: index of the reference clock, @n: none
  * @latch_ns: when the last latch was sent (ktime)
+ * @path: changes of ports that the list of slaves takes into account
  * @compensated: the cycle has compensated clocks until now
  * @worker: a job of the worker, which ends with dc.stop
  * @first: all clocks are set for the first time in the session
@@ -46,6 +47,7 @@ struct ec_dc_job {
 	u16 followed;
 	unsigned int ref;
 	u64 latch_ns;
+	u32 path;
 	bool compensated;
 	bool worker;
 	bool first;

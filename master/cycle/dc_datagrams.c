@@ -5,8 +5,9 @@
  * first frame, so that their delay after the send is constant. Nothing here
  * allocates, prints or waits.
  */
+#include "../carry/carry.h"
 #include "../clock/dc.h"
-#include "../link/access.h"
+#include "../link/links.h"
 #include "../wire/regs.h"
 #include "dc_datagrams.h"
 #include "layout.h"
@@ -77,6 +78,48 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k)
 	return most(k) * ONE_MORE_NS;
 }
 
+#define HELD_MAX_US	1000000	/* clocks that nothing compensates drift apart */
+#define HELD_LED_US	250000	/* if the application changes the rate of the reference clock */
+#define HELD_AGAIN	4	/* so many times as long until that may last as long again */
+
+/*
+ * A clock whose path has another delay than its register has would be moved by the difference. So
+ * from the first frame that shows the event of a port until the delays are known again, the time
+ * of the reference clock is only read.
+ */
+static bool hold_for_path(struct ec_dc_datagrams *k)
+{
+	bool changed = ec_dc_path_changed(k->dc);
+	u32 most = READ_ONCE(k->dc->app_leads) ? HELD_LED_US : HELD_MAX_US, us;
+
+	if (likely(!changed && !k->path_held_us))
+		return false;
+	us = ec_access_interval_us(k->access);
+	if (!changed || k->path_held_us >= most) {
+		k->path_held_us -= min(k->path_held_us, us / HELD_AGAIN + 1);
+		return false;
+	}
+	k->path_held_us += us;
+	return true;
+}
+
+/**
+ * ec_dc_datagrams_events() - take the events that the replies of a receive have shown
+ * @k: of the active cycle
+ * @irq: ECAT events of the slaves
+ *
+ * Context: The cycle owner. RT-safe.
+ */
+void ec_dc_datagrams_events(struct ec_dc_datagrams *k, u16 irq)
+{
+	bool event = irq & EC_ECAT_EVENT_DL;
+
+	/* one that stays is no other change */
+	if (unlikely(event && !k->port_event))
+		WRITE_ONCE(k->dc->path_events, k->dc->path_events + 1);
+	k->port_event = event;
+}
+
 /**
  * ec_dc_datagrams_wanted() - clock datagrams of this send
  * @k: of the active cycle
@@ -94,10 +137,12 @@ u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags)
 	k->asked |= flags;
 	if (!READ_ONCE(k->dc->wanted))
 		WRITE_ONCE(k->dc->wanted, true);
+	k->path_held = hold_for_path(k);
+	WRITE_ONCE(k->dc->links->carry->clocks_held, k->path_held);
 	if (READ_ONCE(k->dc->mode) == EC_DC_IDLE)
 		return 0;
 	/* no change of the reference clock before the other clocks are synchronized to it */
-	if (k->hold || (READ_ONCE(k->dc->mode) == EC_DC_READ && ec_dc_busy(k->dc)))
+	if (k->hold || k->path_held || (READ_ONCE(k->dc->mode) == EC_DC_READ && ec_dc_busy(k->dc)))
 		flags &= ~SYNC_REF;
 	if (!flags)
 		return 0;
@@ -206,7 +251,7 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 {
 	u16 ref = READ_ONCE(k->dc->ref_station);
 	/* slaves upstream of the reference clock must not get an unknown time */
-	bool quiet = READ_ONCE(k->dc->mode) == EC_DC_READ ||
+	bool quiet = k->path_held || READ_ONCE(k->dc->mode) == EC_DC_READ ||
 		     (k->dc->clocks_upstream && !k->time);
 	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
 	unsigned int i;

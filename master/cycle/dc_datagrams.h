@@ -48,6 +48,12 @@ struct ec_dc_datagrams {
 	u32 diff;
 	/** @hold: the application time is wrong: it is not sent to the reference clock */
 	bool hold;
+	/** @port_event: the last receive had the event of a port */
+	bool port_event;
+	/** @path_held: the delays may be wrong: the time is not sent to the slaves */
+	bool path_held;
+	/** @path_held_us: how long that was so recently */
+	u32 path_held_us;
 	/** @lead: application time less ktime, ns */
 	u64 lead;
 };
@@ -68,6 +74,7 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 			  u64 now);
 const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 			       u64 sent_ns, const u8 *data);
+void ec_dc_datagrams_events(struct ec_dc_datagrams *k, u16 irq);
 void ec_dc_datagrams_judge(struct ec_dc_datagrams *k, struct ec_status *st);
 
 #endif

@@ -321,6 +321,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	}
 	rcu_read_unlock();
 	c->n_flight = left;
+	ec_dc_datagrams_events(&c->clock, irq);
 	ec_links_events(l, irq);
 	receive_judge(c, st);
 	flags = ec_status_begin(st);
