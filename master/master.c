@@ -4,6 +4,7 @@
 #include "boundary/api.h"
 #include "boundary/cdev.h"
 #include "carry/posts.h"
+#include "clock/dc_track.h"
 #include "link/device.h"
 #include "link/spec.h"
 #include "boundary/master.h"
@@ -78,6 +79,7 @@ static void destroy(struct ec_master *m)
 	ec_event_readers_exit(m);
 	ec_slave_devices_stop(&m->slave_devices);
 	ec_dc_exit(&m->dc);
+	ec_dc_track_exit(&m->dc);
 	queues_destroy(m);
 	ec_api_destroy(m);
 	ec_device_unregister(&m->links);
@@ -118,7 +120,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		goto err;
 	ec_setup_init(&m->bus);
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
-	ret = ec_api_create(m);
+	ret = ec_dc_track_init(&m->dc, &m->riders) ?: ec_api_create(m);
 	if (ret)
 		goto err;
 	ret = ec_monitor_start(m);
@@ -128,6 +130,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	return ERR_PTR(ret);
 
 err:
+	ec_dc_track_exit(&m->dc);
 	ec_api_destroy(m);
 	queues_destroy(m);
 	ec_device_unregister(&m->links);

@@ -126,24 +126,11 @@ int ec_rider_end(struct ec_rider *r)
 	}
 }
 
-/**
- * ec_rider_exchange() - exchange a rider with a frame of the cycle
- * @rs: riders of the master
- * @r: rider with command, address, length and data
- *
- * Context: Process; the owner of @r. May sleep.
- * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
- * -ETIMEDOUT: its frame is lost.
- */
-int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r)
+/* Wait for a rider, @sends_ns until @until for its frame and then for the reply. */
+static int await(struct ec_riders *rs, struct ec_rider *r, u64 sends_ns, u64 until)
 {
 	struct ec_links *l = rs->links;
-	u64 sends_ns = (SENDS * (u64)ec_access_interval_us(&l->access) + SLACK_US) * NSEC_PER_USEC;
-	u64 until = ktime_get_ns() + sends_ns;
 
-	if (!ec_access_is_cyclic(&l->access))
-		return -EAGAIN;
-	ec_rider_begin(rs, r);
 	/* the completion may be that of an earlier frame: the state decides */
 	for (;;) {
 		wait_for_completion_timeout(&r->done, usecs_to_jiffies(STEP_US));
@@ -159,6 +146,47 @@ int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r)
 	}
 	atomic_set(&r->state, EC_RIDER_IDLE);
 	return 0;
+}
+
+/**
+ * ec_rider_exchange_all() - exchange riders with frames of the cycle
+ * @rs: riders of the master
+ * @r: riders with command, address, length and data
+ * @n: how many
+ *
+ * Context: Process; the owner of @r. May sleep.
+ * Return: 0 with the results in @r; or the error of a rider that has none, as
+ * ec_rider_exchange().
+ */
+int ec_rider_exchange_all(struct ec_riders *rs, struct ec_rider *r, unsigned int n)
+{
+	struct ec_links *l = rs->links;
+	u64 sends_ns = (SENDS * (u64)ec_access_interval_us(&l->access) + SLACK_US) * NSEC_PER_USEC;
+	u64 until = ktime_get_ns() + sends_ns;
+	unsigned int i;
+	int ret = 0;
+
+	if (!ec_access_is_cyclic(&l->access))
+		return -EAGAIN;
+	for (i = 0; i < n; i++)
+		ec_rider_begin(rs, &r[i]);
+	for (i = 0; i < n; i++)
+		ret = await(rs, &r[i], sends_ns, until) ?: ret;
+	return ret;
+}
+
+/**
+ * ec_rider_exchange() - exchange a rider with a frame of the cycle
+ * @rs: riders of the master
+ * @r: rider with command, address, length and data
+ *
+ * Context: Process; the owner of @r. May sleep.
+ * Return: 0 with the results in @r; -EAGAIN: no frame of a cycle has carried it;
+ * -ETIMEDOUT: its frame is lost.
+ */
+int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r)
+{
+	return ec_rider_exchange_all(rs, r, 1);
 }
 
 /* Wire time by which @bytes more make a frame longer. */

@@ -87,6 +87,7 @@ bool ec_rider_is_back(const struct ec_rider *r);
 void ec_rider_again(struct ec_riders *rs, struct ec_rider *r);
 int ec_rider_end(struct ec_rider *r);
 int ec_rider_exchange(struct ec_riders *rs, struct ec_rider *r);
+int ec_rider_exchange_all(struct ec_riders *rs, struct ec_rider *r, unsigned int n);
 void ec_riders_add(struct ec_riders *rs, struct ec_frame_buf *fb, u8 index,
 		   struct ec_riding *riding);
 void ec_riders_return(struct ec_riders *rs, const struct ec_riding *riding);

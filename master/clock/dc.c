@@ -89,7 +89,7 @@ int ec_dc_measure(struct ec_dc *dc)
 {
 	unsigned int try;
 	struct ec_dc_job j;
-	int ret = ec_dc_job_init(&j, dc);
+	int ret = ec_dc_job_init(&j, dc, true);
 
 	if (ret)
 		return ret;
@@ -337,7 +337,7 @@ static void dc_work(struct work_struct *work)
 	if (READ_ONCE(dc->stop))
 		return;
 	t0 = ktime_get_ns();
-	ret = ec_dc_job_init(&j, dc);
+	ret = ec_dc_job_init(&j, dc, true);
 	if (ret) {
 		ec_dc_set_state(dc, EC_DC_RETRY_WAIT);
 		return;

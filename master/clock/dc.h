@@ -12,6 +12,7 @@
 
 struct ec_base;
 struct ec_bus;
+struct ec_dc_track;
 struct ec_ioc_send;
 struct ec_links;
 struct ec_result;
@@ -260,6 +261,10 @@ struct ec_dc {
 	u32 extra_dgrams;
 	/** @since_ns: since when drift is compensated (ktime) */
 	aligned_u64 since_ns;
+	/** @track: of dc_track.c, or NULL; immutable, as is the next one */
+	struct ec_dc_track *track;
+	/** @again: measures the delays again while nothing changes, or NULL; called by @watch */
+	void (*again)(struct ec_dc *dc);
 	/** @window_logged: the log says that clocks are outside the sync window */
 	bool window_logged;
 	/** @window_log_ns: no other message of that before (ktime) */

@@ -165,11 +165,12 @@ static void choose(struct ec_dc_job *j)
  * ec_dc_job_init() - begin a job with the present slaves
  * @j: job
  * @dc: clocks
+ * @sends: it has transfers
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM.
  */
-int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
+int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends)
 {
 	unsigned int i;
 
@@ -190,7 +191,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc)
 	j->unit = kvcalloc(j->n + 1, sizeof(*j->unit), GFP_KERNEL);
 	j->sum = kvcalloc(j->n + 1, sizeof(*j->sum), GFP_KERNEL);
 	/* up to four of each slave */
-	j->dg = kvcalloc(4 * j->n + EC_DC_BATCH, sizeof(*j->dg), GFP_KERNEL);
+	j->dg = kvcalloc(sends ? 4 * j->n + EC_DC_BATCH : 1, sizeof(*j->dg), GFP_KERNEL);
 	j->spoiled = kvcalloc(j->n + 1, sizeof(*j->spoiled), GFP_KERNEL);
 	j->silent = kvcalloc(j->n + 1, sizeof(*j->silent), GFP_KERNEL);
 	if (!j->slaves || !j->nodes || !j->recv || !j->unit || !j->sum || !j->dg || !j->spoiled ||
@@ -368,7 +369,13 @@ int ec_dc_latch(struct ec_dc_job *j)
 	return ret;
 }
 
-static void sum_up(struct ec_dc_job *j)
+/**
+ * ec_dc_compute() - compute the delays from the receive times of a latch
+ * @j: job with a reference clock
+ *
+ * Context: Process.
+ */
+void ec_dc_compute(struct ec_dc_job *j)
 {
 	unsigned int i, p;
 
@@ -376,6 +383,13 @@ static void sum_up(struct ec_dc_job *j)
 		for (p = 0; p < EC_DC_PORTS; p++)
 			j->nodes[i].recv[p] = get_unaligned_le32(j->recv[i] + 4 * p);
 	ec_dc_delays(j->nodes, j->n, j->ref);
+}
+
+static void sum_up(struct ec_dc_job *j)
+{
+	unsigned int i;
+
+	ec_dc_compute(j);
 	for (i = 0; i < j->n; i++)
 		j->sum[i] += (s32)j->nodes[i].delay;
 }
@@ -447,7 +461,7 @@ static bool known(struct ec_dc_job *j, u32 scan)
  */
 int ec_dc_get_delays(struct ec_dc_job *j)
 {
-	u32 scan = READ_ONCE(j->dc->bus->scan_count) + 1;
+	u32 scan = ec_dc_scan(j);
 	unsigned int i;
 	int ret;
 

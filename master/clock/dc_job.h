@@ -54,6 +54,12 @@ struct ec_dc_job {
 	u8 time[8];
 };
 
+/* measured after the last scan */
+static inline u32 ec_dc_scan(const struct ec_dc_job *j)
+{
+	return READ_ONCE(j->dc->bus->scan_count) + 1;
+}
+
 static inline struct ec_clock *ec_job_clock(const struct ec_dc_job *j, unsigned int i)
 {
 	return ec_clock_of(j->slaves[i]);
@@ -63,7 +69,7 @@ static inline struct ec_clock *ec_job_clock(const struct ec_dc_job *j, unsigned 
 enum ec_dc_who { EC_DC_TIMES, EC_DC_CLOCKS, EC_DC_NEW, EC_DC_NEW_WIDE, EC_DC_NEW_NARROW };
 
 /* dc_job.c */
-int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc);
+int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends);
 void ec_dc_job_free(struct ec_dc_job *j);
 bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who);
 unsigned int ec_dc_count(const struct ec_dc_job *j, enum ec_dc_who who);
@@ -72,6 +78,7 @@ unsigned int ec_dc_add(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who,
 int ec_dc_answers(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who);
 void ec_dc_leave_out(struct ec_dc_job *j);
 int ec_dc_latch(struct ec_dc_job *j);
+void ec_dc_compute(struct ec_dc_job *j);
 int ec_dc_get_delays(struct ec_dc_job *j);
 void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms);
 bool ec_dc_has_upstream(const struct ec_dc_job *j);

@@ -180,6 +180,8 @@ static void watch(struct work_struct *work)
 	if (due && worth)
 		ec_dc_set_state(dc, EC_DC_RETRY_DUE);
 	log_window(dc);
+	if (dc->again && !(due && worth))
+		dc->again(dc);
 out:
 	kfree(b);
 	if (!READ_ONCE(dc->stop))
