@@ -524,6 +524,7 @@ static void maybe_scan(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	struct ec_scan_result result = { 0 };
+	bool asked = false;
 
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
@@ -549,6 +550,7 @@ static void maybe_scan(struct watch *w)
 		 */
 		smp_wmb();
 		WRITE_ONCE(m->bus.rescan, false);
+		asked = true;
 		ec_known_forget_images(&m->bus);
 		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT &&
 		    !READ_ONCE(m->sessions.session))
@@ -565,8 +567,8 @@ static void maybe_scan(struct watch *w)
 		/* the ports are proven to be as the scan has found them */
 		w->path = ec_dc_path(&m->dc);
 		WRITE_ONCE(m->dc.path_scanned, w->path);
-		/* before their workers ask for their clocks */
-		if (result.changed)
+		/* before their workers ask for their clocks; delays are measured again on demand */
+		if (result.changed || asked)
 			WRITE_ONCE(m->dc.changed, true);
 		ec_session_attach(&m->sessions);
 		if (!READ_ONCE(m->cycles.active))

@@ -187,7 +187,8 @@ static void track_costs_no_frame(struct kunit *test)
 	expect_followed(r, "nothing changes");
 }
 
-static void track_off_measures_nothing(struct kunit *test)
+/* It can be switched off; a scan that the user has requested measures nevertheless. */
+static void track_off_measures_on_demand(struct kunit *test)
 {
 	struct run *r = track_start(test);
 	u32 delay;
@@ -196,14 +197,19 @@ static void track_off_measures_nothing(struct kunit *test)
 	delay = delay_of(r->b, C);
 	lengthen(r->b, HUB, 1, 20);
 	track_run(r, 60000);
-	WRITE_ONCE(ec_dc_track_on, true);
 	KUNIT_EXPECT_EQ(test, delay_of(r->b, C), delay);
+	bus_rescan(r->b);
+	track_run(r, 2000);
+	WRITE_ONCE(ec_dc_track_on, true);
+	/* written at once: the clock takes 1/64 of it with each frame */
+	r->step = 1;
+	expect_followed(r, "cable of a branch longer by 20 ns, scan requested");
 }
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(track_follows_cables),
 	KUNIT_CASE(track_costs_no_frame),
-	KUNIT_CASE(track_off_measures_nothing),
+	KUNIT_CASE(track_off_measures_on_demand),
 	{ }
 };
 
