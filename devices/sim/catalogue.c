@@ -320,6 +320,16 @@ static const struct ec_app_dev devices[] = {
 		.esc_type = EC_APP_ESC_ET1200, .features = FEAT_DC64,
 		.fmmus = 3,
 	}, {
+		.name = "EK1122", .title = "EK1122 2-port junction",
+		.group = "System couplers",
+		.vendor = VENDOR_BECKHOFF, .product = 0x04622C52,
+		.revision = 0x00100000,
+		.pdi_control = COUPLER, .current_ma = 220,
+		.ports = { EC_PORT_TYPE_EBUS, EC_PORT_TYPE_EBUS, EC_PORT_TYPE_MII,
+			   EC_PORT_TYPE_MII },
+		.esc_type = EC_APP_ESC_ET1100, .features = FEAT_DC64,
+		.fmmus = 8,
+	}, {
 		DIGITAL_DEV("EL1004", "EL1004 4-ch input", "Digital inputs",
 			    0x03EC3052, 90), .dc_delay_only = true,
 		.fmmu_use = { EC_SII_FMMU_INPUTS }, .n_fmmu_use = 1,

@@ -203,6 +203,77 @@ static void wiring_by_any_port(struct kunit *test)
 	KUNIT_EXPECT_LE(test, max, 10u);
 }
 
+/* a tree of slaves with two, three and four ports that are entered by port 0 */
+static u32 grow_junctions(struct tree *t, char *text, u32 size)
+{
+	static const char * const names[] = { "drive in=8 out=8", "EK1100", "EK1122" };
+	static const u8 ports[] = { 3, 7, 15 };
+	u32 i, n = scnprintf(text, size, "segment seed=%u\n", t->random);
+
+	for (i = 0; i < TREE; i++) {
+		u32 kind = dice(t, 3);
+
+		t->ports[i] = ports[kind];
+		t->used[i] = BIT(0);
+		n += scnprintf(text + n, size - n, "slave s%u %s drift=%dppm clock=%ums dc=%d\n",
+			       i, names[kind], (int)dice(t, 200) - 100, dice(t, 9000),
+			       dice(t, 2) ? 32 : 64);
+	}
+	n += scnprintf(text + n, size - n, "wire master.0 -> s0.0\n");
+	for (i = 1; i < TREE; i++) {
+		do
+			t->parent[i] = dice(t, i);
+		while (t->used[t->parent[i]] == t->ports[t->parent[i]]);
+		t->at[i] = free_port(t, t->parent[i]);
+		n += scnprintf(text + n, size - n, "wire s%u.%u -> s%u.0 cable=%uns\n",
+			       t->parent[i], t->at[i], i, 20 + dice(t, 900));
+	}
+	return n;
+}
+
+static u32 wiring_now(struct bus *b, const char *text)
+{
+	msleep(300);
+	KUNIT_EXPECT_NE(b->test, bus_wait(b, b->sim->route[0].steps, EC_AL_PREOP, 5000), ~0ull);
+	bus_idle(b);
+	return expect_wiring(b, text);
+}
+
+/* Branches at any port go and come back: delays are those of the path that is there. */
+static void wiring_of_trees_that_change(struct kunit *test)
+{
+	struct tree *t = kunit_kzalloc(test, sizeof(*t), GFP_KERNEL);
+	static char text[8192];
+	u32 i, k, max = 0;
+	char command[40];
+
+	KUNIT_ASSERT_NOT_NULL(test, t);
+	for (i = 0; i < TREES; i++) {
+		struct bus *b;
+
+		grow_junctions(t, text, sizeof(text));
+		b = bus_up(test, text, TREE);
+		bus_idle(b);
+		max = max(max, expect_wiring(b, text));
+		for (k = 0; k < 3; k++) {
+			u32 s = 1 + dice(t, TREE - 1);
+
+			scnprintf(command, sizeof(command), "unplug s%u.0", s);
+			bus_command(b, command);
+			max = max(max, wiring_now(b, text));
+			scnprintf(command, sizeof(command), "plug s%u.%u s%u.0", t->parent[s],
+				  t->at[s], s);
+			bus_command(b, command);
+			max = max(max, wiring_now(b, text));
+		}
+		bus_down(b);
+		test->priv = NULL;
+	}
+	bus_figure("%u random trees with junctions, 6 changes each: worst delay error %u ns",
+		   TREES, max);
+	KUNIT_EXPECT_LE(test, max, 10u);
+}
+
 static bool shown_odd(struct bus *b, u32 position)
 {
 	struct ec_ioc_slave *s = kunit_kzalloc(b->test, sizeof(*s), GFP_KERNEL);
@@ -310,6 +381,7 @@ static void wiring_slave_inserted(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(wiring_reversed),
 	KUNIT_CASE(wiring_by_any_port),
+	KUNIT_CASE(wiring_of_trees_that_change),
 	KUNIT_CASE(wiring_that_does_not_fit),
 	KUNIT_CASE(wiring_slave_inserted),
 	{ }
