@@ -18,6 +18,7 @@ struct asker {
 	u32 n;
 	u16 len;
 	bool clock;
+	bool first;
 	struct ec_dg *dg;
 	u8 *data;
 	int ret;
@@ -33,6 +34,7 @@ static int ask(void *arg)
 	for (i = 0; i < a->n; i++) {
 		a->dg[i] = EC_FPRD(bus_slave(a->b, 1)->station, 0, a->len, a->data + i * a->len);
 		a->dg[i].repeat = false;
+		a->dg[i].first = a->first;
 	}
 	a->ret = a->clock ? bus_xfer_clock(a->b, a->dg, a->n) : bus_xfer(a->b, a->dg, a->n);
 	a->end_ns = ktime_get_ns();
@@ -226,6 +228,18 @@ static void share_beside_clocks(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_lost(c->b), 0ull);
 }
 
+/* One that is to be the first clock frame of its send waits for the next one. */
+static void share_first_clock_frame_waits(struct kunit *test)
+{
+	struct cyc *c = in_op(test);
+	struct asker *a = askers(c->b, 1, FRAMES, 1, 1000);
+
+	a[0].clock = true;
+	KUNIT_EXPECT_EQ(test, run(c, a, 1, 1000).most, 2ull);
+	a[0].first = true;
+	KUNIT_EXPECT_EQ(test, run(c, a, 1, 1000).most, 1ull);
+}
+
 /* 100 drives on their way to OP: their mailboxes are at work, the monitor, the rest. */
 static void share_limited_during_start(struct kunit *test)
 {
@@ -279,6 +293,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(share_of_wire),
 	KUNIT_CASE(share_of_wire_packed),
 	KUNIT_CASE(share_beside_clocks),
+	KUNIT_CASE(share_first_clock_frame_waits),
 	KUNIT_CASE(share_limited_during_start),
 	KUNIT_CASE(share_refused_frame_stays_queued),
 	{}
