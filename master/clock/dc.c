@@ -417,6 +417,8 @@ void ec_dc_end(struct ec_dc *dc)
 {
 	stop(dc);
 	WRITE_ONCE(dc->mode, EC_DC_IDLE);
+	/* the cycle has ended, maybe while it held the clocks */
+	WRITE_ONCE(dc->links->carry->clocks_held, false);
 	ec_dc_app_forget(dc);
 	WRITE_ONCE(dc->choice, EC_DC_ANY);
 	WRITE_ONCE(dc->wanted, false);
