@@ -3,6 +3,7 @@
 #include <linux/kthread.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
+#include "base/report.h"
 #include "boundary/master.h"
 #include "event_log.h"
 #include "monitor.h"
@@ -89,13 +90,7 @@ static void note_change(struct ec_slave *s, u16 status, u16 code)
 	bool left = state < before && before == READ_ONCE(s->requested) &&
 		    state != READ_ONCE(s->awaited);
 
-	if (status & EC_AL_ERROR && !(READ_ONCE(s->al_status) & EC_AL_ERROR))
-		ec_slave_warn(s, "AL state %s with error, AL status code 0x%04x (%s)\n",
-			      ec_al_state_name(state), code, ec_al_code_text(code));
-	else if (left)
-		ec_slave_warn(s, "AL state %s left without request, now %s\n",
-			      ec_al_state_name(before), ec_al_state_name(state));
-	ec_slave_set_al(s, status, code, !left);
+	ec_slave_set_al(s, status, code, left ? EC_AL_BY_ITSELF : EC_AL_BY_REQUEST);
 }
 
 /* The next pass of the monitor starts a scan, unless the list is held. */
@@ -292,10 +287,8 @@ static void ask_slaves(struct watch *w)
 		return;
 	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
-		if (w->scanned) {
-			ec_info(m, "slaves responding: %u, before: %u\n", count, w->count);
-			ec_event(m->base, EC_EVENT_RESPONDING, count, w->count);
-		}
+		if (w->scanned)
+			ec_report(m->base, EC_EVENT_RESPONDING, count, w->count);
 		w->count = count;
 		w->same = 0;
 		w->scanned = false;
@@ -321,10 +314,7 @@ static void ask_slaves(struct watch *w)
 		w->silent++;
 	/* power was off for a moment: address and state are lost */
 	if (w->silent >= SILENT_LOOKS) {
-		ec_warn(m,
-			"a slave did not answer at its station address in %u polls; rescanning\n",
-			SILENT_LOOKS);
-		ec_event(m->base, EC_EVENT_NO_ANSWER, SILENT_LOOKS);
+		ec_report(m->base, EC_EVENT_NO_ANSWER, SILENT_LOOKS);
 		w->silent = 0;
 		scan_next(w);
 	}

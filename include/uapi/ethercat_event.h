@@ -31,7 +31,7 @@
 
 #define EC_EVENT_RESPONDING	0x10	/* slaves that reply, before */
 #define EC_EVENT_SCAN_START	0x11	/* slaves */
-#define EC_EVENT_SCAN_END	0x12	/* slaves, us, frames */
+#define EC_EVENT_SCAN_END	0x12	/* slaves, us, frames, 1: the list has changed */
 /*
  * slave upstream or EC_EVENT_NONE: the main device, its port, alias, vendor, product, ms ago;
  * slaves of the ring that were lost there, this one and those after it
@@ -83,13 +83,16 @@
 #define EC_EVENT_STALL		0x38
 #define EC_EVENT_OUTPUTS	0x39	/* there are new ones: cycles without */
 
-/* slave, or EC_EVENT_NONE: clocks run free; 1: the reference clock before was lost */
+/*
+ * slave, or EC_EVENT_NONE: clocks run free; 1: the reference clock before was lost; 1: the slave
+ * substitutes until the configured one returns
+ */
 #define EC_EVENT_REF_CLOCK	0x40
 #define EC_EVENT_DC_SET		0x41	/* synchronized: us, slave with the reference clock */
 #define EC_EVENT_DC_FAILED	0x42	/* errno, 1: is tried again */
 /* clocks outside, clocks, worst slave, its difference in ns */
 #define EC_EVENT_DC_WINDOW	0x43
-/* EC_CYCLE_LOCK_*, phase error in ns, rate in ppb; both signed */
+/* EC_CYCLE_LOCK_*, phase error in ns, rate in ppb; both signed; 1: it was locked before */
 #define EC_EVENT_LOCK		0x44
 
 /*

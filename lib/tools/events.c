@@ -71,6 +71,8 @@ const char *ect_event_arg(uint32_t kind, unsigned int i, uint32_t *type)
 		[EC_ARG_U] = ECT_ARG_UNSIGNED, [EC_ARG_I] = ECT_ARG_SIGNED,
 		[EC_ARG_SLAVE] = ECT_ARG_SLAVE, [EC_ARG_AL] = ECT_ARG_AL_STATE,
 		[EC_ARG_STALL] = ECT_ARG_STALL, [EC_ARG_LOCK] = ECT_ARG_LOCK,
+		[EC_ARG_AL_CODE] = ECT_ARG_UNSIGNED, [EC_ARG_HEX] = ECT_ARG_UNSIGNED,
+		[EC_ARG_DEVICE] = ECT_ARG_UNSIGNED,
 	};
 	const struct ec_event_kind *k = ec_event_kind(kind);
 

@@ -52,7 +52,7 @@ static bool over(const struct ec_log_event *e, u64 now)
 }
 
 /* The entry of this event, else a free one, else one whose window ended with nothing missed. */
-static struct ec_log_event *log_find(struct ec_log *l, const struct line *line, const char *fmt,
+static struct ec_log_event *log_find(struct ec_log *l, const struct line *line, const char *key,
 				     u64 now)
 {
 	bool many = line->slave != EC_LOG_ANY || line->id;
@@ -64,13 +64,13 @@ static struct ec_log_event *log_find(struct ec_log *l, const struct line *line, 
 	for (; i < end; i++) {
 		struct ec_log_event *e = &l->events[i];
 
-		if (e->fmt == fmt && e->slave == line->slave && e->id == line->id)
+		if (e->key == key && e->slave == line->slave && e->id == line->id)
 			return e;
-		if (!unused && (!e->fmt || (over(e, now) && !e->missed)))
+		if (!unused && (!e->key || (over(e, now) && !e->missed)))
 			unused = e;
 	}
 	if (unused)
-		unused->fmt = NULL;
+		unused->key = NULL;
 	return unused;
 }
 
@@ -82,9 +82,9 @@ static u32 most_lines(const struct ec_log_event *e, const char *text)
 }
 
 /* Is this line to be logged? @line->more: those that were counted before */
-static bool log_admit(struct ec_log *l, const char *fmt, struct line *line, u64 now)
+static bool log_admit(struct ec_log *l, const char *key, struct line *line, u64 now)
 {
-	struct ec_log_event *e = log_find(l, line, fmt, now);
+	struct ec_log_event *e = log_find(l, line, key, now);
 	bool yes, flood;
 
 	lockdep_assert_held(&l->lock);
@@ -93,10 +93,10 @@ static bool log_admit(struct ec_log *l, const char *fmt, struct line *line, u64 
 		l->pending = true;
 		return false;
 	}
-	if (!e->fmt || over(e, now)) {
-		flood = e->fmt && e->missed;
+	if (!e->key || over(e, now)) {
+		flood = e->key && e->missed;
 		line->more = flood ? e->missed : 0;
-		e->fmt = fmt;
+		e->key = key;
 		e->slave = line->slave;
 		e->id = line->id;
 		e->level = line->level;
@@ -120,6 +120,20 @@ static bool log_admit(struct ec_log *l, const char *fmt, struct line *line, u64 
 	return yes;
 }
 
+static void log_line(struct ec_base *b, const char *key, struct line *line)
+{
+	struct ec_log *l = &b->log;
+	unsigned long irq;
+	bool yes;
+
+	raw_spin_lock_irqsave(&l->lock, irq);
+	yes = log_admit(l, key, line, ktime_get_ns());
+	l->lines += yes;
+	raw_spin_unlock_irqrestore(&l->lock, irq);
+	if (yes)
+		print(b, line);
+}
+
 /**
  * ec_log_event() - log an event, or count it if it repeats
  * @b: of the master
@@ -136,10 +150,7 @@ static bool log_admit(struct ec_log *l, const char *fmt, struct line *line, u64 
 void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level, const char *fmt, ...)
 {
 	struct line line = { .level = level, .slave = slave, .id = id };
-	struct ec_log *l = &b->log;
-	unsigned long irq;
 	va_list args;
-	bool yes;
 	int n;
 
 	va_start(args, fmt);
@@ -147,12 +158,27 @@ void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level, const
 	va_end(args);
 	if (n && line.text[n - 1] == '\n')
 		line.text[n - 1] = '\0';
-	raw_spin_lock_irqsave(&l->lock, irq);
-	yes = log_admit(l, fmt, &line, ktime_get_ns());
-	l->lines += yes;
-	raw_spin_unlock_irqrestore(&l->lock, irq);
-	if (yes)
-		print(b, &line);
+	log_line(b, fmt, &line);
+}
+
+/**
+ * ec_log_text() - as ec_log_event(), with a text that is complete
+ * @b: of the master
+ * @slave: ring position or EC_LOG_ANY
+ * @id: makes events of one @key different ones, 0: it does not
+ * @level: KERN_*
+ * @key: a constant, since it identifies the event
+ * @text: without line end
+ *
+ * Context: Any.
+ */
+void ec_log_text(struct ec_base *b, int slave, u32 id, const char *level, const char *key,
+		 const char *text)
+{
+	struct line line = { .level = level, .slave = slave, .id = id };
+
+	strscpy(line.text, text, sizeof(line.text));
+	log_line(b, key, &line);
 }
 
 /* The next line whose window is over; false: there is none. */

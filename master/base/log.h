@@ -18,7 +18,7 @@
 
 /**
  * struct ec_log_event - one event of one subject: a call site, and what it is about
- * @fmt: its format, which identifies the call site; NULL: free
+ * @key: format of the call site, or name of the kind of event, which identify it; NULL: free
  * @slave: ring position or EC_LOG_ANY
  * @id: what else the event belongs to, see ec_warn_each()
  * @level: KERN_*
@@ -29,7 +29,7 @@
  * @last: when that was, ktime
  */
 struct ec_log_event {
-	const char *fmt;
+	const char *key;
 	int slave;
 	u32 id;
 	const char *level;
@@ -63,6 +63,8 @@ struct ec_base;
 void ec_log_init(struct ec_log *l);
 __printf(5, 6) void ec_log_event(struct ec_base *b, int slave, u32 id, const char *level,
 				 const char *fmt, ...);
+void ec_log_text(struct ec_base *b, int slave, u32 id, const char *level, const char *key,
+		 const char *text);
 void ec_log_flush(struct ec_base *b, bool all);
 bool ec_log_debug(void);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that cause bus traffic or change the state of slaves. */
+#include "../base/report.h"
 #include "api.h"
 #include "ioctl.h"
 #include "master.h"
@@ -142,7 +143,7 @@ int ec_ioc_debug(struct ec_call *call)
 	if (i->level > 2)
 		return ec_refuse(call, -EINVAL, "debug level must be 0, 1 or 2, not %u", i->level);
 	if (xchg(&call->master->base->debug, i->level) != i->level)
-		ec_event(call->master->base, EC_EVENT_DEBUG, i->level);
+		ec_report(call->master->base, EC_EVENT_DEBUG, i->level);
 	return 0;
 }
 

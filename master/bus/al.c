@@ -25,7 +25,8 @@ MODULE_PARM_DESC(state_timeout_ms,
 
 static void note_status(struct ec_slave *slave, const u8 *al)
 {
-	ec_slave_set_al(slave, get_unaligned_le16(al), get_unaligned_le16(al + 4), true);
+	ec_slave_set_al(slave, get_unaligned_le16(al), get_unaligned_le16(al + 4),
+			EC_AL_BY_WORKER);
 	WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
 }
 

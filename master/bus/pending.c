@@ -5,6 +5,7 @@
  * The monitor makes one event of neighbours that have changed alike.
  */
 #include <linux/ktime.h>
+#include "../base/report.h"
 #include "slave.h"
 #include "pending.h"
 
@@ -27,13 +28,7 @@ static void put_al(const struct group *g)
 
 static void pending_put_back(const struct group *g)
 {
-	ec_event_slave(g->bus->base, EC_EVENT_SLAVE_BACK, g->first, g->pending.back_ms, g->n);
-	if (g->n == 1)
-		ec_log_event(g->bus->base, g->first, 0, KERN_INFO,
-			     "back in OP, %u ms after it was last seen\n", g->pending.back_ms);
-	else
-		ec_info(g->bus, "slaves %u to %u back in OP, %u ms after they were last seen\n",
-			g->first, g->first + g->n - 1, g->pending.back_ms);
+	ec_report_more(g->bus->base, EC_EVENT_SLAVE_BACK, g->first, NULL, g->pending.back_ms, g->n);
 }
 
 /**

@@ -6,6 +6,7 @@
 #include "../base/limits.h"
 #include "../link/links.h"
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "../carry/xfer.h"
 #include "identify.h"
 #include "leave_init.h"
@@ -371,14 +372,12 @@ static void note_end(struct scan *sc, u64 began_ns, u64 frames)
 
 	WRITE_ONCE(bus->scan_us, (u32)div_u64(ktime_get_ns() - began_ns, 1000));
 	ec_write64(&bus->scan_frames, ec_links_sent(bus->links) - frames);
-	if (sc->changed && sc->n)
-		ec_info(bus, "scan complete: %u slave(s) in %u us, %llu frames\n", bus->n_slaves,
-			bus->scan_us, bus->scan_frames);
+	if (sc->changed || (bus->scan_noted && !sc->n_thrown))
+		ec_report(bus->base, EC_EVENT_SCAN_END, bus->n_slaves, bus->scan_us,
+			  bus->scan_frames, sc->changed);
 	if (sc->n_thrown)
 		return;
 	bus->listed_station = bus->next_station;
-	if (bus->scan_noted)
-		ec_event(bus->base, EC_EVENT_SCAN_END, sc->n, bus->scan_us, bus->scan_frames);
 	bus->scan_noted = false;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Slaves that were disconnected or connected: one event for each place, for all behind it. */
 #include <linux/ktime.h>
+#include "../base/report.h"
 #include "../link/links.h"
 #include "graph.h"
 #include "ports.h"
@@ -12,6 +13,18 @@
 static u32 position_of(const struct ec_slave *s)
 {
 	return s ? s->position : EC_EVENT_NONE;
+}
+
+/* Behind which port the slave hangs. */
+static void place_text(const struct ec_slave *s, char *buf, size_t size)
+{
+	const struct ec_slave *u = ec_graph_parent(s);
+
+	if (u)
+		snprintf(buf, size, "port %u of slave %u (%.24s)", s->parent_port, u->position,
+			 ec_slave_label(u));
+	else
+		strscpy(buf, "the main device", size);
 }
 
 /**
@@ -43,11 +56,7 @@ void ec_lost_note_place(struct ec_slave *s)
 	s->lost_at = (struct ec_break){
 		.station = u ? u->station : 0, .position = position_of(u), .port = s->parent_port,
 	};
-	if (u)
-		snprintf(s->parent, sizeof(s->parent), "port %u of slave %u (%.24s)",
-			 s->parent_port, u->position, ec_slave_label(u));
-	else
-		strscpy(s->parent, "the main device", sizeof(s->parent));
+	place_text(s, s->parent, sizeof(s->parent));
 }
 
 /* Lost together? What hangs behind a cable is one range of the ring, and one event. */
@@ -62,18 +71,27 @@ static bool counts(const struct ec_slave *s)
 	return READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
 }
 
-static void log_lost(struct ec_bus *bus, const struct ec_slave *first, const struct ec_slave *last,
-		     u64 ms)
+/* What was lost behind one port: @first and those after it up to @last. */
+static void report_port(const struct ec_slave *first, const struct ec_slave *last, bool line)
 {
-	char text[128];
+	struct ec_base *base = first->bus->base;
+	const struct ec_event_more more = {
+		.place = first->parent, .name = ec_slave_label(first),
+		.last = ec_slave_label(last),
+	};
+	const struct ec_event e = {
+		.kind = EC_EVENT_SLAVE_LOST, .slave = first->position,
+		.arg = {
+			first->lost_at.position, first->lost_at.port, first->alias,
+			first->info.vendor, first->info.product,
+			div_u64(ktime_get_ns() - first->seen_ns, NSEC_PER_MSEC),
+			last->position - first->position + 1,
+		},
+	};
 
-	ec_slave_lost_text(first, text, sizeof(text));
-	if (first == last)
-		ec_warn_each(bus, first->position + 1, "%s, last seen %llu ms ago\n", text, ms);
-	else
-		ec_warn_each(bus, first->position + 1,
-			     "%s, and what is behind it up to slave %u (%s), last seen %llu ms ago\n",
-			     text, last->position, ec_slave_label(last), ms);
+	ec_events_put(&base->events, e.kind, e.slave, e.arg);
+	if (line)
+		ec_report_print(base, &e, &more);
 }
 
 static void report_all(struct ec_bus *bus, unsigned int n)
@@ -98,25 +116,20 @@ static void report_all(struct ec_bus *bus, unsigned int n)
  */
 void ec_lost_report(struct ec_bus *bus, struct ec_slave **lost, unsigned int n)
 {
-	unsigned int i, first, lines = 0;
+	unsigned int i, lines = 0;
 
 	if (n && !bus->n_slaves) {
 		report_all(bus, n);
 		return;
 	}
 	for (i = 0; i < n; ) {
-		const struct ec_slave *s = lost[i];
-		u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
+		const struct ec_slave *s = lost[i++], *last = s;
 
-		first = i++;
 		if (!counts(s))
 			continue;
-		while (i < n && counts(lost[i]) && same_break(lost[i], s))
-			i++;
-		if (lines++ < LINES)
-			log_lost(bus, s, lost[i - 1], ms);
-		ec_slave_event(s, EC_EVENT_SLAVE_LOST, s->lost_at.position, s->lost_at.port,
-			       s->alias, s->info.vendor, s->info.product, ms, i - first);
+		for (; i < n && same_break(lost[i], s); i++)
+			last = counts(lost[i]) ? lost[i] : last;
+		report_port(s, last, lines++ < LINES);
 	}
 	if (lines > LINES)
 		ec_warn(bus, "slaves disconnected from %u more place(s)\n", lines - LINES);
@@ -138,6 +151,8 @@ void ec_lost_report_found(struct scan *sc, unsigned int n_old)
 {
 	struct ec_bus *bus = sc->bus;
 	unsigned int i, first;
+	struct ec_event_more more;
+	char place[EC_UAPI_STRING];
 
 	for (i = 0; n_old && i < bus->n_slaves; ) {
 		const struct ec_slave *s = bus->slaves[i];
@@ -152,8 +167,13 @@ void ec_lost_report_found(struct scan *sc, unsigned int n_old)
 			if (up < first || up == EC_EVENT_NONE)
 				break;
 		}
-		ec_slave_event(s, EC_EVENT_SLAVE_FOUND, position_of(ec_graph_parent(s)),
-			       s->parent_port, s->alias, s->info.vendor, s->info.product,
-			       i - first);
+		place_text(s, place, sizeof(place));
+		more = (struct ec_event_more){
+			.place = place, .name = ec_slave_label(s),
+			.last = ec_slave_label(bus->slaves[i - 1]),
+		};
+		ec_report_more(bus->base, EC_EVENT_SLAVE_FOUND, s->position, &more,
+			       position_of(ec_graph_parent(s)), s->parent_port, s->alias,
+			       s->info.vendor, s->info.product, i - first);
 	}
 }

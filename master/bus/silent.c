@@ -39,7 +39,6 @@ bool ec_slave_set_replies(struct ec_slave *s)
 	ec_slave_set_ok(s, true);
 	s->retry_ms = 0;
 	ec_write64(&s->retry_ns, 0);
-	ec_slave_info(s, "slave replies again\n");
-	ec_slave_event(s, EC_EVENT_SLAVE_REPLIES);
+	ec_slave_report(s, EC_EVENT_SLAVE_REPLIES);
 	return true;
 }

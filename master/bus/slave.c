@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "../carry/carry.h"
 #include "../kernel/trace.h"
 #include "slave.h"
@@ -190,10 +191,12 @@ int ec_slave_parse_sii(struct ec_slave *slave)
 static void report_failure(struct ec_slave *slave, const char *text, u8 error,
 			   const struct ec_cause *cause)
 {
-	ec_slave_warn(slave, "%s\n", text);
+	const struct ec_event_more more = { .detail = text };
+
 	ec_pending_before(slave);
-	ec_slave_event(slave, EC_EVENT_SLAVE_FAILED, error, READ_ONCE(slave->al_code), cause->kind,
-		       cause->code, cause->object, cause->subindex, cause->sm, cause->state);
+	ec_report_more(slave->bus->base, EC_EVENT_SLAVE_FAILED, slave->position, &more, error,
+		       READ_ONCE(slave->al_code), cause->kind, cause->code, cause->object,
+		       cause->subindex, cause->sm, cause->state);
 }
 
 /**
@@ -259,9 +262,10 @@ void ec_slave_list(struct ec_slave *slave)
 	raw_spin_unlock(&slave->note_lock);
 	trace_al(slave, 0);
 	if (slave->sii_flaw[0]) {
-		ec_slave_warn(slave, "%s\n", slave->sii_flaw);
-		ec_slave_event(slave, EC_EVENT_EEPROM, slave->flaw.kind, slave->info.checksum,
-			       slave->info.checksum_calc);
+		const struct ec_event_more more = { .detail = slave->sii_flaw };
+
+		ec_report_more(slave->bus->base, EC_EVENT_EEPROM, slave->position, &more,
+			       slave->flaw.kind, slave->info.checksum, slave->info.checksum_calc);
 	}
 	/* no other thread has failed with it so far */
 	if (unreported)
@@ -273,21 +277,22 @@ void ec_slave_list(struct ec_slave *slave)
  * @slave: slave
  * @status: register 0x0130
  * @code: register 0x0134
- * @requested: a change is what its worker, or a caller, has requested
+ * @by: why it has changed
  *
  * Context: The slave's worker, or the monitor while that does not work, and before the slave is
  * in the list.
  */
-void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requested)
+void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, enum ec_al_by by)
 {
 	u16 before = READ_ONCE(slave->al_status);
 	u8 state = status & EC_AL_STATE_MASK, was = before & EC_AL_STATE_MASK;
+	bool error = status & EC_AL_ERROR && !(before & EC_AL_ERROR);
 	/* 0: not known before */
 	bool moved = state != was && was;
 
 	if (status == before && code == READ_ONCE(slave->al_code))
 		return;
-	if (moved && !requested)
+	if (moved && by == EC_AL_BY_ITSELF)
 		ec_pending_before(slave);
 	WRITE_ONCE(slave->al_status, status);
 	WRITE_ONCE(slave->al_code, code);
@@ -295,14 +300,20 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requeste
 	ec_slave_changed(slave);
 	if (!slave->listed)
 		return;
-	if (moved && requested)
+	if (moved && by != EC_AL_BY_ITSELF)
 		ec_pending_al(slave, was, state);
-	else if (moved)
+	else if (moved && error)
+		/* the line about the error has the state */
 		ec_slave_event(slave, EC_EVENT_AL_LEFT, state, was);
-	if (status & EC_AL_ERROR && !(before & EC_AL_ERROR)) {
-		ec_pending_before(slave);
+	else if (moved)
+		ec_slave_report(slave, EC_EVENT_AL_LEFT, state, was);
+	if (!error)
+		return;
+	ec_pending_before(slave);
+	if (by == EC_AL_BY_WORKER)
 		ec_slave_event(slave, EC_EVENT_AL_ERROR, state, code);
-	}
+	else
+		ec_slave_report(slave, EC_EVENT_AL_ERROR, state, code);
 }
 
 /**

@@ -7,6 +7,7 @@
 #include <linux/mutex.h>
 #include <linux/spinlock.h>
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "../mailbox/mailbox.h"
 #include "bus.h"
 #include "dict.h"
@@ -231,6 +232,8 @@ struct ec_slave {
 #define ec_slave_warn(s, fmt, ...)	ec_slave_log(KERN_WARNING, s, fmt, ##__VA_ARGS__)
 #define ec_slave_event(s, kind, ...) \
 	ec_event_slave((s)->bus->base, kind, (s)->position, ##__VA_ARGS__)
+#define ec_slave_report(s, kind, ...) \
+	ec_report_more((s)->bus->base, kind, (s)->position, NULL, ##__VA_ARGS__)
 #define ec_slave_dbg(s, lvl, fmt, ...) \
 	ec_dbg_slave((s)->bus->base, (s)->position, lvl, fmt, ##__VA_ARGS__)
 #define ec_slave_dbg_result(s, ret, fmt, ...) \
@@ -239,6 +242,13 @@ struct ec_slave {
 /* of ec_slave_fail(): EC_CAUSE(REFUSED, .state = ...) */
 #define EC_CAUSE(kind_, ...) \
 	(&(const struct ec_cause){ .kind = EC_CAUSE_##kind_, ##__VA_ARGS__ })
+
+/* why an AL status has changed */
+enum ec_al_by {
+	EC_AL_BY_WORKER,	/* its worker or a caller has requested it, and reports a failure */
+	EC_AL_BY_REQUEST,	/* what was requested; the monitor has read it */
+	EC_AL_BY_ITSELF,	/* the slave has left the requested state */
+};
 
 struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station);
 struct ec_slave *ec_slave_ref(struct ec_slave *slave);
@@ -253,7 +263,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 void ec_slave_list(struct ec_slave *slave);
 bool ec_slave_set_ok(struct ec_slave *slave, bool replies);
 bool ec_slave_forgive(struct ec_slave *slave);
-void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, bool requested);
+void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, enum ec_al_by by);
 const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size);
 void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause);
 void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size);

@@ -7,6 +7,7 @@
 #include <linux/ktime.h>
 #include "dc_job.h"
 #include "../base/once64.h"
+#include "../base/report.h"
 
 #define EXTRA_DGRAMS	16000	/* of drift compensation by the cycle */
 #define LESS_DGRAMS	4400	/* beside clocks in use */
@@ -188,17 +189,10 @@ static void log_ref(const struct ec_dc_job *j, bool lost)
 	struct ec_dc *dc = j->dc;
 	u16 choice = READ_ONCE(dc->choice);
 	u16 now = READ_ONCE(dc->ref_station), at = now ? j->slaves[j->ref]->position : 0;
+	bool substitute = now && choice != EC_DC_ANY && choice != now;
 
-	if (!now)
-		ec_warn(dc, "reference clock lost: clocks run free\n");
-	else if (choice != EC_DC_ANY && choice != now)
-		ec_warn(dc, "reference clock lost: slave %u substitutes until it returns\n", at);
-	else if (lost)
-		ec_warn(dc, "reference clock lost: slave %u is the new reference clock\n", at);
-	else
-		ec_info(dc, "slave %u is the new reference clock\n", at);
-	ec_event(dc->base, EC_EVENT_REF_CLOCK, now ? at : EC_EVENT_NONE,
-		 lost || !now || (choice != EC_DC_ANY && choice != now));
+	ec_report(dc->base, EC_EVENT_REF_CLOCK, now ? at : EC_EVENT_NONE,
+		  lost || !now || substitute, substitute);
 }
 
 static void change_ref(struct ec_dc_job *j, bool found)
@@ -311,16 +305,10 @@ static void log_result(const struct ec_dc_job *j, int ret, u64 t0)
 	struct ec_dc *dc = j->dc;
 	u64 us = div_u64(ktime_get_ns() - t0, 1000);
 
-	if (!ret) {
-		ec_info(dc,
-			"distributed clocks synchronized in %llu us, reference clock: slave %u\n",
-			us, j->slaves[j->ref]->position);
-		ec_event(dc->base, EC_EVENT_DC_SET, us, j->slaves[j->ref]->position);
-	} else if (ret != -ENXIO && ret != -ECANCELED) {
-		ec_warn(dc, "distributed clocks not synchronized (%pe)%s\n", ERR_PTR(ret),
-			dc_is_transient(ret) ? "; retrying" : "");
-		ec_event(dc->base, EC_EVENT_DC_FAILED, -ret, dc_is_transient(ret));
-	}
+	if (!ret)
+		ec_report(dc->base, EC_EVENT_DC_SET, us, j->slaves[j->ref]->position);
+	else if (ret != -ENXIO && ret != -ECANCELED)
+		ec_report(dc->base, EC_EVENT_DC_FAILED, -ret, dc_is_transient(ret));
 }
 
 static void dc_work(struct work_struct *work)

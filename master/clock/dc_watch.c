@@ -10,6 +10,7 @@
 #include "../link/links.h"
 #include "dc.h"
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
 #include "../carry/xfer.h"
@@ -82,14 +83,7 @@ static void log_window(struct ec_dc *dc)
 		return;
 	dc->window_logged = far;
 	dc->window_log_ns = now + LOG_NS;
-	ec_event(dc->base, EC_EVENT_DC_WINDOW, far, clocks, far ? worst : EC_EVENT_NONE, max);
-	max = DIV_ROUND_CLOSEST(max, 100);
-	if (far)
-		ec_warn(dc,
-			"%u of %u clocks outside the sync window, worst: slave %u by %u.%u us\n",
-			far, clocks, worst, max / 10, max % 10);
-	else
-		ec_info(dc, "all %u clocks inside the sync window\n", clocks);
+	ec_report(dc->base, EC_EVENT_DC_WINDOW, far, clocks, far ? worst : EC_EVENT_NONE, max);
 }
 
 /* The next slaves whose clock is set or excluded; returns the position to continue from. */

@@ -32,8 +32,7 @@ static struct ec_result start_sync(struct ec_slave *s, const struct ec_config *c
 	if (!c || !c->sync.assign)
 		return EC_RESULT(0);
 	if (!ec_slave_has_clock(s)) {
-		ec_slave_warn(s, "no distributed clock; DC settings ignored\n");
-		ec_slave_event(s, EC_EVENT_NO_CLOCK);
+		ec_slave_report(s, EC_EVENT_NO_CLOCK);
 		return EC_RESULT(0);
 	}
 	ec_dc_sync_compare(s, &c->sync);

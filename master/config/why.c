@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
+#include "../base/report.h"
 #include "config.h"
 #include "group.h"
 #include "../link/links.h"
@@ -285,42 +286,42 @@ bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *s
 }
 
 /* A link that is down, or an absent device, is an event of its own. */
-static void note_absent(const struct ec_config *c, const struct ec_cause *cause)
+static void report_absent(const struct ec_config *c, bool line)
 {
-	const struct ec_bus *bus = c->wanted->bus;
-	u32 vendor = 0, product = 0;
-	u16 at = EC_EVENT_NO_SLAVE;
-
-	ec_bus_assert_stays(bus);
-	if (cause->kind == EC_CAUSE_NO_DEVICE || cause->kind == EC_CAUSE_LINK_DOWN)
-		return;
-	if (cause->kind != EC_CAUSE_NO_ALIAS && cause->position < bus->n_slaves) {
-		at = cause->position;
-		vendor = bus->slaves[at]->info.vendor;
-		product = bus->slaves[at]->info.product;
-	}
-	ec_event_slave(c->wanted->base, EC_EVENT_CONFIG, at, c->alias, c->position, cause->kind,
-		       c->vendor, c->product, vendor, product);
-}
-
-static void log_difference(const struct ec_config *c, bool line)
-{
-	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
-	const struct ec_wanted *w = c->wanted;
 	char text[EC_UAPI_REASON];
+	const struct ec_event_more more = { .detail = text };
+	const struct ec_wanted *w = c->wanted;
+	const struct ec_slave *s = NULL;
+	struct ec_event e;
 	struct ec_cause cause;
 
-	down_read(&w->bus->topo);
-	if (c->slave) {
-		ec_config_revision_text(c, c->slave, text, sizeof(text));
-		ec_slave_event(c->slave, EC_EVENT_REVISION, expected, c->slave->info.revision);
-	} else {
-		absent(c, text, sizeof(text), &cause);
-		note_absent(c, &cause);
-	}
-	up_read(&w->bus->topo);
+	ec_bus_assert_stays(w->bus);
+	absent(c, text, sizeof(text), &cause);
+	if (cause.kind != EC_CAUSE_NO_ALIAS && cause.position < w->bus->n_slaves)
+		s = w->bus->slaves[cause.position];
+	e = (struct ec_event){
+		.kind = EC_EVENT_CONFIG, .slave = s ? cause.position : EC_EVENT_NO_SLAVE,
+		.arg = { c->alias, c->position, cause.kind, c->vendor, c->product,
+			 s ? s->info.vendor : 0, s ? s->info.product : 0 },
+	};
+	if (cause.kind != EC_CAUSE_NO_DEVICE && cause.kind != EC_CAUSE_LINK_DOWN)
+		ec_events_put(&w->base->events, e.kind, e.slave, e.arg);
 	if (line)
-		ec_warn_each(w, c->index + 1, "configuration %s: %.160s\n", c->name, text);
+		ec_report_print(w->base, &e, &more);
+}
+
+static void report_difference(const struct ec_config *c, bool line)
+{
+	u32 expected = ec_config_flag(c, EC_FLAG_REVISION);
+
+	down_read(&c->wanted->bus->topo);
+	if (!c->slave)
+		report_absent(c, line);
+	else if (line)
+		ec_slave_report(c->slave, EC_EVENT_REVISION, expected, c->slave->info.revision);
+	else
+		ec_slave_event(c->slave, EC_EVENT_REVISION, expected, c->slave->info.revision);
+	up_read(&c->wanted->bus->topo);
 }
 
 /**
@@ -338,7 +339,7 @@ void ec_config_log_differences(const struct ec_wanted *w)
 		if (c->slave ? !other_revision(c, c->slave) : !!c->group)
 			continue;
 		if (n < EVENTS_MAX)
-			log_difference(c, n < LOG_MAX);
+			report_difference(c, n < LOG_MAX);
 		n++;
 	}
 	if (n > EVENTS_MAX)

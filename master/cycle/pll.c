@@ -7,6 +7,7 @@
  * and averages their jitter.
  */
 #include <linux/ktime.h>
+#include "../base/report.h"
 #include "cycle.h"
 #include "pll.h"
 
@@ -143,15 +144,6 @@ void ec_pll_log(struct ec_cycle *c)
 		return;
 	c->watch.lock_logged = lock;
 	if (lock != EC_CYCLE_LOCK_OFF)
-		ec_event(c->base, EC_EVENT_LOCK, lock, READ_ONCE(st->phase_error),
-			 READ_ONCE(st->rate_ppb));
-	if (lock == EC_CYCLE_LOCK_LOCKED)
-		ec_info(c, "kernel cycle locked: phase error %d ns, rate %+d ppb\n",
-			READ_ONCE(st->phase_error), READ_ONCE(st->rate_ppb));
-	else if (lock == EC_CYCLE_LOCK_HOLD)
-		ec_warn(c,
-			"reference clock not answering; kernel cycle in holdover at the last rate\n");
-	else if (lock == EC_CYCLE_LOCK_SEEK && READ_ONCE(st->lock_losses))
-		ec_warn(c, "kernel cycle lost lock: phase error %d ns; seeking\n",
-			READ_ONCE(st->phase_error));
+		ec_report(c->base, EC_EVENT_LOCK, lock, READ_ONCE(st->phase_error),
+			  READ_ONCE(st->rate_ppb), !!READ_ONCE(st->lock_losses));
 }

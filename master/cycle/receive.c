@@ -8,6 +8,7 @@
 #include <linux/rcupdate.h>
 #include "../base/bytes.h"
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "receive.h"
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
@@ -234,10 +235,7 @@ void ec_cycle_log_stale(struct ec_cycle *c)
 		if (!age || d->stale_logged)
 			continue;
 		d->stale_logged = true;
-		ec_warn(c,
-			"domain %u receives stale process data: %u sends old, limit %u; check the delay of the device\n",
-			i, age, d->max_age);
-		ec_event(c->base, EC_EVENT_STALE, i, age, d->max_age);
+		ec_report(c->base, EC_EVENT_STALE, i, age, d->max_age);
 	}
 }
 

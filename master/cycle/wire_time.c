@@ -2,6 +2,7 @@
 /* Wire time that a cycle leaves to acyclic frames. */
 #include <linux/math64.h>
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "wire_time.h"
 
 #define MEASURED	1000	/* sends after which the measured interval is right */
@@ -15,11 +16,8 @@ static bool leaves_room(struct ec_cycle *c, u64 interval_ns, u32 wire_ns)
 	if (slack >= ec_layout_need_ns())
 		return true;
 	c->watch.wire_logged = true;
-	ec_warn(c,
-		"cyclic frames use %u ns of %llu ns; %u ns free for acyclic frames, minimum %u ns: lengthen the cycle or overlap PDOs\n",
-		wire_ns, interval_ns, slack, ec_layout_need_ns());
-	ec_event(c->base, EC_EVENT_WIRE_TIME, wire_ns, min_t(u64, interval_ns, ~0u), slack,
-		 ec_layout_need_ns());
+	ec_report(c->base, EC_EVENT_WIRE_TIME, wire_ns, min_t(u64, interval_ns, ~0u), slack,
+		  ec_layout_need_ns());
 	return false;
 }
 

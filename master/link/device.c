@@ -6,6 +6,7 @@
 #include <linux/rcupdate.h>
 #include <linux/rtnetlink.h>
 #include <linux/slab.h>
+#include "../base/report.h"
 #include "capture.h"
 #include "device.h"
 #include "links.h"
@@ -92,11 +93,6 @@ bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t
 }
 EXPORT_SYMBOL_GPL(ecdev_waiting);
 
-static const char *side_name(const struct ec_link *link)
-{
-	return link->side ? "backup" : "main";
-}
-
 static void report(struct ec_link *link, bool attached)
 {
 	struct ec_links *l = link->links;
@@ -138,6 +134,8 @@ static void clear_counters(struct ec_link *link)
 
 static void attach(struct ecdev *dev, struct ec_link *link)
 {
+	char text[64];
+	const struct ec_event_more more = { .detail = text };
 	struct ec_links *l = link->links;
 	int ret;
 
@@ -152,9 +150,8 @@ static void attach(struct ecdev *dev, struct ec_link *link)
 		return;
 	}
 	device_publish(dev, link);
-	ec_info(l, "%s device %s attached (%s, %pM)\n", side_name(link), dev->name,
-		dev->ops->kind, dev->mac);
-	ec_event(l->base, EC_EVENT_DEVICE_ON, link->side);
+	scnprintf(text, sizeof(text), "%s (%s, %pM)", dev->name, dev->ops->kind, dev->mac);
+	ec_report_more(l->base, EC_EVENT_DEVICE_ON, EC_EVENT_NO_SLAVE, &more, link->side);
 	report(link, true);
 }
 
@@ -164,6 +161,7 @@ static void attach(struct ecdev *dev, struct ec_link *link)
  */
 static void withdraw(struct ec_link *link, struct ecdev *dev)
 {
+	const struct ec_event_more more = { .detail = dev->name };
 	struct ec_links *l = link->links;
 
 	lockdep_assert_held(&devices_lock);
@@ -180,8 +178,7 @@ static void withdraw(struct ec_link *link, struct ecdev *dev)
 	if (dev->ops->cycle)
 		dev->ops->cycle(dev->priv, false);
 	report(link, false);
-	ec_info(l, "%s device %s detached\n", side_name(link), dev->name);
-	ec_event(l->base, EC_EVENT_DEVICE_OFF, link->side);
+	ec_report_more(l->base, EC_EVENT_DEVICE_OFF, EC_EVENT_NO_SLAVE, &more, link->side);
 }
 
 static void detach(struct ecdev *dev)

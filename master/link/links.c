@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include "../base/report.h"
 #include "capture.h"
 #include "device.h"
 #include "links.h"
@@ -164,9 +165,7 @@ bool ec_links_look(struct ec_links *l)
 
 		if (up != l->link[i].up) {
 			WRITE_ONCE(l->link[i].up, up);
-			ec_log_event(l->base, EC_LOG_ANY, 0, up ? KERN_INFO : KERN_WARNING,
-				     "%s link %s\n", i ? "backup" : "main", up ? "up" : "down");
-			ec_event(l->base, up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN, i);
+			ec_report(l->base, up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN, i);
 		}
 		any |= up;
 	}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Messages that a slave sends without a request: emergencies, VoE. */
 #include <linux/slab.h>
+#include "../base/report.h"
 #include "../wire/coe.h"
 #include "../wire/emergency.h"
 #include "desk.h"
@@ -22,9 +23,7 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 
 	if (h->type != EC_MBOX_COE || ec_coe_emergency_decode(rx, h->len, &e))
 		return false;
-	ec_mbox_warn(mb, "CoE emergency: code 0x%04x (%s), error register 0x%02x\n", e.code,
-		     ec_emergency_text(e.code, profile), e.reg);
-	ec_event_slave(mb->base, EC_EVENT_EMERGENCY, *mb->position, e.code, e.reg,
+	ec_report_more(mb->base, EC_EVENT_EMERGENCY, *mb->position, NULL, e.code, e.reg,
 		       get_unaligned_le32(e.data), e.data[4], profile);
 	ec_emerg_push(mb, rx + EC_COE_HDR);
 	return true;

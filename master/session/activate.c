@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Begin and end of the cyclic exchange of a session. */
 #include <linux/slab.h>
+#include "../base/report.h"
 #include "../bus/ports.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
@@ -159,10 +160,8 @@ int ec_session_activate(struct ec_session *s)
 	ec_config_log_differences(&s->wanted);
 	ec_session_log_groups(s);
 	ec_session_begin_active(s);
-	ec_info(ss, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle\n",
-		s->wanted.n_domains, bytes, s->cycle.layout.n_dgrams);
-	ec_event(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, bytes,
-		 s->cycle.layout.n_dgrams);
+	ec_report(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, bytes,
+		  s->cycle.layout.n_dgrams);
 	return 0;
 }
 
@@ -200,8 +199,7 @@ int ec_session_deactivate(struct ec_session *s)
 		ec_warn(ss, "%u%s\n",
 			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged,
 			ec_timeouts_text(&s->timeout_log));
-	ec_info(ss, "session deactivated\n");
-	ec_event(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
+	ec_report(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
 	return 0;
 }
 

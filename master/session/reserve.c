@@ -4,6 +4,7 @@
 #include <linux/sched.h>
 #include <linux/slab.h>
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "../bus/slave.h"
 #include "activate.h"
 #include "clear.h"
@@ -121,8 +122,7 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 		kvfree(s);
 		return ret;
 	}
-	ec_event(ss->base, EC_EVENT_RESERVED, task_tgid_nr(current));
-	ec_info(ss, "application reserved the master, process %d\n", task_tgid_nr(current));
+	ec_report(ss->base, EC_EVENT_RESERVED, task_tgid_nr(current));
 	if (READ_ONCE(ss->candidate) == s)
 		return 0;
 	ret = ec_bus_wait_slaves(ss->bus);
@@ -271,12 +271,6 @@ static void end(struct ec_sessions *ss)
 	inherit(ss);
 }
 
-static void released(struct ec_sessions *ss, pid_t pid)
-{
-	ec_event(ss->base, EC_EVENT_RELEASED, pid);
-	ec_info(ss, "application exited or released the master, process %d\n", pid);
-}
-
 /**
  * ec_session_end() - the application has exited or releases the master
  * @ss: sessions of a master
@@ -295,7 +289,7 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	s = ss->candidate;
 	if (s && (!owner || s->cycle.owner == owner)) {
 		WRITE_ONCE(ss->candidate, NULL);
-		released(ss, s->owner_pid);
+		ec_report(ss->base, EC_EVENT_RELEASED, s->owner_pid);
 		ec_session_free(s);
 	}
 	s = ss->session;
@@ -304,14 +298,12 @@ void ec_session_end(struct ec_sessions *ss, const void *owner)
 	if (s && owner && s->cycle.thread && !s->ending &&
 	    s->cycle.setup.kernel.flags & EC_CYCLE_FLAG_DETACH) {
 		ec_cycle_set_owner(&s->cycle, NULL, NULL);
-		ec_event(ss->base, EC_EVENT_DETACHED, s->owner_pid);
-		ec_info(ss,
-			"application exited or released the master; session detached, kernel cycle continues\n");
+		ec_report(ss->base, EC_EVENT_DETACHED, s->owner_pid);
 	} else if (s) {
 		pid_t pid = s->owner_pid;
 
 		end(ss);
-		released(ss, pid);
+		ec_report(ss->base, EC_EVENT_RELEASED, pid);
 	}
 	ec_sessions_unlock(ss);
 }

@@ -8,6 +8,7 @@
 #include "../cycle/receive.h"
 #include "../cycle/wire_time.h"
 #include "../base/once64.h"
+#include "../base/report.h"
 #include "clocks.h"
 #include "request.h"
 #include "session_status.h"
@@ -26,8 +27,8 @@ static void log_timeouts(struct ec_session *s, u64 now)
 	u32 more = atomic_read(&ss->links->access.timeouts) - l->logged;
 
 	if (l->open && !timed_out) {
-		ec_info(ss, "cycle resumed after %llu ms\n",
-			div_u64(now - l->since_ns, NSEC_PER_MSEC));
+		ec_report_line(ss->base, EC_EVENT_RESUMED,
+			       div_u64(now - l->since_ns, NSEC_PER_MSEC));
 		l->open = false;
 	} else if (!l->open && more && now >= l->next_ns) {
 		l->since_ns = ec_read64(&ss->links->access.timeout_ns);
@@ -37,9 +38,8 @@ static void log_timeouts(struct ec_session *s, u64 now)
 			ec_warn(ss, "%u%s\n", more - timed_out, ec_timeouts_text(l));
 		l->next_ns = now + EC_TIMEOUT_LOG_NS;
 		if (timed_out)
-			ec_warn(ss,
-				"cycle timeout: no cyclic frame for %llu ms; process data stopped\n",
-				div_u64(now - l->since_ns, NSEC_PER_MSEC));
+			ec_report_line(ss->base, EC_EVENT_TIMEOUT,
+				       div_u64(now - l->since_ns, NSEC_PER_MSEC));
 	}
 }
 
@@ -92,7 +92,7 @@ void ec_session_note_counts(struct ec_session *s, bool first, bool all)
 			n->more[i] = 0;
 		if (!n->more[i] || (!all && now < n->next_ns[i]))
 			continue;
-		ec_event(s->sessions->base, kinds[i], n->more[i]);
+		ec_report(s->sessions->base, kinds[i], n->more[i]);
 		n->more[i] = 0;
 		n->next_ns[i] = now + NSEC_PER_SEC;
 	}

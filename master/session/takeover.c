@@ -4,6 +4,7 @@
  * the same: all that is sent to a slave, and all that determines places in the mapped memory. The
  * two are compared, not hashes of them, so that the first difference can be reported.
  */
+#include "../base/report.h"
 #include "../config/group.h"
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
@@ -250,13 +251,12 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 						     lockdep_is_held(&ss->lock)));
 	s->owner_pid = candidate->owner_pid;
 	memcpy(s->owner_comm, candidate->owner_comm, sizeof(s->owner_comm));
-	ec_event(ss->base, EC_EVENT_TAKEN_OVER, s->owner_pid);
+	ec_report(ss->base, EC_EVENT_TAKEN_OVER, s->owner_pid);
 	/* the previous application has no handles any more */
 	if (s->handles)
 		ec_session_free(s->handles);
 	s->handles = keep ? candidate : NULL;
 	if (!keep)
 		ec_session_free(candidate);
-	ec_info(ss, "detached session taken over by a new application\n");
 	return 0;
 }

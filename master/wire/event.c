@@ -1,78 +1,151 @@
 // SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
-/* Names and texts of events. What the kernel log reports as well has the same words there. */
+/*
+ * Names, texts and levels of events: what the kernel log and 'ethercat log' say about one is the
+ * same row of the table.
+ */
 #include "event.h"
 #include "al.h"
-#include "coe.h"
-#include "emergency.h"
+#include "event_text.h"
 
-#ifndef __KERNEL__
-#include <stdio.h>
-#endif
+/* the kernel log has its text at once (none, information, warning), or the monitor prints it */
+#define NONE	EC_LINE_NONE
+#define INFO	EC_LINE_INFO
+#define WARNING	EC_LINE_WARN
+#define LATER	0x10
+/* the text is behind "slave 3: " */
+#define SLAVE	0x20
+
+/* the text is that of ec_event_text_add() */
+#define SPECIAL	NULL
+
+/**
+ * struct row - an event
+ * @public: for programs
+ * @how: level, LATER, SLAVE
+ * @text: with %0 to %7 for its arguments
+ */
+struct row {
+	struct ec_event_kind public;
+	u8 how;
+	const char *text;
+};
 
 #define U(n)	{ n, EC_ARG_U }
 #define I(n)	{ n, EC_ARG_I }
 #define S(n)	{ n, EC_ARG_SLAVE }
 #define AL(n)	{ n, EC_ARG_AL }
+#define C(n)	{ n, EC_ARG_AL_CODE }
+#define X(n)	{ n, EC_ARG_HEX }
+#define D(n)	{ n, EC_ARG_DEVICE }
 #define L(n)	{ n, EC_ARG_LOCK }
 #define P(n)	{ n, EC_ARG_STALL }
-#define KIND(k, n, ...)	{ EC_EVENT_##k, n, { __VA_ARGS__ } }
+#define KIND(k, n, how, text, ...) \
+	{ { EC_EVENT_##k, n, { __VA_ARGS__ } }, how, text }
 
-static const struct ec_event_kind kinds[] = {
-	KIND(MISSED, "missed", U("count"), U("count_high")),
-	KIND(DEVICE_ON, "device_attached", U("device")),
-	KIND(DEVICE_OFF, "device_detached", U("device")),
-	KIND(LINK_UP, "link_up", U("device")),
-	KIND(LINK_DOWN, "link_down", U("device")),
-	KIND(RESPONDING, "slaves_responding", U("slaves"), U("before")),
-	KIND(SCAN_START, "scan_start", U("slaves")),
-	KIND(SCAN_END, "scan_end", U("slaves"), U("duration_us"), U("frames")),
-	KIND(SLAVE_LOST, "slave_lost", S("upstream"), U("port"), U("alias"), U("vendor_id"),
-	     U("product_code"), U("age_ms"), U("slaves")),
-	KIND(ALL_LOST, "all_slaves_lost", U("slaves"), U("age_ms")),
-	KIND(SLAVE_FOUND, "slave_found", S("upstream"), U("port"), U("alias"), U("vendor_id"),
-	     U("product_code"), U("slaves")),
-	KIND(SLAVE_SILENT, "slave_silent"),
-	KIND(SLAVE_REPLIES, "slave_replies"),
-	KIND(SLAVE_BACK, "slave_back", U("absent_ms"), U("slaves")),
-	KIND(NO_ANSWER, "no_answer", U("polls")),
-	KIND(AL_STATE, "al_state", AL("state"), AL("before"), U("slaves"), AL("lowest")),
-	KIND(AL_LEFT, "al_state_left", AL("state"), AL("before")),
-	KIND(AL_ERROR, "al_error", AL("state"), U("al_status_code")),
-	KIND(EMERGENCY, "emergency", U("code"), U("error_register"), U("data"), U("data_4"),
-	     U("profile")),
-	KIND(SLAVE_FAILED, "slave_failed", U("error"), U("al_status_code"), U("cause"), U("code"),
-	     U("object"), U("subindex"), U("sync_manager"), AL("state")),
-	KIND(EEPROM, "eeprom", U("flaw"), U("checksum"), U("expected")),
-	KIND(NO_CLOCK, "no_clock"),
-	KIND(REVISION, "revision", U("expected"), U("found")),
-	KIND(WKC, "working_counter", U("domain"), U("working_counter"), U("before"),
-	     U("expected"), U("more_changes"), U("slaves_down"), U("incomplete"),
-	     U("incomplete_before")),
-	KIND(OVERRUN, "overruns", U("cycles")),
-	KIND(FRAMES_LOST, "frames_lost", U("frames")),
-	KIND(FRAMES_LATE, "frames_late", U("frames")),
-	KIND(TIMEOUT, "cycle_timeout", U("duration_ms"), U("timeouts")),
-	KIND(RESUMED, "cycle_resumed", U("duration_ms")),
-	KIND(STALE, "stale_data", U("domain"), U("age_sends"), U("limit_sends")),
-	KIND(STALL, "output_stall", P("policy"), U("cycles"), U("more_stalls")),
-	KIND(OUTPUTS, "outputs_again", U("cycles")),
-	KIND(WIRE_TIME, "wire_time", U("cyclic_ns"), U("cycle_ns"), U("free_ns"), U("needed_ns")),
-	KIND(REF_CLOCK, "reference_clock", S("reference"), U("lost")),
-	KIND(DC_SET, "clocks_synchronized", U("duration_us"), S("reference")),
-	KIND(DC_FAILED, "clocks_not_synchronized", U("errno"), U("retry")),
-	KIND(DC_WINDOW, "sync_window", U("outside"), U("clocks"), S("worst"), U("difference_ns")),
-	KIND(LOCK, "cycle_lock", L("cycle_lock"), I("phase_error_ns"), I("rate_ppb")),
-	KIND(RESERVED, "reserved", U("pid")),
-	KIND(ACTIVATED, "activated", U("pid"), U("domains"), U("bytes"), U("datagrams")),
-	KIND(DEACTIVATED, "deactivated", U("pid")),
-	KIND(RELEASED, "released", U("pid")),
-	KIND(DETACHED, "detached", U("pid")),
-	KIND(TAKEN_OVER, "taken_over", U("pid")),
-	KIND(DEBUG, "debug_level", U("level")),
-	KIND(CONFIG, "configuration", U("alias"), U("position"), U("cause"), U("vendor_id"),
-	     U("product_code"), U("found_vendor_id"), U("found_product_code")),
-	KIND(CONFIGS, "configurations", U("more")),
+static const struct row kinds[] = {
+	KIND(MISSED, "missed", WARNING | LATER, SPECIAL, U("count"), U("count_high")),
+	KIND(DEVICE_ON, "device_attached", INFO, "%0 device attached", D("device")),
+	KIND(DEVICE_OFF, "device_detached", INFO, "%0 device detached", D("device")),
+	KIND(LINK_UP, "link_up", INFO, "%0 link up", D("device")),
+	KIND(LINK_DOWN, "link_down", WARNING, "%0 link down", D("device")),
+	KIND(RESPONDING, "slaves_responding", INFO, "slaves responding: %0, before: %1",
+	     U("slaves"), U("before")),
+	KIND(SCAN_START, "scan_start", NONE, "scan of %0 slave(s) begins", U("slaves")),
+	/* without slaves or a change the line about their loss is enough */
+	KIND(SCAN_END, "scan_end", INFO, "scan complete: %0 slave(s) in %1 us, %2 frames",
+	     U("slaves"), U("duration_us"), U("frames"), U("changed")),
+	KIND(SLAVE_LOST, "slave_lost", WARNING, SPECIAL, S("upstream"), U("port"),
+	     U("alias"), U("vendor_id"), U("product_code"), U("age_ms"), U("slaves")),
+	KIND(ALL_LOST, "all_slaves_lost", WARNING,
+	     "all %0 slave(s) disconnected, last seen %1 ms ago", U("slaves"), U("age_ms")),
+	KIND(SLAVE_FOUND, "slave_found", INFO, SPECIAL, S("upstream"), U("port"),
+	     U("alias"), U("vendor_id"), U("product_code"), U("slaves")),
+	/* it is one of the failures of slaves as well */
+	KIND(SLAVE_SILENT, "slave_silent", NONE | SLAVE,
+	     "no reply, frames pass; waiting for a reply"),
+	KIND(SLAVE_REPLIES, "slave_replies", INFO | SLAVE, "replies again"),
+	KIND(SLAVE_BACK, "slave_back", INFO | SLAVE, SPECIAL, U("absent_ms"), U("slaves")),
+	KIND(NO_ANSWER, "no_answer", WARNING,
+	     "a slave did not answer at its station address in %0 polls; rescanning",
+	     U("polls")),
+	/* only what fails has a line */
+	KIND(AL_STATE, "al_state", NONE | SLAVE, SPECIAL, AL("state"), AL("before"),
+	     U("slaves"), AL("lowest")),
+	KIND(AL_LEFT, "al_state_left", WARNING | SLAVE,
+	     "AL state %1 left without request, now %0", AL("state"), AL("before")),
+	KIND(AL_ERROR, "al_error", WARNING | SLAVE,
+	     "AL state %0 with error, AL status code %1", AL("state"), C("al_status_code")),
+	KIND(EMERGENCY, "emergency", WARNING | SLAVE, SPECIAL, U("code"),
+	     U("error_register"), U("data"), U("data_4"), U("profile")),
+	KIND(SLAVE_FAILED, "slave_failed", WARNING | SLAVE, SPECIAL, U("error"),
+	     C("al_status_code"), U("cause"), U("code"), U("object"), U("subindex"),
+	     U("sync_manager"), AL("state")),
+	KIND(EEPROM, "eeprom", WARNING | SLAVE, SPECIAL, U("flaw"), U("checksum"),
+	     U("expected")),
+	KIND(NO_CLOCK, "no_clock", WARNING | SLAVE, "no distributed clock; SYNC signals ignored"),
+	KIND(REVISION, "revision", WARNING | SLAVE, "revision %1, expected %0", X("expected"),
+	     X("found")),
+	KIND(WKC, "working_counter", WARNING | LATER, SPECIAL, U("domain"),
+	     U("working_counter"), U("before"), U("expected"), U("more_changes"),
+	     U("slaves_down"), U("incomplete"), U("incomplete_before")),
+	KIND(OVERRUN, "overruns", WARNING, "%0 cycle(s) skipped", U("cycles")),
+	KIND(FRAMES_LOST, "frames_lost", WARNING, "%0 frame(s) lost", U("frames")),
+	KIND(FRAMES_LATE, "frames_late", WARNING, "%0 frame(s) late", U("frames")),
+	KIND(TIMEOUT, "cycle_timeout", WARNING,
+	     "cycle timeout: no cyclic frame for %0 ms; process data stopped",
+	     U("duration_ms"), U("timeouts")),
+	KIND(RESUMED, "cycle_resumed", INFO, "cycle resumed after %0 ms", U("duration_ms")),
+	KIND(STALE, "stale_data", WARNING,
+	     "domain %0 receives stale process data: %1 sends old, limit %2; check the delay of the device",
+	     U("domain"), U("age_sends"), U("limit_sends")),
+	KIND(STALL, "output_stall", WARNING | LATER, SPECIAL, P("policy"), U("cycles"),
+	     U("more_stalls")),
+	KIND(OUTPUTS, "outputs_again", INFO | LATER, "new outputs after %0 cycle(s) without",
+	     U("cycles")),
+	KIND(WIRE_TIME, "wire_time", WARNING,
+	     "cyclic frames use %0 ns of %1 ns; %2 ns free for acyclic frames, minimum %3 ns: lengthen the cycle or overlap PDOs",
+	     U("cyclic_ns"), U("cycle_ns"), U("free_ns"), U("needed_ns")),
+	KIND(REF_CLOCK, "reference_clock", INFO, SPECIAL, S("reference"), U("lost"),
+	     U("substitute")),
+	KIND(DC_SET, "clocks_synchronized", INFO,
+	     "distributed clocks synchronized in %0 us, reference clock: slave %1",
+	     U("duration_us"), S("reference")),
+	KIND(DC_FAILED, "clocks_not_synchronized", WARNING, SPECIAL, U("errno"),
+	     U("retry")),
+	KIND(DC_WINDOW, "sync_window", WARNING, SPECIAL, U("outside"), U("clocks"),
+	     S("worst"), U("difference_ns")),
+	KIND(LOCK, "cycle_lock", WARNING, SPECIAL, L("cycle_lock"), I("phase_error_ns"),
+	     I("rate_ppb"), U("losses")),
+	KIND(RESERVED, "reserved", INFO, "application reserved the master, process %0",
+	     U("pid")),
+	KIND(ACTIVATED, "activated", INFO,
+	     "session activated: %1 domain(s), %2 bytes, %3 datagram(s) per cycle, process %0",
+	     U("pid"), U("domains"), U("bytes"), U("datagrams")),
+	KIND(DEACTIVATED, "deactivated", INFO, "session deactivated, process %0", U("pid")),
+	KIND(RELEASED, "released", INFO,
+	     "application exited or released the master, process %0", U("pid")),
+	KIND(DETACHED, "detached", INFO,
+	     "application exited or released the master, process %0; session detached, kernel cycle continues",
+	     U("pid")),
+	KIND(TAKEN_OVER, "taken_over", INFO,
+	     "detached session taken over by a new application, process %0", U("pid")),
+	KIND(DEBUG, "debug_level", INFO, "debug level %0", U("level")),
+	KIND(CONFIG, "configuration", WARNING, SPECIAL, U("alias"), U("position"),
+	     U("cause"), U("vendor_id"), U("product_code"), U("found_vendor_id"),
+	     U("found_product_code")),
+	KIND(CONFIGS, "configurations", NONE, "%0 more configuration(s) without slave",
+	     U("more")),
 };
+
+static const struct row *row_of(u32 kind)
+{
+	unsigned int i;
+
+	for (i = 0; i < ARRAY_SIZE(kinds); i++)
+		if (kinds[i].public.kind == kind)
+			return &kinds[i];
+	return NULL;
+}
 
 /**
  * ec_event_kind() - name and arguments of an event
@@ -82,414 +155,182 @@ static const struct ec_event_kind kinds[] = {
  */
 const struct ec_event_kind *ec_event_kind(u32 kind)
 {
-	unsigned int i;
+	const struct row *row = row_of(kind);
 
-	for (i = 0; i < ARRAY_SIZE(kinds); i++)
-		if (kinds[i].kind == kind)
-			return &kinds[i];
-	return NULL;
+	return row ? &row->public : NULL;
 }
 
-/* the text, as far as there is room */
-struct text {
-	char *buf;
-	size_t size;
-	int len;
-};
-
-#ifdef __KERNEL__
-#define format(t, ...)	((t)->len = scnprintf((t)->buf, (t)->size, __VA_ARGS__))
-#else
-#define format(t, ...)	((t)->len = snprintf((t)->buf, (t)->size, __VA_ARGS__))
-#endif
-
-static const char *event_device(u32 side)
+/* What is expected has no line. */
+static u8 wkc_level(const u32 *a)
 {
-	return side ? "backup" : "main";
+	bool now = !a[6], before = !a[7];
+
+	if (before == now)
+		return EC_LINE_NONE;
+	/* slaves that come, or are taken to PREOP by their application, change it */
+	return now ? EC_LINE_INFO : a[5] ? EC_LINE_NONE : EC_LINE_WARN;
 }
 
-static void about_link(struct text *t, const struct ec_event *e)
+/* EC_CYCLE_LOCK_*: 2 is locked, 3 holdover; it seeks at the begin as well */
+static u8 lock_level(const u32 *a)
 {
-	const char *what = e->kind == EC_EVENT_DEVICE_ON ? "device attached" :
-			   e->kind == EC_EVENT_DEVICE_OFF ? "device detached" :
-			   e->kind == EC_EVENT_LINK_UP ? "link up" : "link down";
-
-	format(t, "%s %s", event_device(e->arg[0]), what);
+	return a[0] == 2 ? EC_LINE_INFO : a[0] == 3 || a[3] ? EC_LINE_WARN : EC_LINE_NONE;
 }
 
-/* "slave 5", or "slaves 5 to 9": @n of them */
-static const char *neighbours(const struct ec_event *e, u32 n, char *buf, size_t size)
+/**
+ * ec_event_level() - what the kernel log has of an event
+ * @e: event
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: EC_LINE_*.
+ */
+enum ec_event_line ec_event_level(const struct ec_event *e)
 {
-	struct text t = { .buf = buf, .size = size };
-
-	if (n < 2)
-		format(&t, "slave %u", e->slave);
-	else
-		format(&t, "slaves %u to %u", e->slave, e->slave + n - 1);
-	return buf;
-}
-
-/* where slaves are, or were; @n of them */
-static void event_place(struct text *t, const struct ec_event *e, const char *what, u32 n)
-{
-	char alias[24] = "", at[40] = "the main device", who[32];
-	struct text a = { .buf = alias, .size = sizeof(alias) };
-	struct text p = { .buf = at, .size = sizeof(at) };
-
-	if (e->arg[2])
-		format(&a, ", alias %u", e->arg[2]);
-	if (e->arg[0] != EC_EVENT_NONE)
-		format(&p, "port %u of slave %u", e->arg[1], e->arg[0]);
-	neighbours(e, n, who, sizeof(who));
-	if (e->kind == EC_EVENT_SLAVE_LOST)
-		format(t, "%s (%s0x%08x/0x%08x%s) %s %s, last seen %u ms ago", who,
-		       n < 2 ? "" : "the first: ", e->arg[3], e->arg[4], alias, what, at,
-		       e->arg[5]);
-	else
-		format(t, "%s (%s0x%08x/0x%08x%s) %s %s", who, n < 2 ? "" : "the first: ",
-		       e->arg[3], e->arg[4], alias, what, at);
-}
-
-static void about_bus(struct text *t, const struct ec_event *e)
-{
+	const struct row *row = row_of(e->kind);
 	const u32 *a = e->arg;
-	char who[32];
 
 	switch (e->kind) {
-	case EC_EVENT_RESPONDING:
-		format(t, "slaves responding: %u, before: %u", a[0], a[1]);
-		break;
-	case EC_EVENT_SCAN_START:
-		format(t, "scan of %u slave(s) begins", a[0]);
-		break;
 	case EC_EVENT_SCAN_END:
-		format(t, "scan complete: %u slave(s) in %u us, %u frames", a[0], a[1], a[2]);
-		break;
-	case EC_EVENT_SLAVE_LOST:
-		event_place(t, e, "disconnected from", a[6]);
-		break;
-	case EC_EVENT_ALL_LOST:
-		format(t, "all %u slave(s) disconnected, last seen %u ms ago", a[0], a[1]);
-		break;
-	case EC_EVENT_SLAVE_FOUND:
-		event_place(t, e, "connected to", a[5]);
-		break;
-	case EC_EVENT_SLAVE_SILENT:
-		format(t, "no reply from slave %u, frames pass; waiting for a reply", e->slave);
-		break;
-	case EC_EVENT_SLAVE_REPLIES:
-		format(t, "slave %u replies again", e->slave);
-		break;
-	case EC_EVENT_SLAVE_BACK:
-		format(t, "%s back in OP, %u ms after %s last seen",
-		       neighbours(e, a[1], who, sizeof(who)), a[0],
-		       a[1] < 2 ? "it was" : "they were");
-		break;
-	case EC_EVENT_NO_ANSWER:
-		format(t, "a slave did not answer at its station address in %u polls; rescanning",
-		       a[0]);
-		break;
+		return a[0] && a[3] ? EC_LINE_INFO : EC_LINE_NONE;
+	case EC_EVENT_WKC:
+		return wkc_level(a);
+	case EC_EVENT_REF_CLOCK:
+		return a[1] ? EC_LINE_WARN : EC_LINE_INFO;
+	case EC_EVENT_DC_WINDOW:
+		return a[0] ? EC_LINE_WARN : EC_LINE_INFO;
+	case EC_EVENT_LOCK:
+		return lock_level(a);
+	default:
+		return row ? row->how & 0xf : EC_LINE_NONE;
 	}
 }
 
-/* a startup command with its code; without one the mailbox itself failed */
-static void startup(struct text *t, const u32 *a)
+/**
+ * ec_event_is_later() - does the monitor print the line of an event?
+ * @kind: EC_EVENT_*
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: the cycle records it, which must not print.
+ */
+bool ec_event_is_later(u32 kind)
 {
-	if (a[2] == EC_CAUSE_IDN)
-		format(t, "startup IDN 0x%04x of drive %u, SoE error 0x%04x", a[4], a[5], a[3]);
-	else if (a[2] == EC_CAUSE_IP)
-		format(t, "IP parameters, EoE result 0x%04x", a[3]);
-	else if (a[2] == EC_CAUSE_REGISTER)
-		format(t, "startup register 0x%04x", a[4]);
-	else if (a[3])
-		format(t, "startup SDO 0x%04x:%02x, abort 0x%08x (%s)", a[4], a[5], a[3],
-		       ec_coe_abort_text(a[3]));
-	else
-		format(t, "startup SDO 0x%04x:%02x, mailbox failed", a[4], a[5]);
+	const struct row *row = row_of(kind);
+
+	return row && row->how & LATER;
 }
 
-static void pdos(struct text *t, const u32 *a)
+/* slaves of a record: @slave and those after it */
+static u32 event_slaves(const struct ec_event *e)
 {
-	if (a[3])
-		format(t, "PDOs of SM%u: 0x%04x refused, abort 0x%08x (%s)", a[6], a[4], a[3],
-		       ec_coe_abort_text(a[3]));
-	else
-		format(t, "PDOs of SM%u are not those of the slave", a[6]);
+	switch (e->kind) {
+	case EC_EVENT_SLAVE_BACK:
+		return e->arg[1];
+	case EC_EVENT_AL_STATE:
+		return e->arg[2];
+	default:
+		return 1;
+	}
 }
 
-/* why a slave failed; nothing: only the AL status code says it */
-static void cause(struct text *t, const u32 *a)
+/**
+ * ec_event_is_of_slave() - is an event about one slave?
+ * @e: event
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: ec_event_line() does not name it.
+ */
+bool ec_event_is_of_slave(const struct ec_event *e)
 {
-	const char *state = ec_al_state_name((u8)a[7]);
+	const struct row *row = row_of(e->kind);
 
-	switch (a[2]) {
-	case EC_CAUSE_SILENT:
-		format(t, "no reply, frames pass");
+	return row && row->how & SLAVE && e->slave != EC_EVENT_NO_SLAVE && event_slaves(e) < 2;
+}
+
+static void argument(struct ec_event_buf *t, enum ec_event_arg type, u32 v)
+{
+	switch (type) {
+	case EC_ARG_I:
+		ec_event_add(t, "%d", (s32)v);
 		break;
-	case EC_CAUSE_REGISTERS:
-		format(t, "no reply at its registers or station address, frames pass");
+	case EC_ARG_AL:
+		ec_event_add(t, "%s", ec_al_state_name((u8)v));
 		break;
-	case EC_CAUSE_EEPROM:
-		format(t, "EEPROM not readable or invalid");
+	case EC_ARG_AL_CODE:
+		ec_event_add(t, "0x%04x (%s)", v, ec_al_code_text((u16)v));
 		break;
-	case EC_CAUSE_SDO:
-	case EC_CAUSE_IDN:
-	case EC_CAUSE_REGISTER:
-	case EC_CAUSE_IP:
-		startup(t, a);
+	case EC_ARG_HEX:
+		ec_event_add(t, "0x%08x", v);
 		break;
-	case EC_CAUSE_PDO:
-		pdos(t, a);
-		break;
-	case EC_CAUSE_LAYOUT:
-		format(t, "it cannot serve the layout of the process data");
-		break;
-	case EC_CAUSE_SYNC:
-		format(t, "SYNC signals refused, not started or not running");
-		break;
-	case EC_CAUSE_SLOW:
-		format(t, "%s not reached in time", state);
-		break;
-	case EC_CAUSE_FRAMES:
-		format(t, "frames lost before %s", state);
-		break;
-	case EC_CAUSE_MEMORY:
-		format(t, "no memory before %s", state);
-		break;
-	case EC_CAUSE_REFUSED:
-		format(t, "%s refused, AL status code 0x%04x (%s)", state, a[3],
-		       ec_al_code_text((u16)a[3]));
+	case EC_ARG_DEVICE:
+		ec_event_add(t, "%s", v ? "backup" : "main");
 		break;
 	default:
-		format(t, "AL status code 0x%04x (%s)", a[1], ec_al_code_text((u16)a[1]));
+		ec_event_add(t, "%u", v);
 	}
 }
 
-static void about_failure(struct text *t, const struct ec_event *e)
+static void fill_in(struct ec_event_buf *t, const struct row *row, const u32 *arg)
 {
-	char why[140] = "";
-	struct text w = { .buf = why, .size = sizeof(why) };
+	const char *s;
 
-	cause(&w, e->arg);
-	format(t, "%s of slave %u failed: %s", e->arg[0] == 1 ? "scan" : "configuration", e->slave,
-	       why);
-}
+	for (s = row->text; *s; s++) {
+		if (*s == '%' && s[1] >= '0' && s[1] < '0' + EC_EVENT_ARGS) {
+			unsigned int i = (unsigned int)(*++s - '0');
 
-static void about_slave(struct text *t, const struct ec_event *e)
-{
-	const char *state = ec_al_state_name((u8)e->arg[0]);
-	char who[32];
-
-	switch (e->kind) {
-	case EC_EVENT_SLAVE_FAILED:
-		about_failure(t, e);
-		break;
-	case EC_EVENT_EEPROM:
-		if (e->arg[0])
-			format(t, "slave %u: EEPROM blank or malformed (flaw %u), the valid part is used",
-			       e->slave, e->arg[0]);
-		else
-			format(t, "slave %u: EEPROM checksum 0x%02x, expected 0x%02x; content used anyway",
-			       e->slave, e->arg[1], e->arg[2]);
-		break;
-	case EC_EVENT_NO_CLOCK:
-		format(t, "slave %u has no distributed clock; SYNC signals ignored", e->slave);
-		break;
-	case EC_EVENT_REVISION:
-		format(t, "slave %u has revision 0x%08x, expected 0x%08x", e->slave, e->arg[1],
-		       e->arg[0]);
-		break;
-	case EC_EVENT_AL_STATE:
-		format(t, "%s: AL state %s, before %s%s%s",
-		       neighbours(e, e->arg[2], who, sizeof(who)), state,
-		       ec_al_state_name((u8)e->arg[1]), e->arg[3] ? ", in between " : "",
-		       e->arg[3] ? ec_al_state_name((u8)e->arg[3]) : "");
-		break;
-	case EC_EVENT_AL_LEFT:
-		format(t, "slave %u: AL state %s left without request, now %s", e->slave,
-		       ec_al_state_name((u8)e->arg[1]), state);
-		break;
-	case EC_EVENT_AL_ERROR:
-		format(t, "slave %u: AL state %s with error, AL status code 0x%04x (%s)", e->slave,
-		       state, e->arg[1], ec_al_code_text((u16)e->arg[1]));
-		break;
-	case EC_EVENT_EMERGENCY:
-		format(t, "slave %u: CoE emergency: code 0x%04x (%s), error register 0x%02x",
-		       e->slave, e->arg[0], ec_emergency_text((u16)e->arg[0], e->arg[4]),
-		       e->arg[1]);
-		break;
+			argument(t, row->public.arg[i].type, arg[i]);
+		} else {
+			ec_event_add(t, "%c", *s);
+		}
 	}
 }
 
-static void about_wkc(struct text *t, const u32 *a)
+/* the text without the slave */
+static void body(struct ec_event_buf *t, const struct ec_event *e,
+		 const struct ec_event_more *more)
 {
-	/* one datagram has too much, another too little */
-	const char *sum = a[6] && a[1] == a[3] ? " in sum, not of each datagram" : "";
-	const char *more = a[1] > a[3] ? ": more slaves answer than it has, see 'ethercat why'" : "";
+	const struct row *row = row_of(e->kind);
 
-	if (a[4])
-		format(t, "domain %u: working counter %u of %u%s, before %u%s; %u more change(s)",
-		       a[0], a[1], a[3], sum, a[2], more, a[4]);
+	if (!row)
+		ec_event_add(t, "unknown event 0x%x; a newer module has it", e->kind);
+	else if (row->text)
+		fill_in(t, row, e->arg);
 	else
-		format(t, "domain %u: working counter %u of %u%s, before %u%s", a[0], a[1], a[3],
-		       sum, a[2], more);
+		ec_event_text_add(t, e, more);
+	if (row && row->text && more->detail)
+		ec_event_add(t, ": %s", more->detail);
 }
 
-static void about_stall(struct text *t, const u32 *a)
+static void subject(struct ec_event_buf *t, const struct ec_event *e)
 {
-	/* EC_STALL_* */
-	static const char *const done[] = {
-		"the last outputs are held", "outputs are zero", "the cycle is stopped",
-	};
-	const char *what = a[0] < ARRAY_SIZE(done) ? done[a[0]] : "?";
+	const struct row *row = row_of(e->kind);
+	u32 n = event_slaves(e);
 
-	if (a[2])
-		format(t, "output stall: no new outputs for %u cycle(s); %s; %u more stall(s) before",
-		       a[1], what, a[2]);
+	if (!row || !(row->how & SLAVE) || e->slave == EC_EVENT_NO_SLAVE)
+		return;
+	if (n < 2)
+		ec_event_add(t, "slave %u: ", e->slave);
 	else
-		format(t, "output stall: no new outputs for %u cycle(s); %s", a[1], what);
+		ec_event_add(t, "slaves %u to %u: ", e->slave, e->slave + n - 1);
 }
 
-static void about_cycle(struct text *t, const struct ec_event *e)
+/**
+ * ec_event_line() - the line of the kernel log about an event
+ * @e: event
+ * @more: what the record does not contain
+ * @buf: result, without line end
+ * @size: bytes of it, 1 at least; 200 are enough
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_event_line(const struct ec_event *e, const struct ec_event_more *more, char *buf,
+		   size_t size)
 {
-	const u32 *a = e->arg;
+	struct ec_event_buf t = { .at = buf, .size = size };
 
-	switch (e->kind) {
-	case EC_EVENT_WKC:
-		about_wkc(t, a);
-		break;
-	case EC_EVENT_OVERRUN:
-		format(t, "%u cycle(s) skipped", a[0]);
-		break;
-	case EC_EVENT_FRAMES_LOST:
-		format(t, "%u frame(s) lost", a[0]);
-		break;
-	case EC_EVENT_FRAMES_LATE:
-		format(t, "%u frame(s) late", a[0]);
-		break;
-	case EC_EVENT_TIMEOUT:
-		format(t, "cycle timeout: no cyclic frame for %u ms; process data stopped", a[0]);
-		break;
-	case EC_EVENT_RESUMED:
-		format(t, "cycle resumed after %u ms", a[0]);
-		break;
-	case EC_EVENT_STALE:
-		format(t, "domain %u receives stale process data: %u sends old, limit %u", a[0],
-		       a[1], a[2]);
-		break;
-	case EC_EVENT_STALL:
-		about_stall(t, a);
-		break;
-	case EC_EVENT_OUTPUTS:
-		format(t, "new outputs after %u cycle(s) without", a[0]);
-		break;
-	case EC_EVENT_WIRE_TIME:
-		format(t, "cyclic frames use %u ns of %u ns; %u ns free for acyclic frames, minimum %u ns",
-		       a[0], a[1], a[2], a[3]);
-		break;
-	}
-}
-
-static void about_ref_clock(struct text *t, const u32 *a)
-{
-	const char *lost = a[1] ? "reference clock lost: " : "";
-
-	if (a[0] == EC_EVENT_NONE)
-		format(t, "%sclocks run free", lost);
-	else
-		format(t, "%sslave %u is the new reference clock", lost, a[0]);
-}
-
-static void about_window(struct text *t, const u32 *a)
-{
-	if (a[0])
-		format(t, "%u of %u clocks outside the sync window, worst: slave %u by %u ns",
-		       a[0], a[1], a[2], a[3]);
-	else
-		format(t, "all %u clocks inside the sync window", a[1]);
-}
-
-static void about_clocks(struct text *t, const struct ec_event *e)
-{
-	static const char *const locks[] = { "off", "seeking", "locked", "in holdover" };
-	const u32 *a = e->arg;
-
-	switch (e->kind) {
-	case EC_EVENT_REF_CLOCK:
-		about_ref_clock(t, a);
-		break;
-	case EC_EVENT_DC_SET:
-		format(t, "distributed clocks synchronized in %u us, reference clock: slave %u",
-		       a[0], a[1]);
-		break;
-	case EC_EVENT_DC_FAILED:
-		format(t, "distributed clocks not synchronized (errno %u)%s", a[0],
-		       a[1] ? "; retrying" : "");
-		break;
-	case EC_EVENT_DC_WINDOW:
-		about_window(t, a);
-		break;
-	case EC_EVENT_LOCK:
-		format(t, "kernel cycle %s: phase error %d ns, rate %+d ppb",
-		       a[0] < ARRAY_SIZE(locks) ? locks[a[0]] : "?", (s32)a[1], (s32)a[2]);
-		break;
-	}
-}
-
-static void about_session(struct text *t, const struct ec_event *e)
-{
-	const u32 *a = e->arg;
-
-	switch (e->kind) {
-	case EC_EVENT_RESERVED:
-		format(t, "application reserved the master, process %u", a[0]);
-		break;
-	case EC_EVENT_ACTIVATED:
-		format(t, "session activated: %u domain(s), %u bytes, %u datagram(s) per cycle, process %u",
-		       a[1], a[2], a[3], a[0]);
-		break;
-	case EC_EVENT_DEACTIVATED:
-		format(t, "session deactivated, process %u", a[0]);
-		break;
-	case EC_EVENT_RELEASED:
-		format(t, "application exited or released the master, process %u", a[0]);
-		break;
-	case EC_EVENT_DETACHED:
-		format(t, "application exited or released the master, process %u; session detached, kernel cycle continues",
-		       a[0]);
-		break;
-	case EC_EVENT_TAKEN_OVER:
-		format(t, "detached session taken over by a new application, process %u", a[0]);
-		break;
-	case EC_EVENT_DEBUG:
-		format(t, "debug level %u", a[0]);
-		break;
-	}
-}
-
-/* why a configuration has no slave */
-static void about_config(struct text *t, const struct ec_event *e)
-{
-	const u32 *a = e->arg;
-
-	if (e->kind == EC_EVENT_CONFIGS)
-		format(t, "%u more configuration(s) without slave", a[0]);
-	else if (a[2] == EC_CAUSE_NO_ALIAS)
-		format(t, "configuration %u:%u: no slave has alias %u", a[0], a[1], a[0]);
-	else if (a[2] == EC_CAUSE_DIFFERENT)
-		format(t, "configuration %u:%u: slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
-		       a[0], a[1], e->slave, a[5], a[6], a[3], a[4]);
-	else if (a[2] == EC_CAUSE_TAKEN)
-		format(t, "configuration %u:%u: slave %u has another configuration", a[0], a[1],
-		       e->slave);
-	else if (a[2] == EC_CAUSE_UNATTACHED)
-		format(t, "configuration %u:%u: slave %u is not attached yet", a[0], a[1],
-		       e->slave);
-	else if (e->slave != EC_EVENT_NO_SLAVE)
-		format(t, "configuration %u:%u: slave %u could not be read", a[0], a[1], e->slave);
-	else
-		format(t, "configuration %u:%u: no slave (0x%08x/0x%08x) at its position", a[0],
-		       a[1], a[3], a[4]);
+	buf[0] = '\0';
+	if (!ec_event_is_of_slave(e))
+		subject(&t, e);
+	body(&t, e, more);
 }
 
 /**
@@ -498,25 +339,18 @@ static void about_config(struct text *t, const struct ec_event *e)
  * @buf: result, without line end
  * @size: bytes of it; 200 are enough
  *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: length of the text, at most @size - 1; 0 without a buffer.
  */
 int ec_event_text(const struct ec_event *e, char *buf, size_t size)
 {
-	static void (*const about[])(struct text *t, const struct ec_event *e) = {
-		about_link, about_bus, about_slave, about_cycle, about_clocks, about_session,
-		about_config,
-	};
-	struct text t = { .buf = buf, .size = size };
+	static const struct ec_event_more none;
+	struct ec_event_buf t = { .at = buf, .size = size };
 
 	if (!size)
 		return 0;
 	buf[0] = '\0';
-	if (e->kind == EC_EVENT_MISSED)
-		format(&t, "%llu event(s) missed: the reader was too slow",
-		       (unsigned long long)((u64)e->arg[1] << 32 | e->arg[0]));
-	else if (e->kind >> 4 < ARRAY_SIZE(about) && ec_event_kind(e->kind))
-		about[e->kind >> 4](&t, e);
-	else
-		format(&t, "unknown event 0x%x; a newer module has it", e->kind);
-	return min_t(size_t, t.len, size - 1);
+	subject(&t, e);
+	body(&t, e, &none);
+	return (int)t.len;
 }

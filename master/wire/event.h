@@ -15,6 +15,16 @@ enum ec_event_arg {
 	EC_ARG_AL,	/* AL state, 0: none */
 	EC_ARG_STALL,	/* EC_STALL_* */
 	EC_ARG_LOCK,	/* EC_CYCLE_LOCK_*, 0: not synchronized to the reference clock */
+	EC_ARG_AL_CODE,	/* AL status code */
+	EC_ARG_HEX,	/* number of 32 bits, in hexadecimal */
+	EC_ARG_DEVICE,	/* 0 main, 1 backup */
+};
+
+/* what the kernel log has of an event */
+enum ec_event_line {
+	EC_LINE_NONE,
+	EC_LINE_INFO,
+	EC_LINE_WARN,
 };
 
 /**
@@ -34,7 +44,26 @@ struct ec_event_kind {
 	} arg[EC_EVENT_ARGS];
 };
 
+/**
+ * struct ec_event_more - what the kernel knows of an event, and its record does not contain
+ * @detail: text behind that of the record, or a better one than its last part; NULL: none
+ * @place: port of a slave with its name, or the main device
+ * @name: of the slave, the first one of several
+ * @last: name of the last slave of several
+ */
+struct ec_event_more {
+	const char *detail;
+	const char *place;
+	const char *name;
+	const char *last;
+};
+
 const struct ec_event_kind *ec_event_kind(u32 kind);
+enum ec_event_line ec_event_level(const struct ec_event *e);
+bool ec_event_is_later(u32 kind);
+bool ec_event_is_of_slave(const struct ec_event *e);
+void ec_event_line(const struct ec_event *e, const struct ec_event_more *more, char *buf,
+		   size_t size);
 int ec_event_text(const struct ec_event *e, char *buf, size_t size);
 
 #endif

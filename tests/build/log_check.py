@@ -27,7 +27,7 @@ ALLOWED = {
 PRINTS = re.compile(
     r"\b(printk|_printk|vprintk|(?:pr|dev|netdev|netif)_(?:emerg|alert|crit|err|warn|notice|info)"
     r"|WARN(?!_ON_ONCE|_ONCE)(?:_ON|_TAINT)?|dump_stack|print_hex_dump\w*)\s*\(")
-LOGS = re.compile(r"\bec_(?:slave_|master_)?(?:log\w*|err|warn\w*|info|dbg\w*|fail)\s*\(")
+LOGS = re.compile(r"\bec_(?:slave_|master_)?(?:log\w*|report\w*|err|warn\w*|info|dbg\w*|fail)\s*\(")
 LOCK = re.compile(r"\braw_spin_(un)?lock\w*\s*\(")
 FUNCTION = re.compile(r"^[A-Za-z_][^;=]*?\b(\w+)\([^;]*$")
 # a signed number behind such a word; one with a unit is none

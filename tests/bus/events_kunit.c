@@ -245,10 +245,10 @@ static void events_al_state_before_error_has_record(struct kunit *test)
 	struct log *l = log_new(c->b);
 	u64 begin = l->at;
 
-	ec_slave_set_al(s, EC_AL_PREOP, 0, true);
-	ec_slave_set_al(s, EC_AL_SAFEOP, 0, true);
-	ec_slave_set_al(s, EC_AL_OP, 0, true);
-	ec_slave_set_al(s, EC_AL_SAFEOP | EC_AL_ERROR, 0x1b, false);
+	ec_slave_set_al(s, EC_AL_PREOP, 0, EC_AL_BY_WORKER);
+	ec_slave_set_al(s, EC_AL_SAFEOP, 0, EC_AL_BY_WORKER);
+	ec_slave_set_al(s, EC_AL_OP, 0, EC_AL_BY_WORKER);
+	ec_slave_set_al(s, EC_AL_SAFEOP | EC_AL_ERROR, 0x1b, EC_AL_BY_ITSELF);
 	next_of(l, EC_EVENT_AL_STATE, DRIVE);
 	KUNIT_EXPECT_EQ(test, l->e.arg[0], (u32)EC_AL_OP);
 	KUNIT_EXPECT_EQ_MSG(test, l->e.arg[3], (u32)EC_AL_PREOP, "lowest");

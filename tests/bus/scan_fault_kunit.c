@@ -230,7 +230,7 @@ static void scan_bounce_known(struct kunit *test)
 static void scan_bounce_new(struct kunit *test)
 {
 	struct bus *b = bus_up(test, line, N);
-	u32 lines = bus_log_lines("EtherCAT 0-5: no reply to a register read");
+	u32 lines = bus_log_lines("EtherCAT 0-5: scan failed: no reply to a register read");
 	u8 regs[EC_INFO_SIZE], v[4];
 	u64 t0;
 
@@ -247,7 +247,7 @@ static void scan_bounce_new(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_HEAL, 4, 1, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 2000), ~0ull);
 	KUNIT_EXPECT_MEMEQ(test, bus_slave(b, 5)->regs, regs, sizeof(regs));
-	KUNIT_EXPECT_EQ(test, bus_log_lines("EtherCAT 0-5: no reply to a register read"),
+	KUNIT_EXPECT_EQ(test, bus_log_lines("EtherCAT 0-5: scan failed: no reply to a register read"),
 			lines + 1);
 }
 

@@ -103,7 +103,7 @@ image() {
 		run ethercat slaves -v -p1
 		echo "$output"
 		[[ "$output" == *"$state refused"*0x001d* ]]
-		[ "$(dmesg | grep -c "EtherCAT 0-1: $state refused")" = 1 ]
+		[ "$(dmesg | grep -c "EtherCAT 0-1: configuration failed: $state refused")" = 1 ]
 		kill -TERM $app
 		wait $app
 		stop

@@ -29,13 +29,14 @@ log_has() {
 	declare -gA readers=()
 	follow reader
 	echo 'cut s.1' >"$sim"
-	wait_for 60 grep -qE 'slave 1 .* from port 1 of slave 0, last seen [0-9]+ ms ago$' \
+	wait_for 60 grep -qE \
+		'behind port 1 of slave 0: slave 1 .* disconnected, last seen [0-9]+ ms ago$' \
 		"$BATS_TEST_TMPDIR/reader"
 	grep -q 'slaves responding: 1, before: 2$' "$BATS_TEST_TMPDIR/reader"
 	echo 'heal s.1' >"$sim"
-	wait_for 60 grep -q 'slave 1 .* connected to port 1 of slave 0$' "$BATS_TEST_TMPDIR/reader"
+	wait_for 60 grep -q 'behind port 1 of slave 0: slave 1 .* connected$' "$BATS_TEST_TMPDIR/reader"
 	# the same as for a reader that comes later
-	log_has 'slave 1 .* connected to port 1 of slave 0$'
+	log_has 'behind port 1 of slave 0: slave 1 .* connected$'
 }
 
 @test "log shows an application with its process" {

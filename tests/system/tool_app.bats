@@ -125,9 +125,9 @@ not_in_op() { "$EC_BUILD/tool/ethercat" "$@" -v | sed -n 's/^ *Not in OP: //p'; 
 	[ "$(not_in_op config -p4)" = "$want" ]
 	grep -xF "reason: $want" "$BATS_TEST_TMPDIR/out"
 	dmesg | grep -F "configuration 0:4: $want"
-	dmesg | grep -F 'configuration 0:1: slave 1 has revision 0x'
+	dmesg | grep -F 'EtherCAT 0-1: revision 0x'
 	dmesg | grep -F ', expected 0x00004711'
-	[ "$(dmesg | grep -c 'configuration 0:')" = 2 ]
+	[ "$(dmesg | grep -c 'configuration 0:')" = 1 ]
 	ethercat slaves -v -p1 | grep -E '^ *Warning: slave 1 has revision 0x[0-9a-f]{8}, expected 0x00004711$'
 	stop_app
 	wait_for 120 all_slaves_are PREOP 22

@@ -30,7 +30,7 @@ assert eval(sys.argv[1]), d
 	export FAKE_EVENTS=gap
 	[ "$(out log | wc -l)" = 6 ]
 	[[ $(out log | sed -n 4p) == *"]  4 event(s) missed: the reader was too slow" ]]
-	[[ $(out log | sed -n 5p) == *"disconnected from port 1 of slave 1, last seen 25 ms ago" ]]
+	[[ $(out log | sed -n 5p) == *"behind port 1 of slave 1: 92 slaves disconnected, "*" to 93, last seen 25 ms ago" ]]
 	out log -j | json "$events[3]['event'] == 'missed' and $events[3]['count'] == 4"
 	out log -j | json "[e['number'] for e in $events] == [7, 8, 9, 10, 14, 15]"
 	[ "$(out log --follow | wc -l)" = 8 ]

@@ -186,6 +186,7 @@ static void event_each_kind_has_text_and_unique_name(struct kunit *test)
 		KUNIT_EXPECT_GT_MSG(test, len, 0, "kind 0x%x", kind);
 		KUNIT_EXPECT_EQ_MSG(test, !k, !strncmp(text, "unknown event", 13), "kind 0x%x: %s",
 				    kind, text);
+		KUNIT_EXPECT_NULL_MSG(test, strchr(text, '%'), "%s", text);
 		n += !!k;
 		for (other = 0; k && other < kind; other++)
 			if (ec_event_kind(other))
@@ -231,11 +232,16 @@ static void expect(struct kunit *test, struct ec_event e, const char *want)
 static void event_texts_name_slave_and_values(struct kunit *test)
 {
 	expect(test, E(SLAVE_LOST, 5, 4, 1, 0, 2, 0x044c2c52, 20),
-	       "slave 5 (0x00000002/0x044c2c52) disconnected from port 1 of slave 4, last seen 20 ms ago");
+	       "behind port 1 of slave 4: slave 5 (0x00000002/0x044c2c52) disconnected, last seen 20 ms ago");
 	expect(test, E(SLAVE_LOST, 0, EC_EVENT_NONE, 0, 1001, 2, 3, 4),
-	       "slave 0 (0x00000002/0x00000003, alias 1001) disconnected from the main device, last seen 4 ms ago");
+	       "behind the main device: slave 0 (alias 1001, 0x00000002/0x00000003) disconnected, last seen 4 ms ago");
 	expect(test, E(SLAVE_FOUND, 5, 4, 1, 0, 2, 3),
-	       "slave 5 (0x00000002/0x00000003) connected to port 1 of slave 4");
+	       "behind port 1 of slave 4: slave 5 (0x00000002/0x00000003) connected");
+	expect(test, E(SLAVE_LOST, 1, 0, 2, 0, 2, 3, 20, 7),
+	       "behind port 2 of slave 0: 7 slaves disconnected, 1 (0x00000002/0x00000003) to 7, last seen 20 ms ago");
+	expect(test, E(SLAVE_FOUND, 1, 0, 2, 0, 2, 3, 7),
+	       "behind port 2 of slave 0: 7 slaves connected, 1 (0x00000002/0x00000003) to 7");
+	expect(test, E(SLAVE_BACK, 1, 20, 7), "slaves 1 to 7: back in OP, 20 ms after they were last seen");
 	expect(test, E(AL_ERROR, 5, 4, 0x1b),
 	       "slave 5: AL state SAFEOP with error, AL status code 0x001b (SyncManager watchdog expired: no outputs came in time)");
 	expect(test, E(AL_LEFT, 5, 4, 8), "slave 5: AL state OP left without request, now SAFEOP");
@@ -253,23 +259,89 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "kernel cycle locked: phase error -12 ns, rate -3 ppb");
 	expect(test, E(REF_CLOCK, EC_EVENT_NO_SLAVE, EC_EVENT_NONE, 1),
 	       "reference clock lost: clocks run free");
+	expect(test, E(REF_CLOCK, EC_EVENT_NO_SLAVE, 3, 1, 1),
+	       "reference clock lost: slave 3 substitutes until it returns");
+	expect(test, E(ACTIVATED, EC_EVENT_NO_SLAVE, 4711, 1, 24, 2),
+	       "session activated: 1 domain(s), 24 bytes, 2 datagram(s) per cycle, process 4711");
+	expect(test, E(REVISION, 5, 2, 3), "slave 5: revision 0x00000003, expected 0x00000002");
+}
+
+/* The line of the kernel log has the slave in its prefix, and names that no record has. */
+static void event_line_has_names_and_level(struct kunit *test)
+{
+	static const struct ec_event_more more = {
+		.detail = "eth1", .place = "port 2 of slave 0 (EK1100)", .name = "EL2008",
+		.last = "EL3062",
+	};
+	static const struct {
+		struct ec_event e;
+		const char *text;
+		enum ec_event_line level;
+		bool of_slave;
+	} lines[] = {
+		{ E(DEVICE_ON, EC_EVENT_NO_SLAVE, 0), "main device attached: eth1",
+		  EC_LINE_INFO, false },
+		{ E(AL_LEFT, 5, 4, 8), "AL state OP left without request, now SAFEOP: eth1",
+		  EC_LINE_WARN, true },
+		{ E(SLAVE_FAILED, 5, 2), "configuration failed: eth1", EC_LINE_WARN, true },
+		{ E(SLAVE_BACK, 5, 20, 1), "back in OP, 20 ms after it was last seen",
+		  EC_LINE_INFO, true },
+		{ E(SLAVE_BACK, 5, 20, 2),
+		  "slaves 5 to 6: back in OP, 20 ms after they were last seen",
+		  EC_LINE_INFO, false },
+		{ E(SLAVE_LOST, 1, 0, 2, 9, 2, 3, 20, 7),
+		  "behind port 2 of slave 0 (EK1100): 7 slaves disconnected, 1 (alias 9, EL2008) to 7 (EL3062), last seen 20 ms ago",
+		  EC_LINE_WARN, false },
+		{ E(SLAVE_FOUND, 1, 0, 2, 0, 2, 3, 1),
+		  "behind port 2 of slave 0 (EK1100): slave 1 (EL2008) connected",
+		  EC_LINE_INFO, false },
+		/* complete, no longer, while the application takes the slaves to PREOP */
+		{ E(WKC, EC_EVENT_NO_SLAVE, 1, 3, 2, 3, 0, 0, 0, 1),
+		  "domain 1: working counter 3 of 3, before 2", EC_LINE_INFO, false },
+		{ E(WKC, EC_EVENT_NO_SLAVE, 1, 2, 3, 3, 0, 0, 1, 0),
+		  "domain 1: working counter 2 of 3, before 3", EC_LINE_WARN, false },
+		{ E(WKC, EC_EVENT_NO_SLAVE, 1, 2, 3, 3, 0, 1, 1, 0),
+		  "domain 1: working counter 2 of 3, before 3", EC_LINE_NONE, false },
+		{ E(LOCK, EC_EVENT_NO_SLAVE, 1, 5, 6, 1),
+		  "kernel cycle lost lock, seeking: phase error 5 ns, rate +6 ppb",
+		  EC_LINE_WARN, false },
+		{ E(LOCK, EC_EVENT_NO_SLAVE, 1, 5, 6),
+		  "kernel cycle seeking: phase error 5 ns, rate +6 ppb", EC_LINE_NONE, false },
+		{ E(SCAN_END, EC_EVENT_NO_SLAVE, 3, 4, 5, 0),
+		  "scan complete: 3 slave(s) in 4 us, 5 frames: eth1", EC_LINE_NONE, false },
+	};
+	char text[200];
+	unsigned int i;
+
+	for (i = 0; i < ARRAY_SIZE(lines); i++) {
+		ec_event_line(&lines[i].e, &more, text, sizeof(text));
+		KUNIT_EXPECT_STREQ(test, text, lines[i].text);
+		KUNIT_EXPECT_EQ_MSG(test, (u32)ec_event_level(&lines[i].e), (u32)lines[i].level,
+				    "%s", text);
+		KUNIT_EXPECT_EQ_MSG(test, ec_event_is_of_slave(&lines[i].e), lines[i].of_slave,
+				    "%s", text);
+	}
+	/* the cycle must not print */
+	KUNIT_EXPECT_TRUE(test, ec_event_is_later(EC_EVENT_WKC));
+	KUNIT_EXPECT_TRUE(test, ec_event_is_later(EC_EVENT_STALL));
+	KUNIT_EXPECT_FALSE(test, ec_event_is_later(EC_EVENT_SLAVE_LOST));
 }
 
 static void event_texts_name_cause_and_place(struct kunit *test)
 {
 	expect(test, E(SLAVE_FAILED, 3, 2, 0, EC_CAUSE_SDO, 0x06020000, 0x5f07, 1),
-	       "configuration of slave 3 failed: startup SDO 0x5f07:01, abort 0x06020000 (object does not exist)");
+	       "slave 3: configuration failed: startup SDO 0x5f07:01, abort 0x06020000 (object does not exist)");
 	expect(test, E(SLAVE_FAILED, 3, 2, 0, EC_CAUSE_SDO, 0, 0x60ff),
-	       "configuration of slave 3 failed: startup SDO 0x60ff:00, mailbox failed");
+	       "slave 3: configuration failed: startup SDO 0x60ff:00, mailbox failed");
 	expect(test, E(SLAVE_FAILED, 3, 2, 0x24, EC_CAUSE_REFUSED, 0x24, 0, 0, 0, 4),
-	       "configuration of slave 3 failed: SAFEOP refused, AL status code 0x0024 (input mapping invalid)");
+	       "slave 3: configuration failed: SAFEOP refused, AL status code 0x0024 (input mapping invalid)");
 	expect(test, E(SLAVE_FAILED, 3, 2, 0, EC_CAUSE_SLOW, 0, 0, 0, 0, 4),
-	       "configuration of slave 3 failed: SAFEOP not reached in time");
+	       "slave 3: configuration failed: SAFEOP not reached in time");
 	expect(test, E(SLAVE_FAILED, 3, 1, 0, EC_CAUSE_EEPROM),
-	       "scan of slave 3 failed: EEPROM not readable or invalid");
+	       "slave 3: scan failed: EEPROM not readable or invalid");
 	/* of an older module */
 	expect(test, E(SLAVE_FAILED, 3, 2, 0x1b),
-	       "configuration of slave 3 failed: AL status code 0x001b (SyncManager watchdog expired: no outputs came in time)");
+	       "slave 3: configuration failed: AL status code 0x001b (SyncManager watchdog expired: no outputs came in time)");
 	expect(test, E(EEPROM, 3, 0, 0x12, 0x34),
 	       "slave 3: EEPROM checksum 0x12, expected 0x34; content used anyway");
 	expect(test, E(CONFIG, 3, 0, 3, EC_CAUSE_DIFFERENT, 2, 4, 2, 3),
@@ -292,6 +364,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(event_text_fits_any_buffer_for_any_record),
 	KUNIT_CASE(event_texts_name_slave_and_values),
 	KUNIT_CASE(event_texts_name_cause_and_place),
+	KUNIT_CASE(event_line_has_names_and_level),
 	{}
 };
 
