@@ -9,6 +9,7 @@
 #include "monitor.h"
 #include "quiet.h"
 #include "base/once64.h"
+#include "bus/absent.h"
 #include "bus/known.h"
 #include "bus/mailboxes.h"
 #include "bus/ports.h"
@@ -545,6 +546,7 @@ static void maybe_scan(struct watch *w)
 		if (READ_ONCE(m->links.access.mode) == EC_ACCESS_DIRECT &&
 		    !READ_ONCE(m->sessions.session))
 			ec_scan(&m->bus, 0, &result);
+		ec_absent_forget(&m->bus);
 	}
 	if (!ec_scan(&m->bus, w->count, &result)) {
 		w->scanned = !result.again;

@@ -2,6 +2,7 @@
 #include <stdlib.h>
 #include <strings.h>
 
+#include "absent.h"
 #include "errors.h"
 #include "graph_tree.h"
 #include "out.h"
@@ -106,8 +107,16 @@ static void to_master(const struct slaves *all, enum info info,
 	out_text("]\n");
 }
 
-static void draw(const struct slaves *all, enum info info, const struct ect_errors *const *regs)
+static void no_line(const struct dev *d, const char *text)
 {
+	(void)d, (void)text;
+}
+
+static int draw(struct dev *d, const struct slaves *all, enum info info,
+		const struct ect_errors *const *regs)
+{
+	int ret;
+
 	out_text("/* ethercat graph | dot -Tsvg > bus.svg */\n\n");
 	out_text("strict graph bus {\n\trankdir=\"LR\"\n\tranksep=0.8\n\tnodesep=0.8\n"
 		 "\tnode [fontname=\"Helvetica\"]\n"
@@ -129,7 +138,11 @@ static void draw(const struct slaves *all, enum info info, const struct ect_erro
 				edge(all, &all->v[i], p, info, regs);
 		}
 	out_end();
+	ret = absent_show(d, all, no_line);
+	if (!ret && !out_is_json())
+		ret = absent_draw(d, all);
 	out_text("}\n");
+	return ret;
 }
 
 /* One that does not reply is drawn without counters. */
@@ -158,7 +171,7 @@ static int show(struct dev *d, enum info info, bool tree)
 	if (tree)
 		ret |= graph_tree(d, &all, counters);
 	else
-		draw(&all, info, counters);
+		ret |= draw(d, &all, info, counters);
 out:
 	free(counters);
 	free(regs);
@@ -197,12 +210,14 @@ const struct cmd cmd_graph = {
 		"--tree prints a tree of text instead. A line of slaves stays in one column, branches\n"
 		"are indented. Columns: position and name; port of the slave upstream > own port;\n"
 		"medium; AL state; open ports (-: no link, x: closed despite a link, ?: open without\n"
-		"communication); delay from the reference clock. CRC adds the counters that are not 0.\n",
+		"communication); delay from the reference clock. CRC adds the counters that are not 0.\n"
+		"Ports behind which slaves were disconnected are drawn with a dashed line; the tree has a\n"
+		"line for each of them, and for each port that stays closed although it has a link.\n",
 	.json = "master, slaves[] (position, alias, relative_position, order_number, dc_delay_ns),\n"
 		"links[] (from, to, medium, from_port, to_port); --tree: master, slaves[]: position,\n"
 		"name, upstream and upstream_port (null: the master), port, medium, state, ports[]\n"
 		"(type, link_up, loop_closed, signal; CRC: crc_errors, phy_errors, forwarded_errors,\n"
-		"lost_links), dc_delay_ns (or null)",
+		"lost_links), dc_delay_ns (or null); absent[], closed_ports[] as of 'ethercat slaves'",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.max_args = 1,
 };

@@ -60,7 +60,8 @@ const struct cmd cmd_rescan = {
 	.opts = "mw",
 	.summary = "Scan the bus again",
 	.help = "Returns at once; with --wait it waits for the end of the scan (default at most 60 s).\n"
-		"Fails without a device or link, and while an application has the list of slaves held.\n",
+		"Fails without a device or link, and while an application has the list of slaves held.\n"
+		"Slaves that are absent now are no longer shown as disconnected.\n",
 	.json = "masters[]: master",
 	.flags = CMD_HISTORIC,
 };

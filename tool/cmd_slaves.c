@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "absent.h"
 #include "config_info.h"
 #include "dev.h"
 #include "out.h"
@@ -110,6 +111,12 @@ static void missing(struct dev *d, unsigned int configs)
 		     d->master, n - MISSING_LINES);
 }
 
+/* on stderr, as the lines of slaves are for programs */
+static void beside(const struct dev *d, const char *text)
+{
+	note("Master%u: %s", d->master, text);
+}
+
 /* Just after the load of the modules a user wants to see slaves, not that there are none yet. */
 static int wait_first(struct dev *d)
 {
@@ -132,6 +139,7 @@ static int each(const struct tool *t, struct dev *d)
 {
 	struct ect_master m;
 	struct slaves sel;
+	int ret;
 
 	if (!t->wait && wait_first(d))
 		return 1;
@@ -158,9 +166,10 @@ static int each(const struct tool *t, struct dev *d)
 			slave_info(d, &sel.v[i]);
 	}
 	out_end();
+	ret = absent_show(d, &sel, beside);
 	out_end();
 	slaves_free(&sel);
-	return 0;
+	return ret;
 }
 
 static int run(struct tool *t, int argc, char **argv)
@@ -183,7 +192,9 @@ const struct cmd cmd_slaves = {
 	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
 		"'+ERROR' after the state: the slave reports an error; state LOST: it does not reply.\n"
 		"Flag 'E': scan or configuration of the slave failed; '!': another slave than configured\n"
-		"by the application. Configured slaves that are absent are listed on stderr.\n"
+		"by the application. Configured slaves that are absent are listed on stderr, and so are\n"
+		"ports behind which slaves were disconnected, until they return or 'ethercat rescan' forgets\n"
+		"them, and ports that stay closed although they have a link.\n"
 		"'xxx LINK FAILURE xxx' marks the break of a redundant ring.\n"
 		"From its reservation of the master to activation, and after deactivation, an application\n"
 		"has the list of slaves held: no scan changes it, and stderr shows which process that is.\n"
@@ -201,6 +212,9 @@ const struct cmd cmd_slaves = {
 		"mailboxes (bootstrap_rx_offset, bootstrap_rx_size, bootstrap_tx_offset,\n"
 		"bootstrap_tx_size, standard_..., protocols[]),\n"
 		"general (group, image, order_number, device_name, coe_details, flags, current_ma),\n"
-		"sync_managers, fmmus, sii_words)",
+		"sync_managers, fmmus, sii_words),\n"
+		"absent[] (upstream and port (null: the main device), slaves, since_ns, first, last (ring\n"
+		"positions they had), first_name), closed_ports[] (slave, port, reason (no_reply,\n"
+		"no_loop_control, losses), wait_s)",
 	.flags = CMD_HISTORIC,
 };

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "../lib/tools/text.h"
+#include "absent.h"
 #include "out.h"
 #include "slave_info.h"
 #include "topology.h"
@@ -166,6 +167,12 @@ static void heading(struct dev *d, const struct ect_list *devices, unsigned int 
 		 dev ? dev->name : "", dev && dev->link_up ? "up" : "down");
 }
 
+static void tree_line(const struct dev *d, const char *text)
+{
+	(void)d;
+	out_text("%s\n", text);
+}
+
 /**
  * graph_tree() - print the tree of a master
  * @d: open file of the master
@@ -199,6 +206,7 @@ int graph_tree(struct dev *d, const struct slaves *all, const struct ect_errors 
 		row(&t, &all->v[n->slave], w, errors[n->slave]);
 	}
 	out_end();
+	ret = absent_show(d, all, tree_line);
 out:
 	ect_list_free(devices);
 	topo_free(&t);

@@ -135,9 +135,41 @@ struct ect_slave {
 	char name[ECT_STRING];
 	char why[ECT_TEXT];	/* @cause in words, or "" */
 	char warning[ECT_TEXT];
+	uint8_t port_kept[ECT_PORTS];	/* ECT_PORT_*: why a port is closed despite its link */
+	uint8_t port_wait_s[ECT_PORTS];	/* ECT_PORT_LOSSES: it opens after such a time of link */
 	uint16_t identification;	/* explicit device identification, 0: none */
 	uint16_t reserved[3];
 };
+
+/* struct ect_slave.port_kept */
+#define ECT_PORT_NOT_KEPT	0
+#define ECT_PORT_NO_REPLY	1	/* no slave replies behind it */
+#define ECT_PORT_LOOPS		2	/* a slave without loop control, others behind it */
+#define ECT_PORT_LOSSES		3	/* it has lost its link too often */
+
+/** struct ect_absent - slaves that were disconnected and have not returned, behind one port */
+struct ect_absent {
+	uint32_t struct_size;
+	uint32_t slaves;	/* how many */
+	uint64_t device;	/* number of the slave whose port it is, 0: the main device */
+	uint64_t since_ns;	/* they were last seen so long ago */
+	uint16_t first;		/* ring position that the first of them had */
+	uint16_t last;
+	uint8_t port;
+	char name[ECT_STRING];	/* of the first one */
+};
+
+/**
+ * ect_absent_read() - slaves that were disconnected and have not returned
+ * @h: master
+ * @list: result, elements are struct ect_absent, one for each port
+ *
+ * A bus scan that a user requests forgets them.
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: 0 or a negative errno.
+ */
+int ect_absent_read(struct ect_handle *h, struct ect_list **list);
 
 /**
  * ect_slaves_read() - all slaves of a master

@@ -61,6 +61,7 @@
 #define EC_IOC_CONFIG_IDN	EC_IOC_RW(0x12, struct ec_ioc_config_idn)
 #define EC_IOC_CONFIG_FLAG	EC_IOC_RW(0x10, struct ec_ioc_config_flag)
 #define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
+#define EC_IOC_ABSENT		EC_IOC_RW(0x13, struct ec_ioc_absent)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 #define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
 #define EC_IOC_EMERGENCIES	EC_IOC_RW(0x1a, struct ec_ioc_emergencies)

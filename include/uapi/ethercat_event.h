@@ -44,6 +44,11 @@
 /* in OP again: ms since they were last seen; slaves: this one and those after it */
 #define EC_EVENT_SLAVE_BACK	0x18
 #define EC_EVENT_NO_ANSWER	0x19	/* no reply at a station address: polls; a scan follows */
+/*
+ * a port with a link stays closed: port, EC_PORT_*; with EC_PORT_LOSSES their number, in s, longest
+ * wait in s
+ */
+#define EC_EVENT_PORT_KEPT	0x1a
 
 /*
  * as requested: AL state, before, slaves: this one and those after it, the lowest AL state in

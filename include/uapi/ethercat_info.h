@@ -135,6 +135,27 @@ struct ec_ioc_port {
 	__u8 signal;
 	__u16 next_slave;	/* EC_UAPI_NONE16: none */
 	__u16 reserved;
+	__u32 kept;		/* EC_PORT_*: why it is closed although it has a link */
+	__u32 wait_s;		/* EC_PORT_LOSSES: it opens after so many s of link without loss */
+};
+
+#define EC_PORT_NOT_KEPT	0
+#define EC_PORT_NO_REPLY	1	/* no slave replies behind it */
+#define EC_PORT_LOOPS		2	/* a slave that does not keep 0x0101, others behind it */
+#define EC_PORT_LOSSES		3	/* it has lost its link too often */
+
+/* slaves that were disconnected and have not returned, behind one port */
+struct ec_ioc_absent {
+	__u32 flags;
+	__u32 index;		/* in: of the port, from 0 */
+	__u64 device;		/* number of the slave whose port it is, 0: the main device */
+	__u64 since_ns;		/* they were last seen so long ago */
+	__u32 slaves;		/* 0: @index is behind the last one */
+	__u16 first;		/* ring position that the first of them had */
+	__u16 last;
+	__u8 port;
+	__u8 reserved[7];
+	char name[EC_UAPI_STRING];	/* of the first one */
 };
 
 /* struct ec_ioc_slave.coe_details: bits as in SII general byte 5 */

@@ -122,6 +122,8 @@ static int get_ports(struct ect_handle *h, struct ect_slave *to)
 
 		ret = ect_command(h, EC_IOC_PORT, &from);
 		convert_port(&to->ports[i], &from);
+		to->port_kept[i] = (u8)from.kept;
+		to->port_wait_s[i] = (u8)from.wait_s;
 	}
 	return ret;
 }
@@ -298,4 +300,45 @@ int ect_pdo_entry_read(struct ect_handle *h, uint64_t device, unsigned int sm, u
 	memcpy(own.name, e.name, sizeof(own.name));
 	string_clean(own.name, sizeof(own.name));
 	return ret ? ret : ect_give(h, to, &own, sizeof(own));
+}
+
+static void convert_absent(struct ect_absent *to, const struct ec_ioc_absent *from)
+{
+	COPY(slaves);
+	COPY(device);
+	COPY(since_ns);
+	COPY(first);
+	COPY(last);
+	COPY(port);
+	memcpy(to->name, from->name, sizeof(to->name));
+	string_clean(to->name, sizeof(to->name));
+}
+
+static int read_absent(struct ect_handle *h, struct ect_list *l)
+{
+	for (u32 i = 0;; i++) {
+		struct ec_ioc_absent from = { .index = i };
+		int ret = ect_command(h, EC_IOC_ABSENT, &from);
+		struct ect_absent *to;
+
+		/* a module that does not know the command lists none */
+		if (ret || !from.slaves)
+			return ret == -ENOTTY ? 0 : ret;
+		to = ect_list_add(l);
+		if (!to)
+			return ect_no_memory(h);
+		convert_absent(to, &from);
+	}
+}
+
+int ect_absent_read(struct ect_handle *h, struct ect_list **list)
+{
+	struct ect_list *l = ect_list_new(sizeof(struct ect_absent));
+	int ret = l ? read_absent(h, l) : ect_no_memory(h);
+
+	if (ret)
+		ect_list_free(l);
+	else
+		*list = l;
+	return ret;
 }

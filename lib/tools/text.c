@@ -5,6 +5,7 @@
  */
 #include "text.h"
 
+#include <stdio.h>
 #include <string.h>
 
 #include "../../master/wire/env.h"
@@ -118,4 +119,25 @@ size_t text_typos(const char *a, const char *b)
 		}
 	}
 	return rows[strlen(a) % 3][n];
+}
+
+/**
+ * text_duration() - a duration as "3.1 s", "12 min" or "5 h"
+ * @ns: duration
+ * @buf: result
+ * @size: of @buf
+ *
+ * Return: @buf.
+ */
+const char *text_duration(uint64_t ns, char *buf, size_t size)
+{
+	unsigned long long ds = ns / 100000000;
+
+	if (ds < 1000)
+		snprintf(buf, size, "%llu.%llu s", ds / 10, ds % 10);
+	else if (ds < 72000)
+		snprintf(buf, size, "%llu min", ds / 600);
+	else
+		snprintf(buf, size, "%llu h", ds / 36000);
+	return buf;
 }

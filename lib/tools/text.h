@@ -5,11 +5,13 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 int utf8_len(const unsigned char *p, size_t size);
 bool text_harmless(const unsigned char *p, int n);
 void text_clean(char *s, size_t size);
 void string_clean(char *s, size_t size);
 size_t text_typos(const char *a, const char *b);
+const char *text_duration(uint64_t ns, char *buf, size_t size);
 
 #endif

@@ -56,6 +56,7 @@ static int read_all(struct why *w)
 
 	ret = ret ? ret : ect_get_master(w->h, &w->m);
 	ret = ret ? ret : ect_devices_read(w->h, &w->devices);
+	ret = ret ? ret : ect_absent_read(w->h, &w->absent);
 	if (ret)
 		return ret;
 	w->configs = ect_list_new(sizeof(struct ect_explained));
@@ -150,6 +151,7 @@ static bool apply_rules(struct why *w)
 	why_cycle(w);
 	why_late_frames(w);
 	why_absent(w);
+	why_ports(w);
 	why_slaves(w);
 	why_domains(w);
 	why_clocks(w);
@@ -192,6 +194,7 @@ int ect_why(struct ect_handle *h, struct ect_why **to)
 
 	*to = ret || w.failed ? NULL : result(&w, unreachable);
 	ect_list_free(w.devices);
+	ect_list_free(w.absent);
 	if (*to)
 		return 0;
 	ect_list_free(w.bus);

@@ -16,6 +16,7 @@
  * @m: its state
  * @devices: struct ect_device
  * @bus: struct ect_slave by ring position
+ * @absent: struct ect_absent
  * @configs: struct ect_explained
  * @findings: struct ect_finding
  * @counters: the user may read the error counters of the ports
@@ -29,6 +30,7 @@ struct why {
 	struct ect_master m;
 	struct ect_list *devices;
 	struct ect_list *bus;
+	struct ect_list *absent;
 	struct ect_list *configs;
 	struct ect_list *findings;
 	bool counters;
@@ -98,6 +100,7 @@ bool why_bus(struct why *w);
 void why_cycle(struct why *w);
 void why_unsent(struct why *w);
 void why_absent(struct why *w);
+void why_ports(struct why *w);
 void why_slaves(struct why *w);
 void why_domains(struct why *w);
 void why_clocks(struct why *w);

@@ -2,6 +2,7 @@
 /* Configurations without slave: lost behind a cable, missing, different, at another position. */
 #include <stdio.h>
 
+#include "../../master/wire/port_text.h"
 #include "text.h"
 #include "why.h"
 
@@ -32,13 +33,31 @@ static bool at_position(const struct ect_explained *c)
 					    c->cause.kind == ECT_CAUSE_DIFFERENT);
 }
 
+/* What is absent behind a port, or NULL. */
+static const struct ect_absent *absent_at(const struct why *w, const struct ect_slave *s,
+					  unsigned int port)
+{
+	const struct ect_absent *a;
+
+	for (size_t i = 0; s && (a = ect_list_get(w->absent, i)); i++)
+		if (a->device == s->device && a->port == port)
+			return a;
+	return NULL;
+}
+
+static const char *slaves_word(const struct ect_absent *a)
+{
+	return a->slaves == 1 ? "slave" : "slaves";
+}
+
 /* Slaves that were lost together have the same place; one cable explains all of them. */
 static void lost_at(struct why *w, unsigned int position, unsigned int port, const char *text)
 {
 	const struct ect_slave *s = position < w->bus->n ? why_slave(w, position) : NULL;
 	bool up = s && s->ports[port & 3].link_up;
+	const struct ect_absent *a = absent_at(w, s, port);
 	struct ect_finding *f;
-	char name[96];
+	char name[96], since[24];
 
 	why_slave_name(w, position, name, sizeof(name));
 	if (w->m.scan_busy || w->m.slaves_responding > w->bus->n) {
@@ -50,6 +69,12 @@ static void lost_at(struct why *w, unsigned int position, unsigned int port, con
 		f->evidence_count = 2;
 		f->evidence[0] = w->m.scan_index;
 		f->evidence[1] = w->m.scan_slaves;
+	} else if (a) {
+		f = why_add(w, CABLE_OF, port, name, a->slaves, slaves_word(a),
+			    text_duration(a->since_ns, since, sizeof(since)), a->first, a->name,
+			    up ? "up" : "down");
+		f->evidence_count = 1;
+		f->evidence[0] = a->slaves;
 	} else {
 		f = why_add(w, CABLE, port, name, up ? "up" : "down", text);
 	}
@@ -372,6 +397,58 @@ void why_absent(struct why *w)
 			break;
 		default:	/* an unreadable slave, or an older module: why_slaves() */
 			break;
+		}
+	}
+}
+
+/* slaves that no configuration misses: nothing else has reported their port */
+static void unused(struct why *w, const struct ect_slave *s, const struct ect_absent *a)
+{
+	struct ect_finding *f;
+	char name[96], since[24];
+
+	for (size_t i = 0; i < w->findings->n; i++)
+		if (why_finding(w, i)->slave == s->position && why_finding(w, i)->port == a->port)
+			return;
+	f = why_add(w, ABSENT, a->port, why_slave_name(w, s->position, name, sizeof(name)),
+		    a->slaves, slaves_word(a), text_duration(a->since_ns, since, sizeof(since)),
+		    a->first, a->name, s->ports[a->port & 3].link_up ? "up" : "down");
+	f->evidence_count = 1;
+	f->evidence[0] = a->slaves;
+	f->slave = s->position;
+	f->port = a->port;
+}
+
+static void kept(struct why *w, const struct ect_slave *s, unsigned int port)
+{
+	const struct ec_port_text *text = ec_port_text(s->port_kept[port]);
+	struct ect_finding *f;
+	char name[96];
+
+	f = why_add(w, PORT_KEPT, port, why_slave_name(w, s->position, name, sizeof(name)),
+		    text->reason);
+	why_remedy(f, PLAIN, text->remedy);
+	f->slave = s->position;
+	f->port = (int)port;
+}
+
+/**
+ * why_ports() - ports behind which slaves are absent, or that stay closed
+ * @w: what is known
+ */
+void why_ports(struct why *w)
+{
+	const struct ect_absent *a;
+
+	for (size_t i = 0; i < w->bus->n; i++) {
+		const struct ect_slave *s = why_slave(w, i);
+
+		for (unsigned int p = 0; p < ECT_PORTS; p++) {
+			a = absent_at(w, s, p);
+			if (a && !w->m.scan_busy)
+				unused(w, s, a);
+			if (s->port_kept[p])
+				kept(w, s, p);
 		}
 	}
 }

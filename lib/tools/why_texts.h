@@ -12,6 +12,9 @@
 #define WHY_EEPROM_REMEDY \
 	"repair the EEPROM with the tool of the manufacturer, or replace the slave; its content: 'ethercat sii_read -v'"
 
+#define WHY_CABLE_REMEDY \
+	"check the cable or contact behind this port, and the power of the next slave"
+
 #define WHY_TEXTS(X) \
 	/* the whole bus */ \
 	X(NO_DEVICE, "no_device", FAULT, "", \
@@ -57,13 +60,19 @@
 	  "repair the cables whose ports count errors, see there", \
 	  "%s loses %u %s per second (average over 10 s)") \
 	/* configurations without slave */ \
-	X(CABLE, "cable", FAULT, "", \
-	  "check the cable or contact behind this port, and the power of the next slave", \
+	X(CABLE, "cable", FAULT, "", WHY_CABLE_REMEDY, \
 	  "no slave behind port %u of %s, link %s; lost: %s") \
+	X(CABLE_OF, "cable", FAULT, "slaves", WHY_CABLE_REMEDY, \
+	  "behind port %u of %s: %u %s disconnected, since %s, the first: slave %u (%s); link %s") \
 	X(CABLE_LOST, "cable", FAULT, "", \
 	  "check cables and power up to the first lost slave", "%s") \
 	X(LOST_AGAIN, "scan", UNDER_WAY, "slaves_read slaves", WHY_SCAN_REMEDY, \
 	  "slaves reply again, %u of %u are read; the scan shows whether those behind port %u of %s reply as well; lost before: %s") \
+	X(ABSENT, "absent", WARNING, "slaves", \
+	  WHY_CABLE_REMEDY "; if they were removed on purpose: 'ethercat rescan'", \
+	  "behind port %u of %s: %u %s disconnected, since %s, the first: slave %u (%s); link %s") \
+	X(PORT_KEPT, "port_closed", WARNING, "", "", \
+	  "port %u of %s stays closed despite its link: %s") \
 	X(MISSING, "missing", FAULT, "missing", \
 	  "check power and cable of the missing slaves, or correct the configuration", \
 	  "%u %s missing from position %u on: the bus has %zu, %s %s") \

@@ -13,7 +13,9 @@
 #include "../base/once64.h"
 #include "../cycle/cycle_stats.h"
 #include "../session/session.h"
+#include "../bus/absent.h"
 #include "../bus/find.h"
+#include "../bus/ports.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
 
@@ -216,6 +218,28 @@ int ec_ioc_port(struct ec_call *call)
 	i->receive_time = s->recv[p];
 	i->next_slave = s->at[p] ? s->at[p]->position : EC_UAPI_NONE16;
 	i->delay_to_next_dc = way(s, p);
+	i->kept = ec_ports_kept(s, p, &i->wait_s);
+	return 0;
+}
+
+int ec_ioc_absent(struct ec_call *call)
+{
+	struct ec_master *m = call->master;
+	struct ec_ioc_absent *i = call->arg;
+	struct ec_absent a;
+	int ret = ec_show_begin(&m->base->show);
+
+	if (ret)
+		return ret;
+	ec_absent_get(&m->bus, i->index, &a);
+	ec_show_end(&m->base->show);
+	i->device = a.up;
+	i->since_ns = a.n ? ktime_get_ns() - a.seen_ns : 0;
+	i->slaves = a.n;
+	i->first = a.first;
+	i->last = a.last;
+	i->port = a.port;
+	strscpy(i->name, a.label, sizeof(i->name));
 	return 0;
 }
 

@@ -62,6 +62,9 @@ static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int
 	l->serial = s->info.serial;
 	l->station = s->station;
 	l->position = s->position;
+	l->up = s->lost_at.up < s->bus->n_slaves ? s->bus->slaves[s->lost_at.up]->device : 0;
+	l->up_port = s->lost_at.up_port;
+	l->seen_ns = s->seen_ns;
 	strscpy(l->label, ec_slave_label(s), sizeof(l->label));
 	l->image = keep_image(s);
 	hlist_add_head(&l->by_number, head_of(k->lost, l->number));
@@ -122,11 +125,20 @@ static struct ec_lost *by_serial(struct ec_known *k, const struct ec_slave *s,
 	return found;
 }
 
-static struct ec_lost *by_number(const struct ec_known *k, u64 number)
+/**
+ * ec_known_lost() - the disconnected device with a device number
+ * @bus: bus
+ * @number: device number
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: the device, or NULL.
+ */
+struct ec_lost *ec_known_lost(const struct ec_bus *bus, u64 number)
 {
 	struct ec_lost *l;
 
-	hlist_for_each_entry(l, head_of((struct hlist_head *)k->lost, number), by_number)
+	ec_bus_assert_stays(bus);
+	hlist_for_each_entry(l, head_of((struct hlist_head *)bus->known.lost, number), by_number)
 		if (l->number == number)
 			return l;
 	return NULL;
@@ -256,7 +268,7 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 		if (!hlist_unhashed(&s->by_device))
 			continue;
 		l = by_station(k, s, false) ?: by_serial(k, s, slaves, n) ?:
-		    by_station(k, s, true) ?: by_number(k, s->device);
+		    by_station(k, s, true) ?: ec_known_lost(bus, s->device);
 		if (l) {
 			s->device = l->number;
 			ec_known_drop(k, l);
@@ -298,7 +310,7 @@ struct ec_slave *ec_known_slave(const struct ec_bus *bus, u64 number)
  */
 size_t ec_known_text(const struct ec_bus *bus, u64 number, char *buf, size_t size)
 {
-	const struct ec_lost *l = by_number(&bus->known, number);
+	const struct ec_lost *l = ec_known_lost(bus, number);
 
 	ec_bus_assert_stays(bus);
 	if (!number || number > bus->known.last)

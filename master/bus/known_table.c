@@ -61,4 +61,5 @@ void ec_known_exit(struct ec_known *k)
 
 	list_for_each_entry_safe(l, next, &k->oldest, age)
 		ec_known_drop(k, l);
+	kfree(k->absent);
 }

@@ -8,6 +8,7 @@
 #include <linux/types.h>
 #include "../wire/sii.h"
 
+struct ec_absent;
 
 /**
  * struct ec_image - EEPROM image of a device that was disconnected
@@ -41,6 +42,13 @@ struct ec_image {
  * @position: its ring position
  * @label: what people call it
  * @image: of its EEPROM, NULL: none was read, or it is not kept any more
+ * @up: device number of the slave that it hung at, 0: at the main device
+ * @up_port: at that port
+ * @seen_ns: when it was last seen (ktime)
+ * @forgotten: a user has requested a scan since then
+ * @rooted: list of slaves for which @root is valid
+ * @root: device number of the slave where the way to it breaks, 0: the main device
+ * @root_port: at that port
  */
 struct ec_lost {
 	u64 number;
@@ -56,6 +64,13 @@ struct ec_lost {
 	u16 position;
 	char label[24];
 	struct ec_image *image;
+	u64 up;
+	u8 up_port;
+	u64 seen_ns;
+	bool forgotten;
+	u32 rooted;
+	u64 root;
+	u8 root_port;
 };
 
 /**
@@ -67,6 +82,8 @@ struct ec_lost {
  * @by_serial: the same by serial number, if they have one
  * @oldest: the same, the first one that was disconnected first
  * @n_lost: their number
+ * @absent: ports behind which they hung, NULL: none so far
+ * @n_absent: entries in @absent
  */
 struct ec_known {
 	u64 last;
@@ -76,6 +93,8 @@ struct ec_known {
 	struct hlist_head by_serial[EC_KNOWN_HEADS];
 	struct list_head oldest;
 	unsigned int n_lost;
+	struct ec_absent *absent;
+	unsigned int n_absent;
 };
 
 void ec_known_init(struct ec_known *k);

@@ -239,22 +239,17 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 	*d = (struct ec_door){ 0 };
 }
 
-/* The port stays closed: said once, and tried again ever less often. */
+/* The port stays closed: reported once, and tried again ever less often. */
 static void note_closed(struct ec_slave *s, unsigned int port, int why)
 {
 	struct ec_door *d = &s->ports.door[port];
 
 	d->wait_ms = clamp_t(u32, 2 * d->wait_ms, WAIT_MIN_MS, WAIT_MAX_MS);
 	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
-	if (d->logged)
+	if (d->kept)
 		return;
-	d->logged = true;
-	if (why == -EOPNOTSUPP)
-		ec_slave_warn(s, "port %u: the slave behind it does not keep register 0x0101, and others are behind that; the port stays closed: connect them before activation\n",
-			      port);
-	else
-		ec_slave_warn(s, "port %u has a link, but no slave replies behind it; it stays closed: connect port 0 (IN) of a slave there\n",
-			      port);
+	WRITE_ONCE(d->kept, why == -EOPNOTSUPP ? EC_PORT_LOOPS : EC_PORT_NO_REPLY);
+	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, d->kept);
 }
 
 static bool try_door(struct ec_slave *s, unsigned int port)
@@ -263,8 +258,8 @@ static bool try_door(struct ec_slave *s, unsigned int port)
 
 	if (ret > 0) {
 		s->ports.door[port] = (struct ec_door){ 0 };
-		ec_slave_info(s, "port %u: %d new slave(s), made harmless before process data reached them\n",
-			      port, ret);
+		ec_slave_dbg(s, 1, "port %u: %d new slave(s), made harmless before process data reached them\n",
+			     port, ret);
 		return true;
 	}
 	if (ret == -ENXIO || ret == -EOPNOTSUPP)
@@ -369,8 +364,31 @@ void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open)
 		return;
 	}
 	l->wait_s = 1;
-	ec_slave_warn(s, "port %u has lost its link %u times in %llu s; opened after 1 s of link, then after up to %u s: check cable and plugs\n",
-		      port, LOSSES, LOSS_NS / NSEC_PER_SEC, LOSS_WAIT_MAX_S);
+	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, EC_PORT_LOSSES, LOSSES,
+			LOSS_NS / NSEC_PER_SEC, LOSS_WAIT_MAX_S);
+}
+
+/**
+ * ec_ports_kept() - why a port is closed although it has a link
+ * @s: slave
+ * @port: its port
+ * @wait_s: result: it opens after so many seconds of link without loss
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: EC_PORT_*.
+ */
+u32 ec_ports_kept(const struct ec_slave *s, unsigned int port, u32 *wait_s)
+{
+	u8 kept = READ_ONCE(s->ports.door[port].kept);
+
+	ec_bus_assert_stays(s->bus);
+	*wait_s = 0;
+	if (!is_guarded(s->bus) || !is_door(s, port))
+		return EC_PORT_NOT_KEPT;
+	if (kept)
+		return kept;
+	*wait_s = READ_ONCE(s->ports.loss[port].wait_s);
+	return *wait_s ? EC_PORT_LOSSES : EC_PORT_NOT_KEPT;
 }
 
 /**

@@ -11,13 +11,13 @@
  * @link_ns: since when it has had a link without loss (ktime), 0: it has none
  * @next_ns: no trial before (ktime)
  * @wait_ms: distance of the last two trials in which no slave replied
- * @logged: why it stays closed is in the log
+ * @kept: EC_PORT_*: why it stays closed, which was reported
  */
 struct ec_door {
 	u64 link_ns;
 	u64 next_ns;
 	u32 wait_ms;
-	bool logged;
+	u8 kept;
 };
 
 /**

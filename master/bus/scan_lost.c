@@ -43,6 +43,8 @@ void ec_lost_note_place(struct ec_slave *s)
 	s->seen_ns = s->bus->complete_ns;
 	if (u && u->position < s->position && !u->listing) {
 		s->lost_at = u->lost_at;
+		s->lost_at.up = u->position;
+		s->lost_at.up_port = s->parent_port;
 		strscpy(s->parent, u->parent, sizeof(s->parent));
 		if (u->first_lost[0])
 			strscpy(s->first_lost, u->first_lost, sizeof(s->first_lost));
@@ -55,6 +57,7 @@ void ec_lost_note_place(struct ec_slave *s)
 		ec_ports_note_loss(u, s->parent_port, true);
 	s->lost_at = (struct ec_break){
 		.station = u ? u->station : 0, .position = position_of(u), .port = s->parent_port,
+		.up = u ? u->position : EC_UAPI_NONE16, .up_port = s->parent_port,
 	};
 	place_text(s, s->parent, sizeof(s->parent));
 }

@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "../base/once64.h"
 #include "../link/links.h"
+#include "absent.h"
 #include "graph.h"
 #include "known.h"
 #include "scan_int.h"
@@ -239,6 +240,7 @@ static void set_list(struct scan *sc, struct list *l)
 	for (i = 0; i < l->n; i++)
 		l->slaves[i]->found = l->slaves[i]->found ?: bus->lists;
 	fit(sc, l);
+	ec_absent_update(bus, l->n);
 }
 
 /* The list has its references, and the scan keeps those of what it does not take. */

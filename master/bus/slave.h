@@ -27,13 +27,17 @@
 /**
  * struct ec_break - where the way to a lost slave breaks
  * @station: address of the slave that is still there, 0: the main device
+ * @up: position in the list of that it hung at itself, EC_UAPI_NONE16: at the main device
  * @position: ring position it had then, EC_EVENT_NONE: the main device
  * @port: its port
+ * @up_port: port of that at @up
  */
 struct ec_break {
 	u16 station;
+	u16 up;
 	u32 position;
 	u8 port;
+	u8 up_port;
 };
 
 /**

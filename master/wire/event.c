@@ -68,6 +68,8 @@ static const struct row kinds[] = {
 	KIND(NO_ANSWER, "no_answer", WARNING,
 	     "a slave did not answer at its station address in %0 polls; rescanning",
 	     U("polls")),
+	KIND(PORT_KEPT, "port_kept", WARNING | SLAVE, SPECIAL, U("port"), U("reason"), U("losses"),
+	     U("period_s"), U("longest_wait_s")),
 	/* only what fails has a line */
 	KIND(AL_STATE, "al_state", NONE | SLAVE, SPECIAL, AL("state"), AL("before"),
 	     U("slaves"), AL("lowest")),

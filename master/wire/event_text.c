@@ -4,6 +4,7 @@
 #include "al.h"
 #include "coe.h"
 #include "emergency.h"
+#include "port_text.h"
 
 #define add	ec_event_add
 
@@ -54,6 +55,19 @@ static void about_place(struct ec_event_buf *t, const struct ec_event *e,
 		add(t, " (%.40s)", more->last);
 	if (lost)
 		add(t, ", last seen %u ms ago", e->arg[5]);
+}
+
+static void about_port(struct ec_event_buf *t, const struct ec_event *e,
+		       const struct ec_event_more *more)
+{
+	const struct ec_port_text *text = ec_port_text(e->arg[1]);
+
+	(void)more;
+	add(t, "port %u stays closed despite its link: %s", e->arg[0], text->reason);
+	if (e->arg[2])
+		add(t, " (%u times in %u s; opened after 1 s of link, then after up to %u s)",
+		    e->arg[2], e->arg[3], e->arg[4]);
+	add(t, "; %s", text->remedy);
 }
 
 static void about_back(struct ec_event_buf *t, const struct ec_event *e,
@@ -310,6 +324,7 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 		{ EC_EVENT_MISSED, about_missed },
 		{ EC_EVENT_SLAVE_LOST, about_place },
 		{ EC_EVENT_SLAVE_FOUND, about_place },
+		{ EC_EVENT_PORT_KEPT, about_port },
 		{ EC_EVENT_SLAVE_BACK, about_back },
 		{ EC_EVENT_AL_STATE, about_al },
 		{ EC_EVENT_EMERGENCY, about_emergency },

@@ -356,6 +356,10 @@ static int port(struct ec_ioc_port *x)
 	x->receive_time = p->receive_time;
 	x->next_slave = p->next_slave;
 	x->delay_to_next_dc = p->delay_to_next_dc;
+	if (getenv("FAKE_ABSENT") && x->port == 3) {
+		x->kept = s.position ? EC_PORT_NO_REPLY : EC_PORT_LOSSES;
+		x->wait_s = s.position ? 0 : 4;
+	}
 	return 0;
 }
 
@@ -369,9 +373,31 @@ static int state_of(struct ec_ioc_slave *x)
 	return 0;
 }
 
+/* FAKE_ABSENT: behind port 2 of slave 0, behind the main device, and a closed port */
+static int absent(struct ec_ioc_absent *x)
+{
+	static const struct ec_ioc_absent ports[] = {
+		{ .device = FAKE_DEVICE, .port = 2, .slaves = 7, .first = 1, .last = 7,
+		  .since_ns = 3100000000ULL, .name = "EL2008" },
+		{ .device = FAKE_DEVICE + 1, .port = 1, .slaves = 1, .first = 2, .last = 2,
+		  .since_ns = 300000000000ULL, .name = "EL7201" },
+		{ .slaves = 2, .first = 8, .last = 9, .since_ns = 1, .name = "EK1100" },
+	};
+	__u32 index = x->index;
+
+	if (getenv("FAKE_ABSENT") && index < sizeof(ports) / sizeof(ports[0]))
+		*x = ports[index];
+	else
+		x->slaves = 0;
+	x->index = index;
+	return 0;
+}
+
 int fake_slave_command(unsigned long request, void *arg)
 {
 	switch (request) {
+	case EC_IOC_ABSENT:
+		return absent(arg);
 	case EC_IOC_SLAVE:
 		return state_of(arg);
 	case EC_IOC_SLAVE_NAMES:

@@ -147,3 +147,33 @@ watch() {
 	[ "$status" -eq 1 ]
 	[[ $output == *"'reset' and --watch exclude each other"* ]]
 }
+
+@test "slaves, graph: absent slaves and closed ports, by port" {
+	local lines
+
+	lines="behind port 2 of slave 0 EK1100: 7 slaves disconnected, since 3.1 s: 1 (EL2008) to 7
+behind port 1 of slave 1 EL2008: slave 2 (EL7201) disconnected, since 5 min
+behind the main device: 2 slaves disconnected, since 0.0 s: 8 (EK1100) to 9
+port 3 of slave 0 EK1100 stays closed despite its link: it has lost its link again and again"
+	lines+=", opens after 4 s of link without loss; check cable and plugs"
+	export FAKE_ABSENT=1
+	[[ $(err slaves) == "$(sed 's/^/Master0: /' <<<"$lines")"* ]]
+	[[ $(out graph --tree) == *"
+$lines
+"* ]]
+	[ "$(out slaves)" = "$(env -u FAKE_ABSENT "$HERE/build/fake/ethercat" slaves 2>/dev/null)" ]
+	# those of a selected slave, and of the main device
+	[ "$(err slaves -p1 | grep -c 'behind port')" = 1 ]
+	[[ $(out graph) == *'absent0 [shape="box", style="dashed", label="7 slaves disconnected\nsince 3.1 s"]
+	slave0 -- absent0 [style="dashed", taillabel="2"]'* ]]
+	[[ $(out graph) == *'master -- absent2 [style="dashed"]'* ]]
+	for c in "slaves" "graph" "graph --tree"; do
+		out $c -j >"$BATS_TEST_TMPDIR/json"
+		json '(lambda m: list(m["absent"][0].values()) ==
+			[0, 2, 7, 3100000000, 1, 7, "EL2008"] and
+			m["absent"][2]["upstream"] is None and m["closed_ports"][0] ==
+			{"slave": 0, "port": 3, "reason": "losses", "wait_s": 4} and
+			m["closed_ports"][1]["reason"] == "no_reply")(d.get("masters", [d])[0])' \
+			<"$BATS_TEST_TMPDIR/json"
+	done
+}

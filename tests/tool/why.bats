@@ -247,3 +247,14 @@ is() {
 	[ -z "$(nm -D "$HERE/build/real/ethercat" | grep -w ioctl)" ]
 	[ -n "$(nm -D "$HERE/build/real/libethercat-tools.so" | grep -w ioctl)" ]
 }
+
+@test "why: absent slaves and closed ports have their place" {
+	export FAKE_ABSENT=1
+	run ethercat why
+	[[ $output == *"Warning: behind port 2 of slave 0 (EK1100): 7 slaves disconnected, since 3.1 s, the first: slave 1 (EL2008); link "* ]]
+	[[ $output == *"  Place: slave 0 (EK1100), port 2"* && $output == *"'ethercat rescan'"* ]]
+	[[ $output == *"Warning: port 3 of slave 1 (EL2008) stays closed despite its link: no slave replies behind it"*"  Remedy: connect port 0 (IN) of a slave there, or remove the cable"* ]]
+	# one finding for a port that configurations miss slaves behind
+	[ "$(FAKE_WHY=cable out why | grep -c 'behind port 1 of slave 1')" = 1 ]
+	[[ $(FAKE_WHY=cable out why) == *"Fault: behind port 1 of slave 1 (EL2008): 1 slave disconnected, since 5 min, the first: slave 2 (EL7201); link "* ]]
+}

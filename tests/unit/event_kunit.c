@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The ring of events, alone, and the texts of events. */
 #include "wire_kunit.h"
+#include "../../include/uapi/ethercat.h"
 #include "../../master/wire/event.h"
 #include "../../master/wire/event_ring.h"
 
@@ -192,7 +193,7 @@ static void event_each_kind_has_text_and_unique_name(struct kunit *test)
 			if (ec_event_kind(other))
 				KUNIT_EXPECT_STRNEQ(test, ec_event_kind(other)->name, k->name);
 	}
-	KUNIT_EXPECT_EQ(test, n, 47u);
+	KUNIT_EXPECT_EQ(test, n, 48u);
 }
 
 /* A record of any content, a buffer of any size. */
@@ -263,6 +264,10 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "reference clock lost: slave 3 substitutes until it returns");
 	expect(test, E(ACTIVATED, EC_EVENT_NO_SLAVE, 4711, 1, 24, 2),
 	       "session activated: 1 domain(s), 24 bytes, 2 datagram(s) per cycle, process 4711");
+	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_NO_REPLY),
+	       "slave 5: port 2 stays closed despite its link: no slave replies behind it; connect port 0 (IN) of a slave there, or remove the cable");
+	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_LOSSES, 3, 10, 60),
+	       "slave 5: port 2 stays closed despite its link: it has lost its link again and again (3 times in 10 s; opened after 1 s of link, then after up to 60 s); check cable and plugs");
 	expect(test, E(REVISION, 5, 2, 3), "slave 5: revision 0x00000003, expected 0x00000002");
 }
 
