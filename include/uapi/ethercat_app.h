@@ -128,6 +128,31 @@ struct ec_ioc_sc_timeout {
 	__u32 timeout_ms;
 };
 
+/* struct ec_ioc_sc_replay.flags: one object that is replayed in any case, instead of the mode */
+#define EC_SC_REPLAY_SDO	1
+#define EC_SC_REPLAY_IDN	2
+
+/* what a slave that returns gets again of the writes of the application */
+struct ec_ioc_sc_replay {
+	__u32 flags;
+	__u32 config;		/* in */
+	__u32 mode;		/* in: 0 default, 1 none, 2 all */
+	__u16 object;		/* in: index, or IDN */
+	__u8 subindex;		/* in: or drive */
+	__u8 reserved;
+};
+
+/* struct ec_ioc_hold.flags: the application has written to the slave */
+#define EC_HOLD_FLAG_RESUME	1
+
+/* a slave that has returned and waits in PREOP for the application */
+struct ec_ioc_hold {
+	__u32 flags;
+	__u32 config;		/* in */
+	__u32 hold;		/* out, with EC_HOLD_FLAG_RESUME in: number, 0: it does not wait */
+	__u32 reserved;
+};
+
 /* kind of struct ec_ioc_sc_request */
 #define EC_REQUEST_SDO		0
 #define EC_REQUEST_REG		1

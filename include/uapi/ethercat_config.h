@@ -70,6 +70,26 @@ struct ec_ioc_config_flag {
 	char key[EC_UAPI_STRING];
 };
 
+/* struct ec_ioc_config_write.kind */
+#define EC_WRITE_KIND_SDO	0
+#define EC_WRITE_KIND_IDN	1
+#define EC_WRITE_KIND_REG	2
+
+/* what the application has written itself before the slave was in OP; the oldest first */
+struct ec_ioc_config_write {
+	__u32 flags;		/* out: EC_SDO_FLAG_COMPLETE */
+	__u32 index;		/* in */
+	__u32 write_pos;	/* in */
+	__u16 object;		/* index, IDN, or address of a register */
+	__u8 subindex;		/* or drive */
+	__u8 kind;		/* EC_WRITE_KIND_* */
+	__u32 why;		/* it is not written to a slave that returns; 0: it is */
+	__u32 size;		/* in: buffer size; out: bytes; 0 if the value was not kept */
+	__u32 total;
+	__u32 forgotten;	/* older ones that are not even listed */
+	__u64 data;
+};
+
 /* options of a domain, see struct ec_ioc_domain_options */
 #define EC_DOMAIN_OPT_OVERLAP	1	/* inputs at logical addresses of outputs */
 #define EC_DOMAIN_OPT_SEPARATE	2	/* LRD and LWR instead of LRW */

@@ -23,6 +23,10 @@
 #define EC_MAX_SC_IDNS		1024	/* startup IDNs of one configuration */
 #define EC_MAX_SC_REGS		16	/* startup registers of one configuration */
 #define EC_MAX_SC_FLAGS		64	/* named numbers of one configuration */
+#define EC_MAX_SC_WRITES	512	/* values of the application kept for one configuration, */
+#define EC_MAX_SC_WRITE_BYTES	(64 * 1024)	/* and their bytes; wire/replay.c has the text */
+#define EC_MAX_SC_LISTED	1024	/* its writes, those whose value was not kept included */
+#define EC_MAX_SC_REPLAYS	64	/* objects that are to be replayed in any case */
 #define EC_MAX_SESSION_BYTES	(64 * 1024 * 1024)	/* of a master's sessions and what is mapped */
 #define EC_MAX_REQUESTS		4096	/* of one session */
 #define EC_MAX_REQUEST_BYTES	(16 * 1024 * 1024)	/* of one session, emergencies included */

@@ -31,6 +31,8 @@ CMD(EC_IOC_CONFIG_SDO, ec_ioc_config_sdo, 0, SHOW_CONFIG(ec_ioc_config_sdo),
 CMD(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
 	OUT(ec_ioc_config_idn, EC_MAX_SOE_SIZE), RSV1(ec_ioc_config_idn))
 CMD(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag))
+CMD(EC_IOC_CONFIG_WRITE, ec_ioc_config_write, 0, SHOW_CONFIG(ec_ioc_config_write),
+	OUT(ec_ioc_config_write, EC_MAX_SDO_SIZE), FLAGS(EC_SDO_FLAG_COMPLETE))
 CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
 	RSV1(ec_ioc_config_why))
 CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),
@@ -103,6 +105,9 @@ CMD(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, CONFIG(ec_ioc_sc_ip),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))
 CMD(EC_IOC_SC_OVERLAP, ec_ioc_sc_overlap, F_WRITE, CONFIG(ec_ioc_sc_overlap),
 	RSV1(ec_ioc_sc_overlap))
+CMD(EC_IOC_SC_REPLAY, ec_ioc_sc_replay, F_WRITE, CONFIG(ec_ioc_sc_replay), RSV1(ec_ioc_sc_replay),
+	FLAGS(EC_SC_REPLAY_SDO | EC_SC_REPLAY_IDN))
+CMD(EC_IOC_HOLD, ec_ioc_hold, F_WRITE, SESSION, RSV1(ec_ioc_hold), FLAGS(EC_HOLD_FLAG_RESUME))
 CMD(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
 	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, true, false))
 CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE)

@@ -13,6 +13,7 @@ struct ec_config;
 struct ec_domain;
 struct ec_session;
 struct ec_slave;
+struct ec_startup;
 
 /**
  * struct ec_call - one command while it is carried out
@@ -48,6 +49,7 @@ int ec_ioc_limit(struct ec_call *call, int ret);
 int ec_ioc_get_slave(struct ec_call *call, const struct ec_ioc_address *address);
 int ec_ioc_lock_session(struct ec_call *call);
 int ec_ioc_pause(struct ec_call *call);
+void ec_ioc_record(struct ec_call *call, const struct ec_startup *what);
 int ec_ioc_refuse_reserved(struct ec_call *call);
 
 int ec_ioc_receive(struct ec_file *f);

@@ -89,11 +89,19 @@ int ec_ioc_sdo_download(struct ec_call *call)
 {
 	struct ec_ioc_sdo *i = call->arg;
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
+	const struct ec_startup what = {
+		.type = EC_STARTUP_SDO, .index = i->index, .sub = i->subindex,
+		.complete = i->flags & EC_SDO_FLAG_COMPLETE,
+	};
+	int ret = check_size(call, 0, EC_MAX_SDO_SIZE);
 
-	return check_size(call, 0, EC_MAX_SDO_SIZE) ?:
-	       sdo_failed(call, i, ec_coe_download(&call->slave->mbox, i->index, i->subindex,
-						   i->flags & EC_SDO_FLAG_COMPLETE, call->data,
-						   call->size, &i->abort_code, &limit));
+	if (ret)
+		return ret;
+	ret = ec_coe_download(&call->slave->mbox, i->index, i->subindex, what.complete,
+			      call->data, call->size, &i->abort_code, &limit);
+	if (!ret)
+		ec_ioc_record(call, &what);
+	return sdo_failed(call, i, ret);
 }
 
 static int info_failed(struct ec_call *call, const struct ec_ioc_sdo_info *i, int ret)
@@ -229,6 +237,9 @@ int ec_ioc_soe_write(struct ec_call *call)
 {
 	struct ec_ioc_soe *i = call->arg;
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
+	const struct ec_startup what = {
+		.type = EC_STARTUP_IDN, .index = i->idn, .sub = i->drive,
+	};
 	int ret = check_drive(call, i->drive) ?: check_size(call, 1, EC_MAX_SOE_SIZE);
 	u16 error = 0;
 
@@ -237,6 +248,8 @@ int ec_ioc_soe_write(struct ec_call *call)
 	ret = ec_soe_write(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &error,
 			   &limit);
 	i->error_code = error;
+	if (!ret)
+		ec_ioc_record(call, &what);
 	return idn_failed(call, i, ret);
 }
 

@@ -100,6 +100,7 @@ static struct ec_result leave_init(struct ec_slave *s, u8 state)
 		return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
 				      "BOOT not possible: no bootstrap mailbox in the SII");
 	s->ours = false;
+	ec_replay_forget(s);
 	ret = ec_apply_set_by(s, state, ec_leave_init);
 	/* any AL status code may be due to the event of SM1: try again without */
 	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
@@ -268,6 +269,8 @@ void ec_apply(struct ec_slave *s)
 		r = apply_step(s, &there);
 	}
 	release_mailbox(s);
+	if (there && ec_setup_of(s)->active_config && READ_ONCE(s->al_status) == EC_AL_OP)
+		ec_replay_reached_op(s);
 	if (there && ec_slave_set_ok(s, false)) {
 		s->retry_ms = 0;
 		log_return(s);

@@ -66,15 +66,19 @@ static int wait_flag(struct ec_slave *s, s32 ms)
  * @s: slave in PREOP
  * @c: its configuration, or NULL
  *
- * Startup commands, PDOs, registers, SYNC signals, then the request.
+ * Startup commands, what the application has written if the slave has returned, PDOs, registers,
+ * SYNC signals, then the request.
  *
  * Context: The slave's worker. Waits for bus traffic, until the time limits.
- * Return: result; a failure is reported, unless SAFEOP is not requested any more.
+ * Return: result; a failure is reported, unless SAFEOP is not requested any more; -EAGAIN when
+ * the application holds the slave in PREOP.
  */
 struct ec_result ec_apply_to_safeop(struct ec_slave *s, const struct ec_config *c)
 {
-	struct ec_result r = { 0 };
+	struct ec_result r = EC_RESULT(ec_replay_hold(s));
 
+	if (r.err)
+		return r;
 	s->clean = false;
 	ec_setup_of(s)->pdo_refusal[0] = '\0';
 	ec_slave_clear_warning(s);
@@ -83,6 +87,10 @@ struct ec_result ec_apply_to_safeop(struct ec_slave *s, const struct ec_config *
 	if (c) {
 		ec_apply_waits_for(s, "mailbox replies to its configuration");
 		r = ec_startup_run(s, c, EC_TRANSITION_PS);
+		if (!r.err)
+			r = ec_replay_run(s, c);
+		if (!r.err && uses_found_pdos(s, c) && ec_slave_pdos_pending(s))
+			ec_slave_read_coe_pdos(s);
 		if (!r.err)
 			r = ec_apply_pdos(s, c);
 		ec_apply_waits_for(s, NULL);

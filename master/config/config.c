@@ -71,6 +71,7 @@ struct ec_config *ec_config_create(struct ec_wanted *w, u16 alias, u16 position,
 	scnprintf(c->name, sizeof(c->name), "%u:%u", alias, position);
 	INIT_LIST_HEAD(&c->startup);
 	INIT_LIST_HEAD(&c->flags);
+	INIT_LIST_HEAD(&c->replay.writes);
 	w->configs[w->n_configs++] = c;
 	return c;
 }
@@ -103,6 +104,7 @@ void ec_config_free(struct ec_config *c)
 		kvfree(u);
 	list_for_each_entry_safe(flag, next, &c->flags, list)
 		kvfree(flag);
+	ec_replay_free(&c->replay);
 	kfree(c);
 }
 
@@ -198,18 +200,18 @@ int ec_config_map_clear(struct ec_config *c, u16 pdo)
 
 /**
  * ec_config_alloc() - allocate memory for a part of a configuration, and charge for it
- * @c: configuration
+ * @w: what an application configures
  * @size: bytes
  *
  * Context: Process, lock of the session held. May sleep.
  * Return: zeroed memory for kvfree(); ERR_PTR: -ENOMEM, -EDQUOT as ec_budget_charge().
  */
-void *ec_config_alloc(struct ec_config *c, size_t size)
+void *ec_config_alloc(struct ec_wanted *w, size_t size)
 {
-	int ret = ec_budget_charge(&c->wanted->budget, size);
+	int ret = ec_budget_charge(&w->budget, size);
 	void *p;
 
-	lockdep_assert_held(c->wanted->lock);
+	lockdep_assert_held(w->lock);
 	if (ret)
 		return ERR_PTR(ret);
 	/*
@@ -220,7 +222,7 @@ void *ec_config_alloc(struct ec_config *c, size_t size)
 	    __vmalloc(size, GFP_KERNEL_ACCOUNT | __GFP_ZERO | __GFP_NOWARN);
 	if (p)
 		return p;
-	ec_budget_release(&c->wanted->budget, size);
+	ec_budget_release(&w->budget, size);
 	return ERR_PTR(-ENOMEM);
 }
 
@@ -242,8 +244,7 @@ int ec_config_sdo_add(struct ec_config *c, u16 index, u8 sub, bool complete, con
 		ec_startup_del(c, added);
 	else if (c->slave && !(c->slave->info.protocols & EC_SII_PROTO_COE))
 		ec_slave_warn(c->slave, "has no CoE; the startup SDO 0x%04x:%02x will fail\n",
-			      index,
-			      sub);
+			      index, sub);
 	return ret;
 }
 
@@ -300,13 +301,14 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	}
 	if (c->n_flags >= EC_MAX_SC_FLAGS)
 		return -ENOSPC;
-	flag = ec_config_alloc(c, sizeof(*flag));
+	flag = ec_config_alloc(c->wanted, sizeof(*flag));
 	if (IS_ERR(flag))
 		return PTR_ERR(flag);
 	strscpy(flag->key, key, sizeof(flag->key));
 	/* the EEPROM is the slave's from PREOP on anyway */
 	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
-	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, EC_FLAG_SERIAL) && strcmp(key, "AssignToPdi"))
+	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, EC_FLAG_SERIAL) &&
+	    strcmp(key, EC_FLAG_HOLD) && strcmp(key, "AssignToPdi"))
 		ec_info(c->wanted, "slave %s: flag %s has no effect\n", c->name, key);
 	flag->value = value;
 	list_add_tail(&flag->list, &c->flags);

@@ -12,6 +12,7 @@
 #include "../clock/dc.h"
 #include "../wire/eoe.h"
 #include "../wire/regs.h"
+#include "replay.h"
 #include "startup.h"
 
 struct ec_domain;
@@ -73,6 +74,9 @@ struct ec_config_fmmu {
 /* the revision number that the slave should have; another one is reported */
 #define EC_FLAG_REVISION	"ExpectedRevision"
 
+/* not 0: the application writes to a slave that returns before the master configures it */
+#define EC_FLAG_HOLD		"ReinitHold"
+
 /* a named number that other masters know; in the order of the calls */
 struct ec_config_flag {
 	struct list_head list;
@@ -109,6 +113,7 @@ struct ec_config_flag {
  * @sync: SYNC signals
  * @timeout_ms: of AL transitions, by from and to state, 0: default
  * @reply_ms: limit of its replies to SDOs and IDNs, 0: default
+ * @replay: what the application has written
  * @emergencies: how many to keep
  * @emerg_cleared: by an application in the kernel, of the lost ones
  * @lost: the slave that it had while active, in words, when all slaves replied last before
@@ -143,6 +148,7 @@ struct ec_config {
 	struct ec_dc_sync sync;
 	u32 timeout_ms[9][9];
 	u32 reply_ms;
+	struct ec_replay replay;
 	u32 emergencies;
 	u32 emerg_cleared;
 	struct {
@@ -172,6 +178,8 @@ struct ec_setup {
 	u16 op_only;
 	/** @mapped: its FMMUs are set */
 	bool mapped;
+	/** @replayed: it has what the application has written; until it is in INIT */
+	bool replayed;
 	/** @made: SyncManagers whose PDOs the startup SDOs have made, and were read, a bit each */
 	u16 made;
 	/** @group: index + 1 of the hot connect group that it belongs to, 0: none; topo held */
@@ -214,6 +222,10 @@ struct ec_wanted {
 	const u64 *sends;
 	/** @budget: memory that the application causes */
 	struct ec_budget budget;
+	/** @writes_lock: what a worker changes of ec_config.replay */
+	spinlock_t writes_lock;
+	/** @strays: writes to slaves that have no configuration so far */
+	struct ec_replay strays;
 	/** @configs: slave configurations */
 	struct ec_config **configs;
 	/** @n_configs: entries in @configs */
@@ -271,7 +283,7 @@ int ec_config_ip(struct ec_config *c, const struct ec_eoe_ip *p);
 int ec_config_reg(struct ec_config *c, u16 reg, u16 value);
 int ec_config_follow_sdo(struct ec_config *c, u16 index);
 int ec_config_known_entries(const struct ec_config *c, u16 index, struct ec_pdo *p);
-void *ec_config_alloc(struct ec_config *c, size_t size);
+void *ec_config_alloc(struct ec_wanted *w, size_t size);
 bool ec_config_changed(const struct ec_config *c, const struct ec_config_fmmu *f);
 int ec_config_reg_entry(struct ec_config *c, u16 index, u8 sub, struct ec_domain *d,
 			u32 *offset, u32 *bit);

@@ -41,7 +41,7 @@ struct ec_startup *ec_startup_add(struct ec_config *c, const struct ec_startup *
 	lockdep_assert_held(c->wanted->lock);
 	if (c->n_startup[what->type] >= limit[what->type])
 		return ERR_PTR(-ENOSPC);
-	u = ec_config_alloc(c, struct_size(u, data, what->size));
+	u = ec_config_alloc(c->wanted, struct_size(u, data, what->size));
 	if (IS_ERR(u))
 		return u;
 	*u = *what;
@@ -167,6 +167,7 @@ static void why(char *text, size_t size, const struct ec_startup *u, int ret, u3
 static struct ec_result startup_failed(struct ec_slave *s, const struct ec_startup *u, int ret,
 				       u32 code)
 {
+	const char *what = u->write ? "replayed" : "startup";
 	char name[12], text[96];
 	int err = code ? -EREMOTEIO : ret;
 
@@ -174,16 +175,16 @@ static struct ec_result startup_failed(struct ec_slave *s, const struct ec_start
 	if (u->type == EC_STARTUP_SDO)
 		return ec_result_fail(s, err, EC_CAUSE(SDO, .object = u->index, .subindex = u->sub,
 						       .code = code),
-				      "startup SDO 0x%04x:%02x (%u byte(s)) failed: %s", u->index,
-				      u->sub, u->size, text);
+				      "%s SDO 0x%04x:%02x (%u byte(s)) failed: %s", what,
+				      u->index, u->sub, u->size, text);
 	if (u->type == EC_STARTUP_IDN)
 		return ec_result_fail(s, err, EC_CAUSE(IDN, .object = u->index, .subindex = u->sub,
 						       .code = code),
-				      "startup IDN %s of drive %u (%u byte(s)) failed: %s",
+				      "%s IDN %s of drive %u (%u byte(s)) failed: %s", what,
 				      ec_soe_idn_text(u->index, name), u->sub, u->size, text);
 	if (u->type == EC_STARTUP_REG)
 		return ec_result_fail(s, err, EC_CAUSE(REGISTER, .object = u->index),
-				      "startup register 0x%04x failed: %s", u->index, text);
+				      "%s register 0x%04x failed: %s", what, u->index, text);
 	if (ret == -EREMOTEIO)
 		return ec_result_fail(s, err, EC_CAUSE(IP, .code = code),
 				      "IP parameters refused: EoE result 0x%04x (%s)", code,
@@ -192,6 +193,25 @@ static struct ec_result startup_failed(struct ec_slave *s, const struct ec_start
 		return ec_result_fail(s, err, EC_CAUSE(IP),
 				      "IP parameters configured, but the slave has no EoE; remove ecrt_slave_config_eoe_*()");
 	return ec_result_fail(s, err, EC_CAUSE(IP), "IP parameters failed: %s", text);
+}
+
+/**
+ * ec_startup_write() - run one command
+ * @s: slave
+ * @u: command
+ *
+ * Context: The slave's worker. Waits for bus traffic.
+ * Return: as ec_startup_run().
+ */
+struct ec_result ec_startup_write(struct ec_slave *s, const struct ec_startup *u)
+{
+	u32 code = 0;
+	int ret = startup_run(s, u, &code);
+
+	lockdep_assert_held(&s->lock);
+	if (ret && ret != -ECANCELED && ret != -EINTR)
+		return startup_failed(s, u, ret, code);
+	return EC_RESULT(ret);
 }
 
 /**
@@ -206,20 +226,16 @@ static struct ec_result startup_failed(struct ec_slave *s, const struct ec_start
  */
 struct ec_result ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition)
 {
+	struct ec_result r = { 0 };
 	const struct ec_startup *u;
-	u32 code;
-	int ret;
 
 	lockdep_assert_held(&s->lock);
 	list_for_each_entry(u, &c->startup, list) {
 		if (u->transition != transition)
 			continue;
-		code = 0;
-		ret = startup_run(s, u, &code);
-		if (ret == -ECANCELED || ret == -EINTR)
-			return EC_RESULT(ret);
-		if (ret)
-			return startup_failed(s, u, ret, code);
+		r = ec_startup_write(s, u);
+		if (r.err)
+			break;
 	}
-	return EC_RESULT(0);
+	return r;
 }

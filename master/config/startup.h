@@ -26,6 +26,12 @@ enum ec_startup_type {
 #define EC_TRANSITION_PS		EC_TRANSITION(EC_AL_PREOP, EC_AL_SAFEOP)
 #define EC_TRANSITION_SO		EC_TRANSITION(EC_AL_SAFEOP, EC_AL_OP)
 
+/* @write: a write of the application, recorded to be replayed, and: */
+#define EC_WRITE_RECORDED	1
+#define EC_WRITE_EARLY		2	/* before the startup commands were run */
+#define EC_WRITE_OWN		4	/* to the slave that is held */
+#define EC_WRITE_DROPPED	8	/* its value was not kept */
+
 /**
  * struct ec_startup - one command
  * @list: by type; of one type in the order of the calls
@@ -34,7 +40,9 @@ enum ec_startup_type {
  * @index: object, IDN, or register
  * @sub: subindex, or drive
  * @complete: SDO with complete access
+ * @write: 0, or EC_WRITE_*: it is no startup command, see replay.h
  * @size: bytes of @data
+ * @device: number of the slave while that has no configuration; of a write
  * @data: value, little endian; struct ec_eoe_ip
  */
 struct ec_startup {
@@ -44,7 +52,9 @@ struct ec_startup {
 	u16 index;
 	u8 sub;
 	bool complete;
+	u8 write;
 	u32 size;
+	u32 device;
 	u8 data[] __aligned(4);
 };
 
@@ -54,6 +64,7 @@ struct ec_startup *ec_startup_find(const struct ec_config *c, u8 type, u16 index
 void ec_startup_del(struct ec_config *c, struct ec_startup *u);
 const struct ec_startup *ec_startup_changes(const struct ec_config *c, const struct ec_slave *s,
 					    unsigned int sm);
+struct ec_result ec_startup_write(struct ec_slave *s, const struct ec_startup *u);
 struct ec_result ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition);
 
 #endif

@@ -28,6 +28,7 @@ void ec_session_clear(struct ec_session *s)
 	}
 	ec_for_each_domain(d, &s->wanted)
 		ec_domain_free(d);
+	ec_replay_free(&s->wanted.strays);
 	kvfree(s->wanted.configs);
 	kvfree(s->specs);
 	ec_budget_release(&s->wanted.budget, s->wanted.budget.bytes);

@@ -223,12 +223,39 @@ static struct ec_request *request_take(struct ec_lane *lane, struct ec_slave **s
 		else if (!oldest || r->since_ns < oldest->since_ns)
 			oldest = r;
 	}
-	if (oldest)
+	if (oldest) {
 		oldest->phase = EC_REQUEST_RUNNING;
+		oldest->recorded = ec_request_writes(oldest) &&
+				   ec_replay_is_open(&s->wanted, *slave);
+	}
 	mutex_unlock(&rq->lock);
 out:
 	mutex_unlock(&rq->sessions->lock);
 	return oldest;
+}
+
+/* Before the application sees the result. */
+static void request_record(struct ec_requests *rq, const struct ec_request *r,
+			   struct ec_slave *slave)
+{
+	struct ec_startup what = {
+		.index = r->index, .sub = r->sub, .complete = r->complete, .size = r->size,
+	};
+	struct ec_session *s;
+
+	if (r->kind == EC_REQUEST_SDO)
+		what.type = EC_STARTUP_SDO;
+	else if (r->kind == EC_REQUEST_SOE)
+		what.type = EC_STARTUP_IDN;
+	else if (r->kind == EC_REQUEST_REG)
+		what.type = EC_STARTUP_REG;
+	else
+		return;
+	ec_sessions_lock(rq->sessions);
+	s = request_session_of(rq);
+	if (s)
+		ec_replay_record(&s->wanted, slave, &what, r->buf);
+	ec_sessions_unlock(rq->sessions);
 }
 
 static void lane_work(struct work_struct *work)
@@ -242,6 +269,8 @@ static void lane_work(struct work_struct *work)
 		r = request_take(lane, &slave);
 		if (r) {
 			ec_request_run(r, slave);
+			if (r->recorded && !r->res.err)
+				request_record(rq, r, slave);
 			mutex_lock(&rq->lock);
 			request_finish(r);
 			mutex_unlock(&rq->lock);

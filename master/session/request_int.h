@@ -56,6 +56,7 @@ struct ec_request_result {
  * @what: SDO information: EC_SDO_INFO_*
  * @vendor: VoE: vendor id; FoE: password
  * @size: bytes to transfer; of a read at most
+ * @recorded: it is recorded to be replayed, see ec_replay_record()
  * @stop: the application has cancelled it, or its session has ended
  * @buf: private copy of the data, @cap bytes; FoE: of the name
  * @res: result; of the worker while it is RUNNING
@@ -77,6 +78,7 @@ struct ec_request {
 	u8 what;
 	u32 vendor;
 	u32 size;
+	bool recorded;
 	bool stop;
 	u8 *buf;
 	struct ec_request_result res;

@@ -108,6 +108,8 @@ int ec_session_begin(struct ec_sessions *ss, const void *owner, struct ec_waiter
 		.base = ss->base, .links = ss->links, .bus = ss->bus, .lock = &ss->lock,
 		.sends = &s->cycle.sends, .budget = { .lock = &ss->lock, .total = &ss->memory },
 	};
+	spin_lock_init(&s->wanted.writes_lock);
+	INIT_LIST_HEAD(&s->wanted.strays.writes);
 	ec_cycle_init(&s->cycle, ss->cycles, &s->wanted);
 	s->cycle.owner = owner;
 	RCU_INIT_POINTER(s->cycle.waiters, waiters);

@@ -227,8 +227,10 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 		return c;
 	ec_session_attach_one(s, c);
 	ret = ec_config_begin(c);
-	if (!ret)
+	if (!ret) {
+		ec_replay_adopt(c);
 		return c;
+	}
 	ec_session_detach(c);
 	ec_config_drop(c);
 	return ERR_PTR(ret);
@@ -291,8 +293,10 @@ struct ec_config *ec_session_configure_member(struct ec_session *s, struct ec_gr
 		return c;
 	ec_session_attach_all(s);
 	ret = ec_config_begin(c);
-	if (!ret)
+	if (!ret) {
+		ec_replay_adopt(c);
 		return c;
+	}
 	ec_session_detach(c);
 	ec_group_drop(c);
 	ec_config_drop(c);

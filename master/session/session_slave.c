@@ -52,6 +52,7 @@ void ec_session_detach(struct ec_config *c)
 		if (c->sm[sm].explicit ||
 		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
 			WRITE_ONCE(slave->pdos_known, false);
+	ec_replay_forget(slave);
 	WRITE_ONCE(setup->config, NULL);
 	setup->active_config = NULL;
 	ec_slave_clear_warning(slave);

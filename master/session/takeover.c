@@ -120,6 +120,14 @@ static bool flags_differ(const struct ec_config *a, const struct ec_config *b,
 	return false;
 }
 
+static bool replay_differs(const struct ec_config *a, const struct ec_config *b)
+{
+	const struct ec_replay *x = &a->replay, *y = &b->replay;
+
+	return x->mode != y->mode || x->n_named != y->n_named ||
+	       memcmp(x->named, y->named, sizeof(x->named));
+}
+
 static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 			   const struct text *t)
 {
@@ -131,6 +139,8 @@ static bool config_differs(const struct ec_config *a, const struct ec_config *b,
 	       sms_differ(a, b, t) || startup_differs(a, b, t) || flags_differ(a, b, t) ||
 	       (fmmus_differ(a, b) &&
 		differs(t, "slave %s, its place in the domains", a->name)) ||
+	       (replay_differs(a, b) &&
+		differs(t, "slave %s, what is replayed to it", a->name)) ||
 	       CONTENT(sync.assign, "slave %s, distributed clock", a->name) ||
 	       CONTENT(sync.period, "slave %s, distributed clock", a->name) ||
 	       CONTENT(sync.shift, "slave %s, distributed clock", a->name) ||
