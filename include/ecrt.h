@@ -122,6 +122,8 @@
 #define EC_HAVE_SDO_TIMEOUT
 /* ecrt_master_group(), ecrt_master_group_config(): hot connect groups */
 #define EC_HAVE_GROUPS
+/* ecrt_slave_config_replay() and the next ones: what a slave gets that returns */
+#define EC_HAVE_REPLAY
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -2270,6 +2272,99 @@ EC_PUBLIC_API int ecrt_slave_config_state_timeout(ec_slave_config_t *sc,
  */
 EC_PUBLIC_API int ecrt_slave_config_sdo_timeout(ec_slave_config_t *sc,
 		unsigned int timeout_ms);
+#endif
+
+#ifdef EC_HAVE_REPLAY
+/**
+ * enum ec_replay_t - which writes of the application a slave gets again
+ * @EC_REPLAY_DEFAULT: all but objects that store or restore parameters (0x1010, 0x1011), device
+ *	commands and diagnosis (0x10F2 to 0x10FF), control words (0x6040, IDN S-0-0134), target values
+ *	(0x6071, 0x607A, 0x60C1, 0x60FF; IDN S-0-0036, S-0-0047, S-0-0080), the same of further
+ *	axes (+ 0x800 each), what is mapped to outputs, and registers of the master
+ * @EC_REPLAY_NONE: none but those that are named
+ * @EC_REPLAY_ALL: all but registers of the master
+ */
+typedef enum {
+	EC_REPLAY_DEFAULT,
+	EC_REPLAY_NONE,
+	EC_REPLAY_ALL
+} ec_replay_t;
+
+/**
+ * ecrt_slave_config_replay() - choose which writes are replayed
+ * @sc: slave configuration
+ * @what: initially %EC_REPLAY_DEFAULT
+ *
+ * Extension (%EC_HAVE_REPLAY). The master records what the application writes to the slave by SDO,
+ * IDN or register, with calls or requests, from the reservation of the master to the first OP of
+ * the slave: the last value of each object, in the order of the last writes. A slave that was in
+ * OP and has been in INIT since then gets these values again, in PREOP, after its startup
+ * commands. Writes of other programs are not recorded, nor those to a slave that never gets a
+ * configuration. "ethercat config -v" shows the record, and why a write is not replayed.
+ *
+ * At most 512 values with 64 KiB are kept; beyond that the oldest ones are not replayed.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @sc is NULL or @what none of these; %-EBUSY after ecrt_master_activate().
+ */
+EC_PUBLIC_API int ecrt_slave_config_replay(ec_slave_config_t *sc, ec_replay_t what);
+
+/**
+ * ecrt_slave_config_replay_sdo() - replay a write of an SDO in any case
+ * @sc: slave configuration
+ * @index: object
+ * @subindex: subindex; 0 for Complete Access
+ *
+ * Extension (%EC_HAVE_REPLAY). Also with %EC_REPLAY_NONE.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @sc is NULL; %-ENOSPC more than 64 objects; %-EBUSY after
+ * ecrt_master_activate().
+ */
+EC_PUBLIC_API int ecrt_slave_config_replay_sdo(ec_slave_config_t *sc, uint16_t index,
+		uint8_t subindex);
+
+/**
+ * ecrt_slave_config_replay_idn() - replay a write of an IDN in any case
+ * @sc: slave configuration
+ * @drive_no: 0 to 7
+ * @idn: IDN
+ *
+ * Extension (%EC_HAVE_REPLAY). As ecrt_slave_config_replay_sdo().
+ *
+ * Context: Process. May sleep.
+ * Return: As ecrt_slave_config_replay_sdo(); %-EINVAL another @drive_no.
+ */
+EC_PUBLIC_API int ecrt_slave_config_replay_idn(ec_slave_config_t *sc, uint8_t drive_no,
+		uint16_t idn);
+
+/**
+ * ecrt_slave_config_held() - does a slave that has returned wait for the application?
+ * @sc: slave configuration
+ *
+ * Extension (%EC_HAVE_REPLAY). With the flag "ReinitHold" (ecrt_slave_config_flag()) other than 0,
+ * which the LinuxCNC fork of the IgH EtherCAT Master has as well, a slave that was in OP and
+ * returns waits in PREOP without a time limit. The application writes to it, then calls
+ * ecrt_slave_config_resume(). What it has written meanwhile is recorded, but not replayed to this
+ * slave once more; the other recorded writes are replayed.
+ *
+ * Context: Process. May sleep.
+ * Return: 0: no; a positive number: yes, another one after each return; %-EINVAL, %-EPERM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_held(ec_slave_config_t *sc);
+
+/**
+ * ecrt_slave_config_resume() - let the master configure a slave that waits
+ * @sc: slave configuration
+ * @hold: result of ecrt_slave_config_held() before the application has written to the slave
+ *
+ * Extension (%EC_HAVE_REPLAY).
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-ESTALE the slave does not wait, or was lost and has returned again; %-EINVAL,
+ * %-EPERM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_resume(ec_slave_config_t *sc, int hold);
 #endif
 
 #ifdef EC_HAVE_LATE_CYCLES

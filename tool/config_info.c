@@ -192,6 +192,77 @@ static int idns(struct dev *d, const struct ect_config *c, const char *in)
 	return 0;
 }
 
+static void write_head(const struct ect_write *w, const char *in)
+{
+	static const char *const kind[] = { "SDO", "IDN", "register" };
+
+	out_str("kind", w->kind < ARRAY_SIZE(kind) ? kind[w->kind] : "???", "%s  ", in);
+	if (w->kind == ECT_WRITE_IDN) {
+		out_u("drive", w->subindex, "IDN of drive %u, ", w->subindex);
+		out_u("idn", w->index, "0x%04x", w->index);
+		return;
+	}
+	if (w->kind == ECT_WRITE_REG) {
+		out_u("register", w->index, "register 0x%04x", w->index);
+		return;
+	}
+	out_u("index", w->index, "SDO 0x%04x", w->index);
+	if (w->complete)
+		out_text(" C");
+	else
+		out_u("subindex", w->subindex, ":%02x", w->subindex);
+	out_bool("complete_access", w->complete, NULL);
+}
+
+static void write_out(const struct ect_write *w, const u8 *data, const char *in)
+{
+	char indent[16];
+
+	snprintf(indent, sizeof(indent), "%s    ", in);
+	out_object(NULL);
+	write_head(w, in);
+	out_u("size_bytes", w->bytes, ", %u byte", w->bytes);
+	if (w->why[0])
+		out_str("not_replayed", w->why, ", not replayed: %s", w->why);
+	else
+		out_null("not_replayed", NULL);
+	out_text("\n");
+	out_hex("data_hex", data, min(w->bytes, (u32)SHOWN), indent);
+	if (w->bytes > SHOWN)
+		out_text("%s...\n", indent);
+	out_end();
+}
+
+/* What the application has written itself; only when there is any. */
+static int writes(struct dev *d, const struct ect_config *c, const char *in)
+{
+	unsigned int pos;
+
+	for (pos = 0;; pos++) {
+		u8 data[SHOWN];
+		struct ect_write w = { .struct_size = sizeof(w) };
+		int err = ect_config_write(d->h, c->index, pos, &w, data, sizeof(data));
+
+		if (err == -ENOTTY) {
+			out_null("writes", NULL);
+			return 0;
+		}
+		if (!pos)
+			out_array("writes");
+		if (err && err != -ENOENT)
+			return failed(d, err, c);
+		if (err)
+			break;
+		if (!pos)
+			out_text("%sWrites of the application:\n", in);
+		if (!pos && w.forgotten)
+			out_text("%s  %u older ones, not listed\n", in, w.forgotten);
+		write_out(&w, data, in);
+	}
+	out_end();
+	return 0;
+}
+
 static int flags(struct dev *d, const struct ect_config *c, const char *in)
 {
 	out_text("%sFeature flags:\n", in);
@@ -356,6 +427,7 @@ int config_info(struct dev *d, const struct ect_config *c, const char *in)
 	ret = sync_managers(d, c, in);
 	ret = ret ? ret : sdos(d, c, in);
 	ret = ret ? ret : idns(d, c, in);
+	ret = ret ? ret : writes(d, c, in);
 	ret = ret ? ret : flags(d, c, in);
 	ret = ret ? ret : ip(d, c, in);
 	if (!ret) {

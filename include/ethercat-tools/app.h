@@ -175,6 +175,39 @@ int ect_config_sdo(struct ect_handle *h, unsigned int index, unsigned int sdo,
 int ect_config_idn(struct ect_handle *h, unsigned int index, unsigned int idn,
 		   struct ect_startup *to, void *data, size_t size);
 
+/* kinds of a write, see struct ect_write */
+#define ECT_WRITE_SDO	0
+#define ECT_WRITE_IDN	1
+#define ECT_WRITE_REG	2
+
+/* what the application has written itself before the slave was in OP */
+struct ect_write {
+	uint32_t struct_size;
+	uint16_t index;		/* of the object, IDN, or address of a register */
+	uint8_t subindex;	/* or drive */
+	uint8_t kind;		/* ECT_WRITE_* */
+	uint8_t complete;	/* of an SDO: complete access */
+	uint8_t reserved[3];
+	uint32_t bytes;		/* of the value, 0: it was not kept; may be more than the buffer has */
+	uint32_t forgotten;	/* older writes that are not listed */
+	char why[ECT_STRING];	/* it is not written to a slave that returns; empty: it is */
+};
+
+/**
+ * ect_config_write() - what the application has written, from the oldest write on
+ * @h: master
+ * @index: of the configuration
+ * @pos: which, from 0
+ * @to: result, with its @struct_size
+ * @data: for the value, @size bytes
+ * @size: bytes at @data
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: As ect_config_idn().
+ */
+int ect_config_write(struct ect_handle *h, unsigned int index, unsigned int pos,
+		     struct ect_write *to, void *data, size_t size);
+
 /* a feature flag of a configuration */
 struct ect_flag {
 	uint32_t struct_size;

@@ -97,6 +97,58 @@ int ecrt_slave_config_sdo_timeout(ec_slave_config_t *sc, unsigned int timeout_ms
 }
 EXPORT_SYMBOL_GPL(ecrt_slave_config_sdo_timeout);
 
+/* a slave that returns --------------------------------------------------------*/
+
+int ecrt_slave_config_replay(ec_slave_config_t *sc, ec_replay_t what)
+{
+	struct ec_ioc_sc_replay arg = { .config = ec_sc_index(sc), .mode = what };
+
+	return ec_do_sc(sc, EC_IOC_SC_REPLAY, &arg, "set replay to %d", (int)what);
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_replay);
+
+int ecrt_slave_config_replay_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex)
+{
+	struct ec_ioc_sc_replay arg = {
+		.flags = EC_SC_REPLAY_SDO, .config = ec_sc_index(sc), .object = index,
+		.subindex = subindex,
+	};
+
+	return ec_do_sc(sc, EC_IOC_SC_REPLAY, &arg, "replay SDO 0x%04x:%02x", index, subindex);
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_replay_sdo);
+
+int ecrt_slave_config_replay_idn(ec_slave_config_t *sc, uint8_t drive_no, uint16_t idn)
+{
+	struct ec_ioc_sc_replay arg = {
+		.flags = EC_SC_REPLAY_IDN, .config = ec_sc_index(sc), .object = idn,
+		.subindex = drive_no,
+	};
+
+	return ec_do_valid(sc, drive_no < DRIVES, EC_IOC_SC_REPLAY, &arg,
+			   "replay IDN 0x%04x of drive %u", idn, drive_no);
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_replay_idn);
+
+int ecrt_slave_config_held(ec_slave_config_t *sc)
+{
+	struct ec_ioc_hold arg = { .config = ec_sc_index(sc) };
+	int ret = ec_do_sc(sc, EC_IOC_HOLD, &arg, "see whether the slave is held");
+
+	return ret ? ret : (int)arg.hold;
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_held);
+
+int ecrt_slave_config_resume(ec_slave_config_t *sc, int hold)
+{
+	struct ec_ioc_hold arg = {
+		.flags = EC_HOLD_FLAG_RESUME, .config = ec_sc_index(sc), .hold = (__u32)hold,
+	};
+
+	return ec_do_valid(sc, hold > 0, EC_IOC_HOLD, &arg, "resume hold %d", hold);
+}
+EXPORT_SYMBOL_GPL(ecrt_slave_config_resume);
+
 /* startup SDOs and IDNs ------------------------------------------------------*/
 
 static int add_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, uint32_t flags,

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* What an application has configured, and its process data. */
 #include "internal.h"
+
+#include <stdio.h>
+
+#include "../../master/wire/replay.h"
 #include "text.h"
 
 #define COPY(member)	(to->member = from->member)
@@ -142,6 +146,25 @@ int ect_config_idn(struct ect_handle *h, unsigned int index, unsigned int idn,
 	own = (struct ect_startup){
 		.index = i.idn, .subindex = i.drive, .state = i.state, .bytes = i.size,
 	};
+	return ret ? ret : ect_give(h, to, &own, sizeof(own));
+}
+
+int ect_config_write(struct ect_handle *h, unsigned int index, unsigned int pos,
+		     struct ect_write *to, void *data, size_t size)
+{
+	struct ec_ioc_config_write i = {
+		.index = index, .write_pos = pos, .size = (u32)min(size, (size_t)0xffffffff),
+		.data = (uintptr_t)data,
+	};
+	struct ect_write own;
+	int ret = ect_command(h, EC_IOC_CONFIG_WRITE, &i);
+
+	own = (struct ect_write){
+		.index = i.object, .subindex = i.subindex, .kind = i.kind,
+		.complete = !!(i.flags & EC_SDO_FLAG_COMPLETE), .bytes = i.size,
+		.forgotten = i.forgotten,
+	};
+	snprintf(own.why, sizeof(own.why), "%s", ec_replay_why_text((u8)min(i.why, 255u)));
 	return ret ? ret : ect_give(h, to, &own, sizeof(own));
 }
 

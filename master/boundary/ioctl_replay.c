@@ -2,6 +2,8 @@
 /* Commands for what a slave gets again that returns: what the application has written itself. */
 #include <linux/nospec.h>
 #include "../config/config.h"
+#include "../config/replay.h"
+#include "../config/replay_run.h"
 #include "ioctl.h"
 #include "master.h"
 #include "../session/session.h"

@@ -9,6 +9,7 @@
 #include "apply_regs.h"
 #include "apply_state.h"
 #include "apply_up.h"
+#include "replay_run.h"
 
 #define ACKS		3	/* of an error, before INIT is requested */
 #define HOLD_MS		1000	/* a transfer that takes longer is cut off */

@@ -10,6 +10,7 @@
 #include "apply_regs.h"
 #include "apply_state.h"
 #include "apply_up.h"
+#include "replay_run.h"
 
 #define FLAG_MAX_MS	60000	/* upper limit of the flag */
 

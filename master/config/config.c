@@ -100,11 +100,11 @@ void ec_config_free(struct ec_config *c)
 
 	for (i = 0; i < EC_MAX_SM; i++)
 		ec_pdo_list_clear(&c->sm[i].pdos);
+	list_splice(&c->replay.writes, &c->startup);
 	list_for_each_entry_safe(u, after, &c->startup, list)
 		kvfree(u);
 	list_for_each_entry_safe(flag, next, &c->flags, list)
 		kvfree(flag);
-	ec_replay_free(&c->replay);
 	kfree(c);
 }
 

@@ -12,8 +12,8 @@
 #include "../clock/dc.h"
 #include "../wire/eoe.h"
 #include "../wire/regs.h"
-#include "replay.h"
 #include "startup.h"
+#include "writes.h"
 
 struct ec_domain;
 struct ec_group;

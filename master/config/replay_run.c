@@ -3,7 +3,7 @@
 #include "config.h"
 #include "../bus/result.h"
 #include "apply_state.h"
-#include "replay.h"
+#include "replay_run.h"
 
 #define WAITS	"the application, which holds it in PREOP (" EC_FLAG_HOLD ")"
 

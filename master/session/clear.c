@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "../bus/slave.h"
 #include "clear.h"
+#include "../config/replay.h"
 #include "ref_clock.h"
 #include "session_groups.h"
 #include "session_slave.h"

@@ -7,6 +7,7 @@
 #include "request_layout.h"
 #include "request_run.h"
 #include "session.h"
+#include "../config/replay.h"
 #include "../bus/slave.h"
 
 #define WATCH_US	10000	/* between two checks while a request waits */

@@ -2,6 +2,7 @@
 /* Configurations and their slaves. */
 #include "../bus/find.h"
 #include "../config/group.h"
+#include "../config/replay.h"
 #include "../config/why.h"
 #include "session_attach.h"
 #include "session_groups.h"

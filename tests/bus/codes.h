@@ -99,6 +99,13 @@ static void codes_config(ec_slave_config_t *sc)
 	CODE(ecrt_slave_config_sdo_timeout(sc, 60001), -EINVAL);
 	CODE(ecrt_slave_config_sdo_timeout(sc, 60000), 0);
 	CODE(ecrt_slave_config_sdo_timeout(sc, 0), 0);
+	CODE(ecrt_slave_config_replay(sc, (ec_replay_t)3), -EINVAL);
+	CODE(ecrt_slave_config_replay(sc, EC_REPLAY_ALL), 0);
+	CODE(ecrt_slave_config_replay(sc, EC_REPLAY_DEFAULT), 0);
+	CODE(ecrt_slave_config_replay_idn(sc, 8, 91), -EINVAL);
+	CODE(ecrt_slave_config_held(sc), 0);
+	CODE(ecrt_slave_config_resume(sc, 0), -EINVAL);
+	CODE(ecrt_slave_config_resume(sc, 1), -ESTALE);
 	CODE(ecrt_slave_config_overlapping_pdos(sc, 7), 0);
 	CODE(ecrt_slave_config_overlapping_pdos(sc, 0), 0);
 }

@@ -5,6 +5,7 @@
 
 #include "req.h"
 #include "master/config/replay.h"
+#include "master/wire/replay.h"
 
 #define TYPES	0x2001	/* a record: 2, 6: a byte; 3, 7: 2 bytes; 4, 8: 4 bytes */
 #define DRIVE	1	/* ring position; its configuration is 0 */

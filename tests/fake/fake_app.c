@@ -60,6 +60,32 @@ static int config_idn(struct ec_ioc_config_idn *x)
 	return 0;
 }
 
+/* configuration 1: an SDO, one that is not replayed, an IDN, a register */
+static int config_write(struct ec_ioc_config_write *x)
+{
+	static const struct ec_ioc_config_write writes[] = {
+		{ .object = 0x8000, .subindex = 2, .size = 2, .forgotten = 3 },
+		{ .object = 0x6040, .size = 2, .why = 4, .forgotten = 3 },
+		{ .object = 0x2000, .flags = EC_SDO_FLAG_COMPLETE, .why = 200, .forgotten = 3 },
+		{ .object = 91, .subindex = 1, .kind = EC_WRITE_KIND_IDN, .size = 4,
+		  .forgotten = 3 },
+		{ .object = 0x0420, .kind = EC_WRITE_KIND_REG, .size = 2, .forgotten = 3 },
+	};
+	__u8 *data = (__u8 *)(uintptr_t)x->data;
+	__u64 address = x->data;
+	__u32 room = x->size;
+
+	if (getenv("FAKE_NO_WRITE"))
+		return fake_fail(ENOTTY, "");
+	if (x->index != 1 || x->write_pos >= LEN(writes))
+		return fake_fail(ENOENT, "configuration has 5 recorded writes");
+	*x = writes[x->write_pos];
+	x->data = address;
+	for (__u32 i = 0; i < x->size && i < room; i++)
+		data[i] = (__u8)(i + 1);
+	return 0;
+}
+
 static int config_flag(struct ec_ioc_config_flag *x)
 {
 	static const char *const key[] = { "AssignToPdi", "WaitBeforeSAFEOPms" };
@@ -192,6 +218,8 @@ int fake_app(unsigned long request, void *arg)
 		return config_idn(arg);
 	case EC_IOC_CONFIG_FLAG:
 		return config_flag(arg);
+	case EC_IOC_CONFIG_WRITE:
+		return config_write(arg);
 	case EC_IOC_CONFIG_WHY:
 		return config_why(arg);
 	case EC_IOC_CONFIG_IP:

@@ -72,6 +72,11 @@ static void null_arguments(void)
 	CHECK(ecrt_slave_config_state_timeout(sc, EC_AL_STATE_INIT,
 					      EC_AL_STATE_OP, 1) == -EINVAL);
 	CHECK(ecrt_slave_config_sdo_timeout(sc, 1) == -EINVAL);
+	CHECK(ecrt_slave_config_replay(sc, EC_REPLAY_ALL) == -EINVAL);
+	CHECK(ecrt_slave_config_replay_sdo(sc, 0x607a, 0) == -EINVAL);
+	CHECK(ecrt_slave_config_replay_idn(sc, 0, 36) == -EINVAL);
+	CHECK(ecrt_slave_config_held(sc) == -EINVAL);
+	CHECK(ecrt_slave_config_resume(sc, 1) == -EINVAL);
 	CHECK(ecrt_slave_config_eoe_mac_address(sc, &byte) == -EINVAL);
 	CHECK(ecrt_slave_config_eoe_ip_address(sc, addr) == -EINVAL);
 	CHECK(ecrt_slave_config_eoe_subnet_mask(sc, addr) == -EINVAL);
@@ -467,6 +472,32 @@ static void layout(void)
 	ecrt_release_master(m);
 }
 
+/* What a slave gets that returns. */
+static void replay(void)
+{
+	const struct ec_ioc_sc_replay *r = (const void *)fake.arg;
+	const struct ec_ioc_hold *h = (const void *)fake.arg;
+	ec_master_t *m = start();
+	ec_slave_config_t *sc = ecrt_master_slave_config(m, 0, 5, 2, 3);
+
+	CHECK(!ecrt_slave_config_replay(sc, EC_REPLAY_NONE) && fake.last == EC_IOC_SC_REPLAY);
+	CHECK(r->config == 5 && r->mode == 1 && !r->flags);
+	CHECK(!ecrt_slave_config_replay_sdo(sc, 0x607a, 3) && r->flags == EC_SC_REPLAY_SDO);
+	CHECK(r->config == 5 && r->object == 0x607a && r->subindex == 3);
+	CHECK(!ecrt_slave_config_replay_idn(sc, 7, 36) && r->flags == EC_SC_REPLAY_IDN);
+	CHECK(r->config == 5 && r->object == 36 && r->subindex == 7);
+	CHECK(ecrt_slave_config_replay_idn(sc, 8, 36) == -EINVAL);
+	CHECK(!ecrt_slave_config_held(sc) && fake.last == EC_IOC_HOLD);
+	CHECK(h->config == 5 && !h->flags);
+	CHECK(!ecrt_slave_config_resume(sc, 9) && h->flags == EC_HOLD_FLAG_RESUME);
+	CHECK(h->config == 5 && h->hold == 9);
+	CHECK(ecrt_slave_config_resume(sc, 0) == -EINVAL);
+	fake.refuse = EC_IOC_HOLD;
+	fake.err = ESTALE;
+	CHECK(ecrt_slave_config_resume(sc, 9) == -ESTALE);
+	ecrt_release_master(m);
+}
+
 static void empty_image(void)
 {
 	ec_master_t *m = start();
@@ -508,6 +539,7 @@ int main(void)
 	cycle();
 	advice();
 	layout();
+	replay();
 	empty_image();
 	failed_activation();
 	requests();

@@ -464,6 +464,22 @@ END
 	FAKE_NO_IDN=1 out config -j | json 'd["masters"][0]["configs"][0]["idns"] is None'
 }
 
+@test "writes of the application are shown, with the reason why one is not replayed" {
+	export FAKE_BUS=app
+	out config -v | grep -A5 'Writes of the application:$' | grep -qx '  SDO 0x8000:02, 2 byte'
+	out config -v | grep -qx '  3 older ones, not listed'
+	out config -v | grep -qx '  SDO 0x6040:00, 2 byte, not replayed: control word'
+	out config -v | grep -qx '  SDO 0x2000 C, 0 byte, not replayed: unknown reason'
+	out config -v | grep -qx '  IDN of drive 1, 0x005b, 4 byte'
+	out config -v | grep -qx '  register 0x0420, 2 byte'
+	out config -j | json '[w["not_replayed"] for w in
+		d["masters"][0]["configs"][0]["writes"]] == [None, "control word", "unknown reason",
+		None, None]'
+	out config -j | json 'd["masters"][0]["configs"][1]["writes"] == []'
+	[ -z "$(FAKE_NO_WRITE=1 out config -v | grep 'Writes')" ]
+	FAKE_NO_WRITE=1 out config -j | json 'd["masters"][0]["configs"][0]["writes"] is None'
+}
+
 @test "a running scan is noted on stderr" {
 	[[ $(FAKE_BUS=scanning err slaves) == *"scan is running"* ]]
 	# on a terminal at most 2 s for the first one

@@ -61,6 +61,9 @@ static void slave(void)
 	SAYS(CALL(ecrt_slave_config_state_timeout)(b.motor, EC_AL_STATE_PREOP, EC_AL_STATE_SAFEOP, 1),
 	     -EBUSY);
 	SAYS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 1), -EBUSY);
+	SAYS(CALL(ecrt_slave_config_replay)(b.motor, EC_REPLAY_ALL), -EBUSY);
+	SAYS(CALL(ecrt_slave_config_replay_sdo)(b.motor, 0x6060, 0), -EBUSY);
+	IS(CALL(ecrt_slave_config_held)(b.motor), 0);
 	errno = 0;
 	SAYS(CALL(ecrt_slave_config_idn)(b.motor, 0, 15, EC_AL_STATE_PREOP, data, 2), -EBUSY);
 	YES(!CALL(ecrt_slave_config_create_sdo_request)(b.motor, 0x2001, 8, 4));

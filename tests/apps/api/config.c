@@ -157,6 +157,13 @@ static void settings(void)
 	IS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 20000), 0);
 	SAYS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 60001), -EINVAL);
 	IS(CALL(ecrt_slave_config_sdo_timeout)(b.motor, 0), 0);
+	IS(CALL(ecrt_slave_config_replay)(b.motor, EC_REPLAY_NONE), 0);
+	IS(CALL(ecrt_slave_config_replay)(b.motor, EC_REPLAY_DEFAULT), 0);
+	SAYS(CALL(ecrt_slave_config_replay)(b.motor, (ec_replay_t)3), -EINVAL);
+	IS(CALL(ecrt_slave_config_replay_sdo)(b.motor, 0x6060, 0), 0);
+	SAYS(CALL(ecrt_slave_config_replay_idn)(b.motor, 8, 36), -EINVAL);
+	IS(CALL(ecrt_slave_config_held)(b.motor), 0);
+	SAYS(CALL(ecrt_slave_config_resume)(b.motor, 1), -ESTALE);
 	IS(CALL(ecrt_slave_config_emerg_size)(b.motor, 4), 0);
 	IS(CALL(ecrt_slave_config_emerg_size)(b.motor, 8), 0);
 	SAYS(CALL(ecrt_slave_config_emerg_size)(b.motor, (size_t)1 << 30), -ENOMEM);

@@ -129,6 +129,11 @@ static void slave_config(void)
 	IS(ecrt_slave_config_eoe_hostname(NULL, "a"), -EINVAL);
 	IS(ecrt_slave_config_overlapping_pdos(NULL, 1), -EINVAL);
 	IS(ecrt_slave_config_sdo_timeout(NULL, 1), -EINVAL);
+	IS(ecrt_slave_config_replay(NULL, EC_REPLAY_ALL), -EINVAL);
+	IS(ecrt_slave_config_replay_sdo(NULL, 1, 1), -EINVAL);
+	IS(ecrt_slave_config_replay_idn(NULL, 0, 1), -EINVAL);
+	IS(ecrt_slave_config_held(NULL), -EINVAL);
+	IS(ecrt_slave_config_resume(NULL, 1), -EINVAL);
 	IS(ecrt_slave_config_reason(NULL, (char *)data, 8), -EINVAL);
 	IS(ecrt_slave_config_dc_state(NULL, &dc), -EINVAL);
 	IS(api_lines(), 0);
