@@ -68,6 +68,7 @@ static inline bool plant_begin(struct plant *p, const char *text, unsigned int s
 	p->wanted.links = &p->s.seg.links;
 	p->wanted.bus = &p->s.bus;
 	p->wanted.lock = &p->lock;
+	spin_lock_init(&p->wanted.writes_lock);
 	p->wanted.sends = &p->sends;
 	p->wanted.budget.lock = &p->lock;
 	p->wanted.budget.total = &p->memory;
