@@ -102,8 +102,8 @@ int ec_ioc_hold(struct ec_call *call)
 	}
 	if (ec_replay_resume(c, i->hold))
 		return ec_refuse(call, -ESTALE,
-				 "slave %u:%u is not held with number %u; see ecrt_slave_config_held()",
-				 c->alias, c->position, i->hold);
+				 "slave %s is not held with number %u; see ecrt_slave_config_held()",
+				 c->name, i->hold);
 	return 0;
 }
 

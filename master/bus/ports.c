@@ -301,7 +301,7 @@ static void forget_waits(struct ec_bus *bus)
 		for (p = 0; p < EC_MAX_PORT; p++) {
 			s->ports.door[p].next_ns = 0;
 			s->ports.door[p].wait_ms = 0;
-			s->ports.door[p].logged = false;
+			WRITE_ONCE(s->ports.door[p].kept, 0);
 		}
 	}
 }
