@@ -2278,9 +2278,9 @@ EC_PUBLIC_API int ecrt_slave_config_sdo_timeout(ec_slave_config_t *sc,
 /**
  * enum ec_replay_t - which writes of the application a slave gets again
  * @EC_REPLAY_DEFAULT: all but objects that store or restore parameters (0x1010, 0x1011), device
- *	commands and diagnosis (0x10F2 to 0x10FF), control words (0x6040, IDN S-0-0134), target values
- *	(0x6071, 0x607A, 0x60C1, 0x60FF; IDN S-0-0036, S-0-0047, S-0-0080), the same of further
- *	axes (+ 0x800 each), what is mapped to outputs, and registers of the master
+ *	commands and diagnosis (0x10F2 to 0x10FF), control words (0x6040, IDN S-0-0134), target
+ *	values (0x6071, 0x607A, 0x60C1, 0x60FF; IDN S-0-0036, S-0-0047, S-0-0080), the same of
+ *	further axes (+ 0x800 each), what is mapped to outputs, and registers of the master
  * @EC_REPLAY_NONE: none but those that are named
  * @EC_REPLAY_ALL: all but registers of the master
  */

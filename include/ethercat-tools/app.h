@@ -188,7 +188,7 @@ struct ect_write {
 	uint8_t kind;		/* ECT_WRITE_* */
 	uint8_t complete;	/* of an SDO: complete access */
 	uint8_t reserved[3];
-	uint32_t bytes;		/* of the value, 0: it was not kept; may be more than the buffer has */
+	uint32_t bytes;		/* of the value, 0: it was not kept; the buffer may be shorter */
 	uint32_t forgotten;	/* older writes that are not listed */
 	char why[ECT_STRING];	/* it is not written to a slave that returns; empty: it is */
 };

@@ -36,7 +36,7 @@ static bool absent_root(struct ec_bus *bus, struct ec_lost *l, unsigned int n_sl
 }
 
 /* The entry of its port; NULL: there are too many. */
-static struct ec_absent *entry_of(struct ec_known *k, const struct ec_lost *l)
+static struct ec_absent *absent_entry_of(struct ec_known *k, const struct ec_lost *l)
 {
 	struct ec_absent *a;
 
@@ -54,7 +54,7 @@ static struct ec_absent *entry_of(struct ec_known *k, const struct ec_lost *l)
 
 static void absent_add(struct ec_known *k, const struct ec_lost *l)
 {
-	struct ec_absent *a = entry_of(k, l);
+	struct ec_absent *a = absent_entry_of(k, l);
 
 	if (!a)
 		return;

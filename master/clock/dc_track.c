@@ -58,7 +58,7 @@ struct round {
 	unsigned int half[RIDERS];
 };
 
-static void set_rider(struct ec_rider *r, u8 cmd, u16 adp, u16 ado, u16 len)
+static void track_set_rider(struct ec_rider *r, u8 cmd, u16 adp, u16 ado, u16 len)
 {
 	r->cmd = cmd;
 	r->adp = adp;
@@ -112,7 +112,7 @@ static int track_measure(struct round *m)
 	unsigned int i, half, n = 0;
 	int ret;
 
-	set_rider(&m->t->rider[0], EC_CMD_BWR, 0, EC_REG_DC_RECV(0), 4);
+	track_set_rider(&m->t->rider[0], EC_CMD_BWR, 0, EC_REG_DC_RECV(0), 4);
 	ret = track_send(m, 1);
 	for (i = 0; i < 2 * j->n && !ret; i++) {
 		half = i % 2;
@@ -120,7 +120,7 @@ static int track_measure(struct round *m)
 			continue;
 		m->who[n] = i / 2;
 		m->half[n] = half;
-		set_rider(&m->t->rider[n++], EC_CMD_FPRD, j->slaves[i / 2]->station,
+		track_set_rider(&m->t->rider[n++], EC_CMD_FPRD, j->slaves[i / 2]->station,
 			  EC_REG_DC_RECV(2 * half), 8);
 		if (n < RIDERS)
 			continue;
@@ -195,7 +195,7 @@ static int track_write(struct round *m, s32 *steps, unsigned int n)
 	for (i = 0; i < n; i++) {
 		unsigned int who = m->who[i];
 
-		set_rider(&m->t->rider[i], EC_CMD_FPWR, m->j->slaves[who]->station,
+		track_set_rider(&m->t->rider[i], EC_CMD_FPWR, m->j->slaves[who]->station,
 			  EC_REG_DC_DELAY, 4);
 		put_unaligned_le32(ec_job_clock(m->j, who)->delay + (steps[who] > 0 ? 1 : -1),
 				   m->t->rider[i].data);
@@ -263,7 +263,7 @@ static void track_job(struct ec_dc_track *t, struct ec_dc_job *j)
 		track_decide(&m);
 }
 
-static void again(struct ec_dc *dc)
+static void track_again(struct ec_dc *dc)
 {
 	struct ec_dc_track *t = dc->track;
 	struct ec_dc_job j;

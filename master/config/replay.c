@@ -47,7 +47,7 @@ static struct ec_config *replay_config(const struct ec_wanted *w, const struct e
 	return NULL;
 }
 
-static bool is_open(const struct ec_replay *r)
+static bool replay_is_open(const struct ec_replay *r)
 {
 	return !READ_ONCE(r->was_op) || READ_ONCE(r->hold) == EC_HOLD_HELD;
 }
@@ -65,10 +65,10 @@ bool ec_replay_is_open(const struct ec_wanted *w, struct ec_slave *s)
 	const struct ec_config *c = replay_config(w, s);
 
 	ec_wanted_assert_stays(w);
-	return c ? is_open(&c->replay) : !w->active;
+	return c ? replay_is_open(&c->replay) : !w->active;
 }
 
-static bool same_object(const struct ec_startup *a, const struct ec_startup *b)
+static bool replay_same_object(const struct ec_startup *a, const struct ec_startup *b)
 {
 	return a->type == b->type && a->index == b->index && a->sub == b->sub &&
 	       a->complete == b->complete &&
@@ -80,7 +80,7 @@ static struct ec_startup *find(const struct ec_replay *r, const struct ec_startu
 	struct ec_startup *u;
 
 	list_for_each_entry_reverse(u, &r->writes, list)
-		if (same_object(u, what) && u->device == what->device)
+		if (replay_same_object(u, what) && u->device == what->device)
 			return u;
 	return NULL;
 }
@@ -108,7 +108,7 @@ static bool replay_replace(struct ec_wanted *w, struct ec_replay *r, struct ec_s
 
 	lockdep_assert_held(w->lock);
 	spin_lock(&w->writes_lock);
-	open = is_open(r);
+	open = replay_is_open(r);
 	if (open && old)
 		list_del(&old->list);
 	if (open && next)

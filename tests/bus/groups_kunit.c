@@ -208,7 +208,8 @@ static void groups_optional_comes_and_goes(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, cyc_state(t->c, 0)->expected, 6u);
 		KUNIT_EXPECT_EQ(test, cyc_state(t->c, 0)->wc_state, EC_STATUS_WC_COMPLETE);
 		KUNIT_EXPECT_FALSE(test, in_op(t, t->head));
-		bus_figure("%u cycles incomplete until the loss of the group was seen", t->incomplete);
+		bus_figure("%u cycles incomplete until the loss of the group was seen",
+			   t->incomplete);
 		KUNIT_EXPECT_LE(test, t->incomplete, 50u);
 		t->incomplete = 0;
 	}
@@ -247,6 +248,8 @@ static void groups_do_not_count_for_positions(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_config(b, t->head)->slave->position, 1);
 }
 
+#define WRONG_TWO	"unplug x2.0;plug x1.1 z2.0;plug hub.1 x1.0"
+
 /**
  * struct wrong - a group that must not be started
  * @command: what is connected
@@ -264,8 +267,9 @@ struct wrong {
 static const struct wrong wrongs[] = {
 	{ "plug f2.1 z1.0", 5, "no slave has identification 6", "plug hub.1 x1.0" },
 	{ "unplug x2.0;plug hub.1 x1.0", 4, "member 1 (", "plug x1.1 x2.0" },
-	{ "unplug x2.0;plug x1.1 z2.0;plug hub.1 x1.0", 5, "slave 2 is 0x", "unplug x1.1;plug x1.1 x2.0" },
-	{ "unplug x1.1;plug hub.1 x1.1", 4, "connected by its port 1", "unplug hub.1;plug x1.1 x2.0;plug hub.1 x1.0" },
+	{ WRONG_TWO, 5, "slave 2 is 0x", "unplug x1.1;plug x1.1 x2.0" },
+	{ "unplug x1.1;plug hub.1 x1.1", 4, "connected by its port 1",
+	  "unplug hub.1;plug x1.1 x2.0;plug hub.1 x1.0" },
 };
 
 static void wrong_desc(const struct wrong *w, char *desc)

@@ -180,7 +180,7 @@ library_works() {
 		-pthread -o "$o/session" session.c request.c soe.c foe.c dict.c eoe.c \
 		events.c extension.c rules.c kernel_cycle.c ../fake/*.c \
 		"$top"/lib/*.c "$top"/lib/ecrt/*.c \
-		"$top"/master/wire/{al,coe,emergency,event{,_text},port_text}.c &&
+		"$top"/master/wire/{al,coe,emergency,event{,_text},port_text,replay}.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }
 
@@ -236,7 +236,7 @@ tools_work() {	# tools_work SANITIZERS
 	$CC -std=gnu11 -fms-extensions -Wall -Wextra -Werror $1 -D_GNU_SOURCE -pthread \
 		-o "$o/tools-test" tools.c ../fake/fake_*.c \
 		$(ls "$top"/lib/tools/*.c | grep -v /sys.c) \
-		"$top"/master/wire/{al,coe,dc,emergency,event{,_text},port_text,sdoinfo}.c &&
+		"$top"/master/wire/{al,coe,dc,emergency,event{,_text},port_text,replay,sdoinfo}.c &&
 		setarch -R "$o/tools-test"
 }
 
