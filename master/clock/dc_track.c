@@ -295,7 +295,7 @@ int ec_dc_track_init(struct ec_dc *dc, struct ec_riders *riders)
 		return -ENOMEM;
 	t->riders = riders;
 	dc->track = t;
-	dc->track_again = again;
+	dc->again = track_again;
 	for (i = 0; i < RIDERS && !ret; i++)
 		ret = ec_rider_register(riders, &t->rider[i]);
 	return ret;
