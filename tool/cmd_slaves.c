@@ -135,12 +135,22 @@ static int wait_first(struct dev *d)
 	}
 }
 
+/* A scan that a user asks for tries ports again that have lost their link too often. */
+static int retry(struct dev *d)
+{
+	int err = ect_rescan(d->h);
+
+	return err ? dev_fail(d, err, "Master%u: cannot scan the bus", d->master) : 0;
+}
+
 static int each(const struct tool *t, struct dev *d)
 {
 	struct ect_master m;
 	struct slaves sel;
 	int ret;
 
+	if (t->retry && retry(d))
+		return 1;
 	if (!t->wait && wait_first(d))
 		return 1;
 	if (t->wait && dev_wait_scan(d, t->wait_s >= 0 ? t->wait_s : WAIT_S))
@@ -178,7 +188,7 @@ static int run(struct tool *t, int argc, char **argv)
 
 	(void)argc, (void)argv;
 	out_array("masters");
-	ret = dev_each(t, false, each);
+	ret = dev_each(t, t->retry, each);
 	out_end();
 	return ret;
 }
@@ -187,7 +197,7 @@ const struct cmd cmd_slaves = {
 	.name = "slaves",
 	.run = run,
 	.args = "",
-	.opts = "mapvw",
+	.opts = "mapvwR",
 	.summary = "Show the slaves on the bus",
 	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
 		"'+ERROR' after the state: the slave reports an error; state LOST: it does not reply.\n"
@@ -195,6 +205,8 @@ const struct cmd cmd_slaves = {
 		"by the application. Configured slaves that are absent are listed on stderr, and so are\n"
 		"ports behind which slaves were disconnected, until they return or 'ethercat rescan' forgets\n"
 		"them, and ports that stay closed although they have a link.\n"
+		"--retry tries ports at once that wait because they have lost their link too often, and\n"
+		"failed ones, as 'ethercat rescan' does.\n"
 		"'xxx LINK FAILURE xxx' marks the break of a redundant ring.\n"
 		"From its reservation of the master to activation, and after deactivation, an application\n"
 		"has the list of slaves held: no scan changes it, and stderr shows which process that is.\n"

@@ -30,6 +30,7 @@ const struct opt opts[] = {
 	{ 'O', "coe", NULL, "read from the slave over CoE, now" },
 	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
 	{ 'W', "watch", "SECONDS", "repeat after SECONDS, 0.1 to 86400, and show what has grown" },
+	{ 'R', "retry", NULL, "try at once what waits" },
 	{ 'E', "tree", NULL, "tree of text" },
 	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
@@ -60,6 +61,7 @@ static const struct option longs[] = {
 	{ "coe", no_argument, NULL, 'O' },
 	{ "texts", required_argument, NULL, 'T' },
 	{ "watch", required_argument, NULL, 'W' },
+	{ "retry", no_argument, NULL, 'R' },
 	{ "tree", no_argument, NULL, 'E' },
 	{ "follow", no_argument, NULL, 'F' },
 	{ "json", no_argument, NULL, 'j' },
@@ -236,6 +238,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'F':
 		t->follow = true;
+		return 0;
+	case 'R':
+		t->retry = true;
 		return 0;
 	case 'j':
 		t->json = true;

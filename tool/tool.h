@@ -59,6 +59,7 @@ struct tool {
 	bool emergency;
 	bool force;
 	bool reset;
+	bool retry;
 	bool json;
 	int verbosity;
 	bool boot;

@@ -118,6 +118,11 @@
  */
 #define EC_EVENT_CONFIG		0x60
 #define EC_EVENT_CONFIGS	0x61	/* more of them without record */
+/*
+ * a hot connect group of the active application: index, EC_CAUSE_*: EC_CAUSE_NONE it is connected,
+ * 1 mandatory, members; slave: its head, or the one that keeps it from use
+ */
+#define EC_EVENT_GROUP		0x62
 
 /**
  * struct ec_event - one event

@@ -158,7 +158,7 @@ int ec_session_activate(struct ec_session *s)
 	activate_slaves(s);
 	ec_requests_kick(s);
 	ec_config_log_differences(&s->wanted);
-	ec_session_log_groups(s);
+	ec_session_report_groups(s);
 	ec_session_begin_active(s);
 	ec_report(ss->base, EC_EVENT_ACTIVATED, s->owner_pid, s->wanted.n_domains, bytes,
 		  s->cycle.layout.n_dgrams);

@@ -147,12 +147,34 @@ static void detach_lost(struct ec_session *s)
 }
 
 /*
+ * The order in which configurations get slaves: what is connected at the port of a slave may be a
+ * group, which counts for no place, so the slaves at whose ports groups are known come first.
+ */
+enum turn { SAME, HOSTS, ALL };
+
+static bool is_host(const struct ec_config *c)
+{
+	ec_for_each_group(g, c->wanted)
+		if (g->by == EC_GROUP_BY_PORT && g->at == c)
+			return true;
+	return false;
+}
+
+static enum turn first_turn(const struct ec_wanted *w)
+{
+	ec_for_each_group(g, w)
+		if (g->by == EC_GROUP_BY_PORT)
+			return SAME;
+	return ALL;
+}
+
+/*
  * An active session keeps a slave while it is connected: when another one upstream is disconnected
  * its position changes, but it must not get outputs of another slave. A lost slave is attached
  * again at any position, or a new one at its place is used instead. A slave that was connected all
  * the time never gets the outputs of another one.
  */
-static void reattach(struct ec_session *s)
+static void reattach(struct ec_session *s, enum turn turn)
 {
 	struct ec_slave *slave;
 	unsigned int alike = 0;
@@ -165,6 +187,8 @@ static void reattach(struct ec_session *s)
 	ec_for_each_config(c, &s->wanted)
 		c->lost.waits = may_take(c) && c->lost.text[0];
 	ec_for_each_config(c, &s->wanted) {
+		if (turn == SAME || (turn == HOSTS && !is_host(c)))
+			continue;
 		slave = may_take(c) ? find_new(s, c) : NULL;
 		if (slave && ec_session_give(s, c, slave) && c->lost.waits)
 			alike += has_alike(s, c);
@@ -226,6 +250,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 	c = ec_config_create(&s->wanted, alias, position, vendor, product);
 	if (IS_ERR(c))
 		return c;
+	ec_session_mark(s);
 	ec_session_attach_one(s, c);
 	ret = ec_config_begin(c);
 	if (!ret) {
@@ -244,28 +269,32 @@ static void locate(struct ec_session *s)
 		ec_config_locate(c);
 }
 
+static void attach_each(struct ec_session *s, enum turn turn)
+{
+	ec_for_each_config(c, &s->wanted)
+		if (turn == ALL || (turn == HOSTS && is_host(c)))
+			ec_session_attach_one(s, c);
+}
+
 /**
  * ec_session_attach_all() - attach the slaves that are on the bus now
  * @s: session
- *
- * Slaves of groups do not count for the places of others, and groups may be known by these.
  *
  * Context: Process, session lock held. May sleep.
  */
 void ec_session_attach_all(struct ec_session *s)
 {
-	unsigned int rounds = s->wanted.n_groups ? 2 : 1;
+	enum turn turn;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (s->wanted.active)
 		detach_lost(s);
-	while (rounds--) {
+	for (turn = first_turn(&s->wanted); turn <= ALL; turn++) {
 		locate(s);
 		if (s->wanted.active)
-			reattach(s);
+			reattach(s, turn);
 		else
-			ec_for_each_config(c, &s->wanted)
-				ec_session_attach_one(s, c);
+			attach_each(s, turn);
 	}
 	ec_session_attach_groups(s);
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
+#include "../base/report.h"
 #include "../bus/ports.h"
 #include "../config/group.h"
 #include "session_groups.h"
@@ -20,33 +21,30 @@ void ec_session_mark(struct ec_session *s)
 }
 
 /* Each change of an active session once */
-static void log_group(const struct ec_session *s, struct ec_group *g)
+static void report_group(const struct ec_session *s, struct ec_group *g)
 {
+	const struct ec_event_more more = {
+		.name = g->name, .detail = g->cause == EC_CAUSE_NONE ? NULL : g->why,
+	};
+
 	if (!s->wanted.active || g->logged == g->cause)
 		return;
-	if (g->cause == EC_CAUSE_NONE)
-		ec_info(s->sessions, "group %s: connected, %u slave(s) from slave %u on\n", g->name,
-			g->n_members, g->position);
-	else if (g->cause == EC_CAUSE_NO_GROUP && !g->mandatory)
-		ec_info(s->sessions, "group %s: not connected: %s\n", g->name, g->why);
-	else if (g->cause == EC_CAUSE_NO_GROUP)
-		ec_warn(s->sessions, "mandatory group %s: not connected: %s\n", g->name, g->why);
-	else
-		ec_warn(s->sessions, "group %s: not started: %s\n", g->name, g->why);
+	ec_report_more(s->sessions->base, EC_EVENT_GROUP, g->position, &more, g->index, g->cause,
+		       g->mandatory, g->n_members);
 	g->logged = g->cause;
 }
 
 /**
- * ec_session_log_groups() - report which groups are not on the bus
+ * ec_session_report_groups() - report which groups are not on the bus
  * @s: session that has just been activated
  *
  * Context: Process, session lock held.
  */
-void ec_session_log_groups(struct ec_session *s)
+void ec_session_report_groups(struct ec_session *s)
 {
 	lockdep_assert_held(s->wanted.lock);
 	ec_for_each_group(g, &s->wanted)
-		log_group(s, g);
+		report_group(s, g);
 }
 
 /* A running session keeps the slave that a member has; @slave: with a reference, or NULL. */
@@ -77,7 +75,7 @@ static void attach_group(struct ec_session *s, struct ec_group *g)
 	for (k = 0; whole && k < g->n_members; k++)
 		ec_slave_ref(found[k]);
 	up_read(&s->sessions->bus->topo);
-	log_group(s, g);
+	report_group(s, g);
 	for (k = 0; k < g->n_members; k++)
 		settle(s, g->members[k], whole ? found[k] : NULL);
 	kvfree(found);

@@ -137,6 +137,8 @@ static const struct row kinds[] = {
 	     U("found_product_code")),
 	KIND(CONFIGS, "configurations", NONE, "%0 more configuration(s) without slave",
 	     U("more")),
+	KIND(GROUP, "group", WARNING, SPECIAL, U("group"), U("cause"), U("mandatory"),
+	     U("members")),
 };
 
 static const struct row *row_of(u32 kind)
@@ -179,6 +181,13 @@ static u8 lock_level(const u32 *a)
 	return a[0] == 2 ? EC_LINE_INFO : a[0] == 3 || a[3] ? EC_LINE_WARN : EC_LINE_NONE;
 }
 
+static u8 group_level(const u32 *a)
+{
+	bool expected = a[1] == EC_CAUSE_NONE || (a[1] == EC_CAUSE_NO_GROUP && !a[2]);
+
+	return expected ? EC_LINE_INFO : EC_LINE_WARN;
+}
+
 /**
  * ec_event_level() - what the kernel log has of an event
  * @e: event
@@ -202,6 +211,8 @@ enum ec_event_line ec_event_level(const struct ec_event *e)
 		return a[0] ? EC_LINE_WARN : EC_LINE_INFO;
 	case EC_EVENT_LOCK:
 		return lock_level(a);
+	case EC_EVENT_GROUP:
+		return group_level(a);
 	default:
 		return row ? row->how & 0xf : EC_LINE_NONE;
 	}

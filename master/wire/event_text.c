@@ -305,6 +305,25 @@ static void about_config(struct ec_event_buf *t, const struct ec_event *e,
 		add(t, "no slave (0x%08x/0x%08x) at its position", a[3], a[4]);
 }
 
+static void about_group(struct ec_event_buf *t, const struct ec_event *e,
+			const struct ec_event_more *more)
+{
+	const u32 *a = e->arg;
+
+	if (more->name)
+		add(t, "%sgroup %s: ", a[2] ? "mandatory " : "", more->name);
+	else
+		add(t, "%sgroup %u: ", a[2] ? "mandatory " : "", a[0]);
+	if (a[1] == EC_CAUSE_NONE)
+		add(t, "connected, %u slave(s) from slave %u on", a[3], e->slave);
+	else
+		add(t, "not %s", a[1] == EC_CAUSE_NO_GROUP ? "connected" : "started");
+	if (more->detail)
+		add(t, ": %s", more->detail);
+	else if (a[1] == EC_CAUSE_GROUP)
+		add(t, " because of slave %u; see 'ethercat why'", e->slave);
+}
+
 /**
  * ec_event_text_add() - append the text of an event whose row has no template
  * @t: text
@@ -337,6 +356,7 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 		{ EC_EVENT_DC_WINDOW, about_window },
 		{ EC_EVENT_LOCK, about_lock },
 		{ EC_EVENT_CONFIG, about_config },
+		{ EC_EVENT_GROUP, about_group },
 	};
 	unsigned int i;
 

@@ -11,9 +11,9 @@ static const char text[] =
 	"branch none\nslave x1 drive in=8 out=8 id=6 serial=61\nslave x2 drive in=8 out=8\n"
 	"branch none\nslave y1 drive in=8 out=8 id=6 serial=62\nslave y2 drive in=8 out=8\n"
 	"branch none\nslave z1 drive in=8 out=8\nslave z2 EL1859\n"
-	"branch none\nslave v1 drive in=8 out=8 id=7\nslave v2 EL1859\n";
+	"branch none\nslave v EK1100\nbranch v 2\nslave v1 drive in=8 out=8\n";
 
-enum { HUB, F1, F2, X1, X2, Y1, Y2, Z1, Z2, V1, V2 };
+enum { HUB, F1, F2, X1, X2, Y1, Y2, Z1, Z2, V, V1 };
 
 #define N	3	/* connected at first */
 
@@ -105,6 +105,7 @@ static struct tools *begin(struct kunit *test, const char *plugged, u32 n)
 	}
 	bus_idle(b);
 	t->c = cyc_new(b, 1000);
+	cyc_domain(t->c);
 	cyc_domain(t->c);
 	return t;
 }
@@ -379,6 +380,50 @@ static void groups_fast(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("has lost its link 3 times") - lines, 0u);
 }
 
+/*
+ * A coupler with a group at its port, and behind that, in the order of the ring, drives like the
+ * one of the group: all lose their power, and with it their addresses. Each gets its own back.
+ */
+static void groups_by_port_without_power(struct kunit *test)
+{
+	static const char * const off[] = { "off v", "off v1", "off f1", "off f2" };
+	static const char * const on[] = { "on f2", "on f1", "on v1", "on v" };
+	struct tools *t = begin(test, "plug hub.1 v.0", N + 2);
+	struct ec_ioc_slave_config v = { .position = 1, .vendor_id = t->info[HUB].vendor,
+					 .product_code = t->info[HUB].product };
+	struct bus *b = t->c->b;
+	u32 i, k, drive[2];
+
+	/* the coupler at position 1, the drives at 2 and 3, as the one of the group does not count */
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &v), 0);
+	t->head = add_drive(t, add_group(t, "left", EC_GROUP_BY_PORT, 0, v.index, 2, 0), 0, 1);
+	for (i = 0; i < 2; i++) {
+		struct ec_ioc_slave_config f = { .position = 2 + i,
+						 .vendor_id = t->info[F1].vendor,
+						 .product_code = t->info[F1].product };
+
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &f), 0);
+		drive[i] = f.index;
+		cyc_map(t->c, drive[i], 2, 0);
+		cyc_map(t->c, drive[i], 3, 0);
+	}
+	run(t);
+	for (k = 0; k < 3; k++) {
+		for (i = 0; i < 3000 && !(in_op(t, t->head) && in_op(t, drive[0]) &&
+					  in_op(t, drive[1])); i++)
+			cyc_run(t->c, 1);
+		KUNIT_ASSERT_LT(test, i, 3000u);
+		KUNIT_EXPECT_EQ(test, bus_config(b, t->head)->slave->position, 2);
+		KUNIT_EXPECT_EQ(test, bus_config(b, drive[0])->slave->position, 3);
+		KUNIT_EXPECT_EQ(test, bus_config(b, drive[1])->slave->position, 4);
+		for (i = 0; i < ARRAY_SIZE(off); i++)
+			bus_command(b, off[i]);
+		cyc_run(t->c, 1000);
+		for (i = 0; i < ARRAY_SIZE(on); i++)
+			bus_command(b, on[i]);
+	}
+}
+
 /* One with an identification that has to be at a port, and one with a serial number */
 static void groups_pinned_and_serial(struct kunit *test)
 {
@@ -456,6 +501,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(groups_twin_of_running),
 	KUNIT_CASE(groups_twins),
 	KUNIT_CASE(groups_by_port),
+	KUNIT_CASE(groups_by_port_without_power),
 	KUNIT_CASE(groups_fast),
 	KUNIT_CASE(groups_pinned_and_serial),
 	KUNIT_CASE(groups_refused),

@@ -268,6 +268,12 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "slave 5: port 2 stays closed despite its link: no slave replies behind it; connect port 0 (IN) of a slave there, or remove the cable");
 	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_LOSSES, 3, 10, 60),
 	       "slave 5: port 2 stays closed despite its link: it has lost its link again and again (3 times in 10 s; opened after 1 s of link, then after up to 60 s); check cable and plugs");
+	expect(test, E(GROUP, 4, 0, EC_CAUSE_NONE, 0, 2),
+	       "group 0: connected, 2 slave(s) from slave 4 on");
+	expect(test, E(GROUP, EC_EVENT_NO_SLAVE, 1, EC_CAUSE_NO_GROUP, 1, 2),
+	       "mandatory group 1: not connected");
+	expect(test, E(GROUP, 4, 1, EC_CAUSE_GROUP, 0, 2),
+	       "group 1: not started because of slave 4; see 'ethercat why'");
 	expect(test, E(REVISION, 5, 2, 3), "slave 5: revision 0x00000003, expected 0x00000002");
 }
 
