@@ -394,7 +394,7 @@ static void groups_by_port_without_power(struct kunit *test)
 	struct bus *b = t->c->b;
 	u32 i, k, drive[2];
 
-	/* the coupler at position 1, the drives at 2 and 3, as the one of the group does not count */
+	/* coupler at position 1, drives at 2 and 3: that of the group does not count */
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &v), 0);
 	t->head = add_drive(t, add_group(t, "left", EC_GROUP_BY_PORT, 0, v.index, 2, 0), 0, 1);
 	for (i = 0; i < 2; i++) {
