@@ -457,9 +457,10 @@ typedef struct {
  * Extension (%EC_HAVE_GROUPS). Slaves of groups do not count for the ring positions of
  * ecrt_master_slave_config(): create groups, with their members, before the configurations that
  * are known by ring position, except the ones at whose ports they are. A group may be absent at
- * any time: the expected working counters count its slaves once they are in OP, and those of a
- * mandatory group always. When all its members are on the bus they are configured and brought to
- * OP; when one is missing or another device, none is, and ecrt_slave_config_reason() says why.
+ * any time: the expected working counters count its slaves once they are in OP or have failed,
+ * and those of a mandatory group always. When all its members are on the bus they are configured
+ * and brought to OP; when one is missing or another device, none is, and
+ * ecrt_slave_config_reason() says why.
  *
  * Context: Process. May sleep.
  * Return: number of the group; %-EINVAL the description is not valid; %-EEXIST another group has

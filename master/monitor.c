@@ -691,6 +691,8 @@ static int monitor(void *data)
 		if (w.scanned || !w.link_up)
 			WRITE_ONCE(m->bus.looked, true);
 		ec_bus_settled(&m->bus);
+		if (w.scanned && xchg(&m->bus.regroup, false))
+			ec_session_attach(&m->sessions);
 		ec_session_status(&m->sessions, w.scanned);
 		note_path(&w);
 		ec_pending_flush(&m->bus, false);

@@ -187,7 +187,7 @@ int ec_ioc_domain(struct ec_call *call)
 
 	i->size = d->size;
 	i->logical = d->offset;
-	i->expected = d->expected;
+	i->expected = READ_ONCE(d->expected);
 	i->fmmu_count = d->n_fmmus;
 	i->options = d->options;
 	i->max_age = d->max_age;

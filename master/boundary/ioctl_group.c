@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands for hot connect groups. */
+#include <linux/nospec.h>
 #include "../config/config.h"
 #include "../config/group.h"
 #include "../session/session.h"
@@ -38,6 +39,7 @@ int ec_ioc_group(struct ec_call *call)
 	if (IS_ERR(g))
 		return group_failed(call, i, PTR_ERR(g));
 	i->index = g->index;
+	ec_session_attach_all(call->session);
 	return 0;
 }
 
@@ -61,6 +63,12 @@ static int member_failed(struct ec_call *call, const struct ec_ioc_group_config 
 	}
 }
 
+/* @i: below the number of groups */
+static struct ec_group *group_at(const struct ec_session *s, u32 i)
+{
+	return s->wanted.groups[array_index_nospec(i, s->wanted.n_groups)];
+}
+
 static int add_member(struct ec_call *call, struct ec_ioc_group_config *i)
 {
 	struct ec_session *s = call->session;
@@ -69,7 +77,7 @@ static int add_member(struct ec_call *call, struct ec_ioc_group_config *i)
 
 	if (i->group >= s->wanted.n_groups)
 		return ec_refuse(call, -ENOENT, "there is no group %u", i->group);
-	g = s->wanted.groups[i->group];
+	g = group_at(s, i->group);
 	if (s->wanted.active && i->member >= g->n_members)
 		return ec_refuse(call, -EBUSY,
 				 "member %u of group %s has no configuration and the master is active; configure before ecrt_master_activate()",
@@ -93,8 +101,8 @@ int ec_ioc_group_config(struct ec_call *call)
 	/* a configuration starts with the PDOs of its slave: wait until they are read */
 	if (!call->session->wanted.active && call->session != m->sessions.candidate &&
 	    i->group < call->session->wanted.n_groups)
-		slave = ec_session_find_member(call->session,
-					       call->session->wanted.groups[i->group], i->member);
+		slave = ec_session_find_member(call->session, group_at(call->session, i->group),
+					       i->member);
 	if (slave) {
 		ec_sessions_unlock(&m->sessions);
 		ec_bus_wait_slave(slave);

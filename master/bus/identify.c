@@ -32,7 +32,7 @@ struct identify {
 
 static bool is_asked(const struct ec_slave *s)
 {
-	return s->sii && s->has_general && !READ_ONCE(s->error) &&
+	return !READ_ONCE(s->identified) && s->sii && s->has_general && !READ_ONCE(s->error) &&
 	       s->general.flags & (EC_SII_FLAG_ID_AL | EC_SII_FLAG_ID_MEM);
 }
 
@@ -50,6 +50,7 @@ static void identify_add(struct identify *id, struct ec_slave *s)
 	if (!a->by_al && !(s->general.flags & EC_SII_FLAG_ID_MEM))
 		return;
 	a->slave = s;
+	WRITE_ONCE(s->identified, true);
 	id->n++;
 }
 
@@ -112,9 +113,35 @@ static unsigned int read_replies(struct identify *id)
 }
 
 /**
+ * ec_identify() - read the identification of a slave that was not in PREOP when it was found
+ * @s: slave in PREOP, @lock held; groups are looked for again if it has one
+ *
+ * Context: The slave's worker. Waits as ec_identify_all().
+ */
+void ec_identify(struct ec_slave *s)
+{
+	lockdep_assert_held(&s->lock);
+	ec_identify_all(s->bus, &s, 1);
+	if (READ_ONCE(s->identification))
+		WRITE_ONCE(s->bus->regroup, true);
+}
+
+/**
+ * ec_identify_is_due() - has a slave an identification that was not read?
+ * @s: slave
+ *
+ * Context: Any.
+ * Return: whether it has.
+ */
+bool ec_identify_is_due(const struct ec_slave *s)
+{
+	return is_asked(s) && asks_by_al(s);
+}
+
+/**
  * ec_identify_all() - read the explicit device identification of new slaves
  * @bus: bus
- * @slaves: slaves that are not in the list of the bus yet, so that no worker writes AL control
+ * @slaves: slaves, whose AL control no other thread writes
  * @n: how many
  *
  * Of those whose EEPROM says that they have one: general category, flags bit 3 (AL control,

@@ -80,6 +80,7 @@ struct ec_break {
  * @identification: explicit device identification as read when it was found, 0: none
  * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
  * @recv: receive times at the ports
+ * @identified: it was asked for @identification, or has none
  * @delay_only: it has receive times, but no other register of a clock (0x0928)
  * @at: neighbors at the ports, NULL none; what graph.c finds
  * @upstream: port towards the main device
@@ -177,6 +178,7 @@ struct ec_slave {
 	u16 alias_first;
 	u32 recv[EC_MAX_PORT];
 	bool delay_only;
+	bool identified;
 	struct ec_slave *at[EC_MAX_PORT];
 	u8 upstream;
 	bool hung;

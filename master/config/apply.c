@@ -2,6 +2,7 @@
 /* The worker of a slave: configure it and bring it to its requested state. */
 #include "config.h"
 #include "../mailbox/mailbox.h"
+#include "../bus/identify.h"
 #include "../bus/leave_init.h"
 #include "../bus/result.h"
 #include "../carry/xfer.h"
@@ -278,6 +279,8 @@ void ec_apply(struct ec_slave *s)
 	}
 	if (!there)
 		ec_apply_plan(s, r.err);
+	if (there && ec_identify_is_due(s))
+		ec_identify(s);
 	if (there && READ_ONCE(s->read_pdos) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
 	if (there && READ_ONCE(s->read_pdos) && ec_names_pending(s))

@@ -184,6 +184,8 @@ struct ec_setup {
 	u16 made;
 	/** @group: index + 1 of the hot connect group that it belongs to, 0: none; topo held */
 	u8 group;
+	/** @heads: it is the first one of that group; topo held */
+	bool heads;
 	/** @mailbox: claim of the worker, for the way through INIT */
 	struct ec_claim mailbox;
 	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ctype.h>
 #include <linux/err.h>
+#include <linux/nospec.h>
 #include <linux/slab.h>
 #include "../base/grow.h"
 #include "../base/limits.h"
@@ -88,7 +89,9 @@ struct ec_group *ec_group_create(struct ec_wanted *w, const struct ec_ioc_group 
 	}
 	*g = (struct ec_group){
 		.wanted = w, .index = w->n_groups, .by = what->by, .value = what->value,
-		.at = what->at == EC_UAPI_NONE32 ? NULL : w->configs[what->at], .port = what->port,
+		.at = what->at == EC_UAPI_NONE32 ? NULL :
+		      w->configs[array_index_nospec(what->at, w->n_configs)],
+		.port = what->port,
 		.mandatory = what->flags & EC_GROUP_FLAG_MANDATORY,
 		.fast = what->flags & EC_GROUP_FLAG_FAST, .cause = EC_CAUSE_NO_GROUP,
 	};
@@ -126,7 +129,7 @@ struct ec_config *ec_group_config(struct ec_group *g, u16 member, u32 vendor, u3
 
 	lockdep_assert_held(g->wanted->lock);
 	if (member < g->n_members) {
-		c = g->members[member];
+		c = g->members[array_index_nospec(member, g->n_members)];
 		return c->vendor == vendor && c->product == product ? c : ERR_PTR(-ENOENT);
 	}
 	if (member > g->n_members)

@@ -22,6 +22,10 @@ struct ec_wanted;
  * @fast: @port is opened as soon as it has a link
  * @members: their configurations in the order of the ring, the head first
  * @n_members: how many
+ * @host: while slaves are marked: the one of @at
+ * @left: then: slaves of no group before the place of @at
+ * @seen: then: slaves of the group so far, from its last head on
+ * @counts: then: @left counts, as the slave with the alias of @at was passed
  * @head: device number of the head at the last search, 0: there is none that may be used
  * @position: its ring position then, or that of the slave that is in the way
  * @cause: why there is none, EC_CAUSE_*; EC_CAUSE_NONE: the group is on the bus
@@ -40,6 +44,10 @@ struct ec_group {
 	bool fast;
 	struct ec_config **members;
 	unsigned int n_members;
+	const struct ec_slave *host;
+	u32 left;
+	u32 seen;
+	bool counts;
 	u64 head;
 	u32 position;
 	u32 cause;

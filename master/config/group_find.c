@@ -9,9 +9,45 @@
 #include "config.h"
 #include "group.h"
 
-static bool is_at_port(const struct ec_group *g, const struct ec_slave *s)
+/*
+ * The slave at whose port a group is known: that of its configuration, or the one which this means.
+ * It is found in the pass that marks, before the slaves behind it.
+ */
+static void begin_host(struct ec_group *g)
 {
-	return g->at && g->at->slave && g->at->slave->at[g->port] == s;
+	g->seen = 0;
+	g->host = g->at ? g->at->slave : NULL;
+	g->left = g->at ? g->at->position : 0;
+	g->counts = g->at && !g->at->alias;
+}
+
+static bool is_what_it_expects(const struct ec_config *c, const struct ec_slave *s)
+{
+	return s->info.vendor == c->vendor && s->info.product == c->product;
+}
+
+/* Is @s, a slave of no group, at the place of the host? */
+static bool is_at_place(struct ec_group *g, const struct ec_slave *s)
+{
+	g->counts |= s->alias == g->at->alias;
+	return g->counts && !g->left--;
+}
+
+/* Is @s the host of @g? It was marked. */
+static void look_for_host(struct ec_group *g, const struct ec_slave *s)
+{
+	const struct ec_config *at = g->at;
+	u8 mark = ec_setup_of(s)->group;
+	bool found;
+
+	if (!at || g->host)
+		return;
+	if (at->group)
+		found = mark == at->group->index + 1 && at->group->seen == at->position + 1u;
+	else
+		found = !mark && is_at_place(g, s);
+	if (found && is_what_it_expects(at, s))
+		g->host = s;
 }
 
 /* Is @s a head of @g, whether it may be used or not? */
@@ -23,14 +59,14 @@ static bool is_head(const struct ec_group *g, const struct ec_slave *s)
 	case EC_GROUP_BY_ID:
 		return s->identification == g->value;
 	default:
-		return is_at_port(g, s);
+		return g->host && g->host->at[g->port] == s;
 	}
 }
 
 /* The group of which @s is a head. Alias and identification count more than its port. */
-static const struct ec_group *headed_by(const struct ec_wanted *w, const struct ec_slave *s)
+static struct ec_group *headed_by(const struct ec_wanted *w, const struct ec_slave *s)
 {
-	const struct ec_group *at_port = NULL;
+	struct ec_group *at_port = NULL;
 
 	ec_for_each_group(g, w) {
 		if (!is_head(g, s))
@@ -40,6 +76,22 @@ static const struct ec_group *headed_by(const struct ec_wanted *w, const struct 
 		at_port = g;
 	}
 	return at_port;
+}
+
+static void mark_slave(struct ec_wanted *w, const struct ec_slave *s)
+{
+	const struct ec_slave *up = ec_graph_parent(s);
+	struct ec_setup *setup = ec_setup_of(s);
+	struct ec_group *head = headed_by(w, s);
+
+	setup->heads = head;
+	setup->group = head ? head->index + 1 : up ? ec_setup_of(up)->group : 0;
+	if (head)
+		head->seen = 0;
+	if (setup->group)
+		w->groups[setup->group - 1]->seen++;
+	ec_for_each_group(g, w)
+		look_for_host(g, s);
 }
 
 /**
@@ -53,19 +105,17 @@ static const struct ec_group *headed_by(const struct ec_wanted *w, const struct 
  */
 void ec_groups_mark(struct ec_wanted *w)
 {
-	const struct ec_group *g;
-
 	lockdep_assert_held(w->lock);
 	lockdep_assert_held(&w->bus->topo);
 	if (!w->n_groups)
 		return;
+	ec_for_each_group(g, w)
+		begin_host(g);
 	/* a slave is behind its parent in the order of the ring */
-	ec_for_each_slave(s, w->bus) {
-		const struct ec_slave *up = ec_graph_parent(s);
-
-		g = headed_by(w, s);
-		ec_setup_of(s)->group = g ? g->index + 1 : up ? ec_setup_of(up)->group : 0;
-	}
+	ec_for_each_slave(s, w->bus)
+		mark_slave(w, s);
+	ec_for_each_group(g, w)
+		g->host = NULL;
 }
 
 static bool is_member(const struct ec_group *g, const struct ec_slave *s)
@@ -114,7 +164,7 @@ static struct ec_slave *find_head(struct ec_group *g)
 	struct ec_slave *head = NULL, *second = NULL;
 
 	ec_for_each_slave(s, g->wanted->bus) {
-		if (headed_by(g->wanted, s) != g)
+		if (!is_member(g, s) || !ec_setup_of(s)->heads)
 			continue;
 		if (s == used)
 			return s;
@@ -138,7 +188,7 @@ static bool check_place(struct ec_group *g, const struct ec_slave *head)
 	if (g->at && !g->at->slave)
 		return no(g, head->position, "slave %s is absent, at whose port %u it has to be",
 			  g->at->name, g->port);
-	if (g->at && !is_at_port(g, head))
+	if (g->at && g->at->slave->at[g->port] != head)
 		return no(g, head->position, "slave %u is not at port %u of slave %u: connect it there",
 			  head->position, g->port, g->at->slave->position);
 	if (head->upstream)
@@ -155,7 +205,7 @@ static bool check_member(struct ec_group *g, const struct ec_config *c, struct e
 
 	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
 		return no(g, pos, "slave %u could not be read: see 'ethercat why'", pos);
-	if (s->info.vendor != c->vendor || s->info.product != c->product)
+	if (!is_what_it_expects(c, s))
 		return no(g, pos, "slave %u is 0x%08x/0x%08x, member %u is 0x%08x/0x%08x", pos,
 			  s->info.vendor, s->info.product, c->position, c->vendor, c->product);
 	if (serial && serial != s->info.serial)

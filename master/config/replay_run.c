@@ -245,7 +245,8 @@ int ec_replay_hold(struct ec_slave *s)
 		ec_slave_info(s, "returned; waits in PREOP for the application (%s)\n",
 			      EC_FLAG_HOLD);
 	}
-	held = READ_ONCE(c->replay.hold) == EC_HOLD_HELD;
+	/* what the application wrote meanwhile */
+	held = smp_load_acquire(&c->replay.hold) == EC_HOLD_HELD;
 	ec_apply_waits_for(s, held ? WAITS : NULL);
 	return held ? -EAGAIN : 0;
 }
@@ -281,7 +282,8 @@ int ec_replay_resume(struct ec_config *c, u32 hold)
 	spin_lock(&c->wanted->writes_lock);
 	held = hold && ec_replay_held(c) == hold;
 	if (held)
-		WRITE_ONCE(c->replay.hold, EC_HOLD_RESUMED);
+		/* what was written before */
+		smp_store_release(&c->replay.hold, EC_HOLD_RESUMED);
 	spin_unlock(&c->wanted->writes_lock);
 	if (!held)
 		return -ESTALE;

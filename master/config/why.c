@@ -36,12 +36,16 @@ bool ec_config_place(const struct ec_config *c, unsigned int *place)
 }
 
 /* Slaves of hot connect groups do not count: they come and go. */
-static u32 place_between_groups(const struct ec_config *c)
+static u32 place_between_groups(struct ec_config *c)
 {
 	const struct ec_bus *bus = c->wanted->bus;
-	unsigned int at = c->alias ? c->alias_at : 0, left = c->position;
+	unsigned int at = 0, left = c->position;
 
 	ec_bus_assert_stays(bus);
+	while (c->alias && at < bus->n_slaves &&
+	       (bus->slaves[at]->alias != c->alias || ec_setup_of(bus->slaves[at])->group))
+		at++;
+	c->alias_at = at;
 	for (; at < bus->n_slaves; at++)
 		if (!ec_setup_of(bus->slaves[at])->group && !left--)
 			return at;

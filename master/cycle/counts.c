@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * A slave of an optional group counts once it is in OP, and until its loss was seen. Before, from
- * SAFEOP on, it adds to the counters of the cycle some or all of what it will: more than expected
- * by up to that is complete as well, so that the others are not disturbed.
+ * A slave of an optional group counts once its worker has brought it to OP, or has failed to, and
+ * until its loss was seen. Before that it adds to the counters of the cycle nothing, some or all of
+ * what it will: more than expected by up to that is complete as well, so that the others are not
+ * disturbed. One that has failed counts, as with its FMMUs set it would hide the loss of another.
  */
+#include "../bus/slave.h"
 #include "../config/config.h"
 #include "../config/domain.h"
 #include "../config/why.h"
@@ -15,7 +17,14 @@ struct sums {
 	u32 spare;
 };
 
-/* What the shares of datagram @n add up to: of slaves that count, and of others on the bus */
+/* Does its worker bring the slave to OP, and has not failed so far? */
+static bool is_coming(const struct ec_config *c)
+{
+	return !(ec_config_status(c) & EC_STATUS_SC_OP) && ec_slave_busy(c->slave) &&
+	       READ_ONCE(c->slave->error) == EC_SLAVE_OK;
+}
+
+/* What the shares of datagram @n add up to: of slaves that count, and of those that will */
 static struct sums sum_shares(const struct ec_layout *l, unsigned int n, u32 *all)
 {
 	struct sums s = { 0 };
@@ -28,10 +37,12 @@ static struct sums sum_shares(const struct ec_layout *l, unsigned int n, u32 *al
 		if (share->dgram != n)
 			continue;
 		*all += share->wkc;
-		if (ec_config_status(share->config) & EC_STATUS_SC_OP)
-			s.expected += share->wkc;
-		else if (share->config->slave)
+		if (!share->config->slave)
+			continue;
+		if (is_coming(share->config))
 			s.spare += share->wkc;
+		else
+			s.expected += share->wkc;
 	}
 	return s;
 }
@@ -59,15 +70,17 @@ void ec_counts_update(struct ec_cycle *c)
 		now = sum_shares(l, i, &all);
 		now.expected += d->full - all;
 		WRITE_ONCE(d->expected, now.expected);
-		WRITE_ONCE(d->spare, now.spare);
+		/* after what is expected: a reader of the new spare sees that */
+		smp_store_release(&d->spare, now.spare);
 		of[d->domain].expected += now.expected;
 		of[d->domain].spare += now.spare;
 	}
 	ec_for_each_domain(d, c->wanted) {
 		i = d->index;
-		d->expected = of[i].expected;
+		WRITE_ONCE(d->expected, of[i].expected);
 		WRITE_ONCE(c->domains[i].expected, of[i].expected);
-		WRITE_ONCE(c->domains[i].spare, of[i].spare);
+		/* likewise */
+		smp_store_release(&c->domains[i].spare, of[i].spare);
 		WRITE_ONCE(c->shared->status->domains[i].expected, of[i].expected);
 	}
 }

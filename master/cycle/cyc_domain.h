@@ -42,7 +42,10 @@ struct ec_cyc_domain {
 
 static inline bool ec_cyc_domain_is_complete(const struct ec_cyc_domain *d, u32 wkc)
 {
-	return wkc - READ_ONCE(d->expected) <= READ_ONCE(d->spare);
+	/* before what is expected: what is no spare any more is expected already */
+	u32 spare = smp_load_acquire(&d->spare);
+
+	return wkc - READ_ONCE(d->expected) <= spare;
 }
 
 #endif

@@ -21,8 +21,8 @@ struct ec_wanted;
  * @before: the same without what incomplete replies of that receive have written
  * @logical: logical address
  * @len: bytes
- * @expected: working counter if every slave processes it that does so now: slaves of optional
- *	groups count from OP on; written by counts.c while the cycle runs
+ * @expected: working counter if every slave processes it that has to now: slaves of optional
+ *	groups may be absent; written by counts.c while the cycle runs
  * @spare: so much more is complete as well: of slaves of such groups that are not yet in OP
  * @full: working counter with all slaves
  * @first_copy: first area that is copied into it, in struct ec_layout.areas
@@ -56,7 +56,10 @@ struct ec_cyc_dgram {
 /* Did every slave process it that does so now? */
 static inline bool ec_cyc_is_complete(const struct ec_cyc_dgram *d, u16 wkc)
 {
-	return (u16)(wkc - READ_ONCE(d->expected)) <= READ_ONCE(d->spare);
+	/* before what is expected: what is no spare any more is expected already */
+	u16 spare = smp_load_acquire(&d->spare);
+
+	return (u16)(wkc - READ_ONCE(d->expected)) <= spare;
 }
 
 /* It has inputs only, and their last values are in the image. */

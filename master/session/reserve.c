@@ -255,10 +255,9 @@ static void inherit(struct ec_sessions *ss)
 	s->wanted.before = NULL;
 	use_next(ss);
 	to_preop(ss);
-	ec_for_each_config(c, &s->wanted) {
+	ec_for_each_config(c, &s->wanted)
 		ec_session_detach(c);
-		ec_session_attach_one(s, c);
-	}
+	ec_session_attach_all(s);
 }
 
 static void end(struct ec_sessions *ss)

@@ -65,21 +65,14 @@ static struct ec_slave *find_at_place(const struct ec_session *s, const struct e
 	return x;
 }
 
-/**
- * ec_session_attach_one() - connect a configuration with the slave at its place
- * @s: session, not active
- * @c: configuration
- *
- * Context: Process, session lock held. May sleep.
- */
-void ec_session_attach_one(struct ec_session *s, struct ec_config *c)
+/* Connect a configuration of a session that is not active with the slave at its place. */
+static void attach_one(struct ec_session *s, struct ec_config *c)
 {
 	struct ec_slave *slave;
 
 	lockdep_assert_held(s->wanted.lock);
 	if (c->group)
 		return;
-	ec_config_locate(c);
 	slave = find_at_place(s, c);
 	if (slave == c->slave) {
 		ec_slave_unref(slave);
@@ -146,26 +139,11 @@ static void detach_lost(struct ec_session *s)
 	}
 }
 
-/*
- * The order in which configurations get slaves: what is connected at the port of a slave may be a
- * group, which counts for no place, so the slaves at whose ports groups are known come first.
- */
-enum turn { SAME, HOSTS, ALL };
-
-static bool is_host(const struct ec_config *c)
+static void locate(struct ec_session *s)
 {
-	ec_for_each_group(g, c->wanted)
-		if (g->by == EC_GROUP_BY_PORT && g->at == c)
-			return true;
-	return false;
-}
-
-static enum turn first_turn(const struct ec_wanted *w)
-{
-	ec_for_each_group(g, w)
-		if (g->by == EC_GROUP_BY_PORT)
-			return SAME;
-	return ALL;
+	ec_session_mark(s);
+	ec_for_each_config(c, &s->wanted)
+		ec_config_locate(c);
 }
 
 /*
@@ -174,21 +152,21 @@ static enum turn first_turn(const struct ec_wanted *w)
  * again at any position, or a new one at its place is used instead. A slave that was connected all
  * the time never gets the outputs of another one.
  */
-static void reattach(struct ec_session *s, enum turn turn)
+static void reattach(struct ec_session *s)
 {
 	struct ec_slave *slave;
 	unsigned int alike = 0;
 
+	detach_lost(s);
 	ec_for_each_config(c, &s->wanted) {
 		slave = may_take(c) && c->lost.text[0] ? find_same(s, c) : NULL;
 		if (slave)
 			ec_session_give(s, c, slave);
 	}
+	locate(s);
 	ec_for_each_config(c, &s->wanted)
 		c->lost.waits = may_take(c) && c->lost.text[0];
 	ec_for_each_config(c, &s->wanted) {
-		if (turn == SAME || (turn == HOSTS && !is_host(c)))
-			continue;
 		slave = may_take(c) ? find_new(s, c) : NULL;
 		if (slave && ec_session_give(s, c, slave) && c->lost.waits)
 			alike += has_alike(s, c);
@@ -251,7 +229,8 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 	if (IS_ERR(c))
 		return c;
 	ec_session_mark(s);
-	ec_session_attach_one(s, c);
+	ec_config_locate(c);
+	attach_one(s, c);
 	ret = ec_config_begin(c);
 	if (!ret) {
 		ec_replay_adopt(c);
@@ -262,20 +241,6 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 	return ERR_PTR(ret);
 }
 
-static void locate(struct ec_session *s)
-{
-	ec_session_mark(s);
-	ec_for_each_config(c, &s->wanted)
-		ec_config_locate(c);
-}
-
-static void attach_each(struct ec_session *s, enum turn turn)
-{
-	ec_for_each_config(c, &s->wanted)
-		if (turn == ALL || (turn == HOSTS && is_host(c)))
-			ec_session_attach_one(s, c);
-}
-
 /**
  * ec_session_attach_all() - attach the slaves that are on the bus now
  * @s: session
@@ -284,17 +249,13 @@ static void attach_each(struct ec_session *s, enum turn turn)
  */
 void ec_session_attach_all(struct ec_session *s)
 {
-	enum turn turn;
-
 	lockdep_assert_held(s->wanted.lock);
-	if (s->wanted.active)
-		detach_lost(s);
-	for (turn = first_turn(&s->wanted); turn <= ALL; turn++) {
+	if (s->wanted.active) {
+		reattach(s);
+	} else {
 		locate(s);
-		if (s->wanted.active)
-			reattach(s, turn);
-		else
-			attach_each(s, turn);
+		ec_for_each_config(c, &s->wanted)
+			attach_one(s, c);
 	}
 	ec_session_attach_groups(s);
 }

@@ -10,7 +10,6 @@ struct ec_group;
 struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position, u32 vendor,
 				 u32 product);
 void ec_session_begin_active(struct ec_session *s);
-void ec_session_attach_one(struct ec_session *s, struct ec_config *c);
 void ec_session_attach_all(struct ec_session *s);
 void ec_session_attach(struct ec_sessions *ss);
 struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 position, u32 vendor,

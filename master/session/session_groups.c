@@ -103,24 +103,21 @@ void ec_session_attach_groups(struct ec_session *s)
 	ec_for_each_group(g, &s->wanted)
 		attach_group(s, g);
 	ec_for_each_group(g, &s->wanted)
-		if (g->fast && g->at->slave)
+		if (g->fast && g->at->slave && ec_session_owns(g->at))
 			ec_ports_set_fast(g->at->slave, fast_ports(&s->wanted, g->at));
 }
 
 /**
  * ec_session_drop_groups() - free the hot connect groups
- * @s: session, with the slaves of its configurations
+ * @s: session
  *
  * Context: Process, session lock held.
  */
 void ec_session_drop_groups(struct ec_session *s)
 {
 	lockdep_assert_held(s->wanted.lock);
-	ec_for_each_group(g, &s->wanted) {
-		if (g->fast && g->at->slave && ec_session_owns(g->at))
-			ec_ports_set_fast(g->at->slave, 0);
+	ec_for_each_group(g, &s->wanted)
 		ec_group_free(g);
-	}
 	s->wanted.n_groups = 0;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* A configuration gets a slave, and loses it. */
+#include "../bus/ports.h"
 #include "../config/replay_run.h"
 #include "../mailbox/emerg.h"
 #include "request.h"
@@ -42,6 +43,7 @@ void ec_session_detach(struct ec_config *c)
 	}
 	c->slave = NULL;
 	ec_slave_changed(slave);
+	ec_ports_set_fast(slave, 0);
 	setup = ec_setup_of(slave);
 	ec_emerg_set(&slave->mbox, NULL);
 	ec_mbox_keep_voe(&slave->mbox, false);

@@ -3,17 +3,19 @@
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 
-/* x1 and y1 are heads of tools with an identification, z1 has none */
+/* x1 and y1 are heads of tools with an identification, y1 is slow to PREOP, z1 has none */
 static const char text[] =
 	"segment seed=7 response=100us transition=1ms\n"
 	"slave hub EK1100\n"
 	"branch hub 2\nslave f1 drive in=8 out=8\nslave f2 drive in=8 out=8\n"
 	"branch none\nslave x1 drive in=8 out=8 id=6 serial=61\nslave x2 drive in=8 out=8\n"
-	"branch none\nslave y1 drive in=8 out=8 id=6 serial=62\nslave y2 drive in=8 out=8\n"
+	"branch none\nslave y1 drive in=8 out=8 id=6 serial=62"
+	" transition_preop=40ms\nslave y2 drive in=8 out=8\n"
 	"branch none\nslave z1 drive in=8 out=8\nslave z2 EL1859\n"
-	"branch none\nslave v EK1100\nbranch v 2\nslave v1 drive in=8 out=8\n";
+	"branch none\nslave v EK1100\nslave w EK1100\n"
+	"branch v 2\nslave v1 drive in=8 out=8\nbranch w 2\nslave w1 drive in=8 out=8\n";
 
-enum { HUB, F1, F2, X1, X2, Y1, Y2, Z1, Z2, V, V1 };
+enum { HUB, F1, F2, X1, X2, Y1, Y2, Z1, Z2, V, W, V1, W1 };
 
 #define N	3	/* connected at first */
 
@@ -356,6 +358,27 @@ static void groups_by_port(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, in_op(t, second));
 }
 
+/* An optional slave that stays below OP does not hide the loss of another one. */
+static void groups_stuck_member_hides_nothing(struct kunit *test)
+{
+	struct tools *t = with_tool(test, NULL, 0, 0);
+	struct bus *b = t->c->b;
+	u32 i;
+
+	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, X1, 0, EC_AL_OP, 0x0017);
+	bus_command(b, "plug hub.1 x1.0");
+	wait_slaves(t, N + 2);
+	cyc_run(t->c, 3000);
+	KUNIT_EXPECT_FALSE(test, in_op(t, t->head));
+	KUNIT_EXPECT_TRUE(test, in_op(t, t->head + 1));
+	/* it failed: the domain may be complete or not, but not without the other one */
+	i = t->incomplete;
+	bus_command(b, "unplug f1.1");
+	cyc_run(t->c, 500);
+	KUNIT_EXPECT_NE(test, cyc_state(t->c, 0)->wc_state, EC_STATUS_WC_COMPLETE);
+	KUNIT_EXPECT_GT(test, t->incomplete, i + 400u);
+}
+
 /* Its port is opened at once, and again and again after losses. */
 static void groups_fast(struct kunit *test)
 {
@@ -380,42 +403,56 @@ static void groups_fast(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("has lost its link 3 times") - lines, 0u);
 }
 
+/* The coupler at a position, with a group of one drive at its port 2 */
+static u32 add_host(struct tools *t, u16 position, const char *group)
+{
+	struct ec_ioc_slave_config host = {
+		.position = position, .vendor_id = t->info[HUB].vendor,
+		.product_code = t->info[HUB].product,
+	};
+
+	KUNIT_ASSERT_EQ(t->c->b->test, ec_ioc(&t->c->b->app, EC_IOC_SLAVE_CONFIG, &host), 0);
+	return add_drive(t, add_group(t, group, EC_GROUP_BY_PORT, 0, host.index, 2, 0), 0, 1);
+}
+
+static u32 add_drive_at(struct tools *t, u16 position)
+{
+	struct ec_ioc_slave_config drive = {
+		.position = position, .vendor_id = t->info[F1].vendor,
+		.product_code = t->info[F1].product,
+	};
+
+	KUNIT_ASSERT_EQ(t->c->b->test, ec_ioc(&t->c->b->app, EC_IOC_SLAVE_CONFIG, &drive), 0);
+	cyc_map(t->c, drive.index, 2, 0);
+	cyc_map(t->c, drive.index, 3, 0);
+	return drive.index;
+}
+
 /*
- * A coupler with a group at its port, and behind that, in the order of the ring, drives like the
- * one of the group: all lose their power, and with it their addresses. Each gets its own back.
+ * Two couplers, each with a group at its port, and behind them in the ring drives like those of the
+ * groups: all lose their power, and with it their addresses. Each gets its own back.
  */
 static void groups_by_port_without_power(struct kunit *test)
 {
-	static const char * const off[] = { "off v", "off v1", "off f1", "off f2" };
-	static const char * const on[] = { "on f2", "on f1", "on v1", "on v" };
-	struct tools *t = begin(test, "plug hub.1 v.0", N + 2);
-	struct ec_ioc_slave_config v = { .position = 1, .vendor_id = t->info[HUB].vendor,
-					 .product_code = t->info[HUB].product };
+	static const char * const off[] = { "off v", "off w", "off v1", "off w1", "off f1", "off f2" };
+	static const char * const on[] = { "on f2", "on f1", "on v1", "on w1", "on w", "on v" };
+	struct tools *t = begin(test, "plug hub.1 v.0", N + 4);
 	struct bus *b = t->c->b;
-	u32 i, k, drive[2];
+	u32 i, k, config[4];
 
-	/* coupler at position 1, drives at 2 and 3: that of the group does not count */
-	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &v), 0);
-	t->head = add_drive(t, add_group(t, "left", EC_GROUP_BY_PORT, 0, v.index, 2, 0), 0, 1);
-	for (i = 0; i < 2; i++) {
-		struct ec_ioc_slave_config f = { .position = 2 + i,
-						 .vendor_id = t->info[F1].vendor,
-						 .product_code = t->info[F1].product };
-
-		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVE_CONFIG, &f), 0);
-		drive[i] = f.index;
-		cyc_map(t->c, drive[i], 2, 0);
-		cyc_map(t->c, drive[i], 3, 0);
-	}
+	/* the ring is hub, v, w, w1, v1, f1, f2 */
+	config[1] = add_host(t, 1, "left");
+	config[0] = add_host(t, 2, "right");
+	config[2] = add_drive_at(t, 3);
+	config[3] = add_drive_at(t, 4);
 	run(t);
 	for (k = 0; k < 3; k++) {
-		for (i = 0; i < 3000 && !(in_op(t, t->head) && in_op(t, drive[0]) &&
-					  in_op(t, drive[1])); i++)
+		for (i = 0; i < 5000 && !(in_op(t, config[0]) && in_op(t, config[1]) &&
+					  in_op(t, config[2]) && in_op(t, config[3])); i++)
 			cyc_run(t->c, 1);
-		KUNIT_ASSERT_LT(test, i, 3000u);
-		KUNIT_EXPECT_EQ(test, bus_config(b, t->head)->slave->position, 2);
-		KUNIT_EXPECT_EQ(test, bus_config(b, drive[0])->slave->position, 3);
-		KUNIT_EXPECT_EQ(test, bus_config(b, drive[1])->slave->position, 4);
+		KUNIT_ASSERT_LT(test, i, 5000u);
+		for (i = 0; i < 4; i++)
+			KUNIT_EXPECT_EQ(test, bus_config(b, config[i])->slave->position, 3 + i);
 		for (i = 0; i < ARRAY_SIZE(off); i++)
 			bus_command(b, off[i]);
 		cyc_run(t->c, 1000);
@@ -502,6 +539,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(groups_twins),
 	KUNIT_CASE(groups_by_port),
 	KUNIT_CASE(groups_by_port_without_power),
+	KUNIT_CASE(groups_stuck_member_hides_nothing),
 	KUNIT_CASE(groups_fast),
 	KUNIT_CASE(groups_pinned_and_serial),
 	KUNIT_CASE(groups_refused),
