@@ -224,5 +224,5 @@ const struct cmd cmd_log = {
 		"phase_error_ns, rate_ppb, losses), reserved (pid), activated (pid, domains, bytes,\n"
 		"datagrams), deactivated, released, detached, taken_over (pid), debug_level (level),\n"
 		"configuration (alias, position, cause, vendor_id, product_code, found_vendor_id,\n"
-		"found_product_code), configurations (more)",
+		"found_product_code), configurations (more), group (group, cause, mandatory, members)",
 };

@@ -8,7 +8,8 @@ CMD(EC_IOC_VERSION, ec_ioc_version, 0)
 CMD(EC_IOC_REASON, ec_ioc_reason, 0)
 CMD(EC_IOC_MASTER, ec_ioc_master, 0)
 CMD(EC_IOC_DEVICE, ec_ioc_device, 0)
-CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), RSV2(ec_ioc_slave))
+CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), RSV2(ec_ioc_slave),
+	OLDEST(ec_ioc_slave, dc_odd))
 CMD(EC_IOC_SLAVE_NAMES, ec_ioc_slave_names, 0, SLAVE(ec_ioc_slave_names), RSV1(ec_ioc_slave_names))
 CMD(EC_IOC_SLAVE_WHY, ec_ioc_slave_why, 0, SHOW_SLAVE(ec_ioc_slave_why), RSV1(ec_ioc_slave_why))
 CMD(EC_IOC_PORT, ec_ioc_port, 0, SHOW_SLAVE(ec_ioc_port), RSV1(ec_ioc_port),
@@ -19,7 +20,8 @@ CMD(EC_IOC_PDO, ec_ioc_pdo, 0, SLAVE(ec_ioc_pdo), RSV2(ec_ioc_pdo))
 CMD(EC_IOC_PDO_ENTRY, ec_ioc_pdo_entry, 0, SLAVE(ec_ioc_pdo_entry), RSV2(ec_ioc_pdo_entry))
 CMD(EC_IOC_SII, ec_ioc_sii, 0, SLAVE(ec_ioc_sii), OUT(ec_ioc_sii, EC_MAX_SII_BYTES),
 	RSV1(ec_ioc_sii))
-CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config), RSV2(ec_ioc_config))
+CMD(EC_IOC_CONFIG, ec_ioc_config, 0, SHOW_CONFIG(ec_ioc_config), RSV2(ec_ioc_config),
+	OLDEST(ec_ioc_config, device))
 CMD(EC_IOC_CONFIG_SM, ec_ioc_config_sm, 0, SHOW_CONFIG(ec_ioc_config_sm), RSV1(ec_ioc_config_sm))
 CMD(EC_IOC_CONFIG_PDO, ec_ioc_config_pdo, 0, SHOW_CONFIG(ec_ioc_config_pdo),
 	RSV1(ec_ioc_config_pdo))
@@ -44,7 +46,7 @@ CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies),
 CMD(EC_IOC_EVENTS, ec_ioc_events, 0, FLAGS(EC_EVENTS_FLAG_NEW))
 CMD(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain))
 CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
-	RSV1(ec_ioc_domain_fmmu))
+	RSV1(ec_ioc_domain_fmmu), OLDEST(ec_ioc_domain_fmmu, offset))
 CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
 	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
 CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,

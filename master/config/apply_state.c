@@ -51,7 +51,8 @@ static void note_cause(struct ec_slave *s, u8 state, int err)
  * @state: AL state
  * @r: result of the way there; a failure that is reported already is not reported again
  *
- * Nothing is reported of a way that was aborted, or to a state that is not requested any more.
+ * Nothing is reported of a way that was aborted, of a slave that is not in the list any more, or
+ * to a state that is not requested any more.
  *
  * Context: The slave's worker.
  * Return: @r, with a failure marked as reported if it is.
@@ -60,7 +61,7 @@ struct ec_result ec_apply_report(struct ec_slave *s, u8 state, struct ec_result 
 {
 	const struct ec_setup *setup = ec_setup_of(s);
 
-	if (!r.err || (!r.reported && is_aborted(r.err)))
+	if (!r.err || (!r.reported && (is_aborted(r.err) || READ_ONCE(s->stop.gone))))
 		return r;
 	/* another state is asked for meanwhile: this says nothing of the way there */
 	if (!r.reported && setup->heading == ec_slave_wanted(s)) {

@@ -29,7 +29,7 @@ teardown() {
 	run ethercat why
 	echo "$output"
 	[ "$status" = 1 ]
-	[[ $output == "Fault: no slave behind port 1 of slave 3 (drive), link down; lost: slave "* ]]
+	[[ $output == "Fault: behind port 1 of slave 3 (drive): "*", the first: slave 4 (EL1008); link down"* ]]
 	[[ $output == *"Affected: 0:4, 0:5, 0:6, 0:7, 0:8, 0:9"$'\n'* ]]
 	# skipped cycles of a busy guest are a warning
 	[[ $output == *$'\n'"1 fault"*". Checked: "* ]]

@@ -107,6 +107,12 @@ static void fill(unsigned long nr, uint64_t *arg, unsigned int k)
 		((struct ec_ioc_config_flag *)arg)->index = 1;
 		((struct ec_ioc_config_flag *)arg)->flag_pos = k % 2;
 		break;
+	case EC_IOC_CONFIG_GROUP:
+		((struct ec_ioc_config_group *)arg)->index = APP_CONFIGS - k % 2;
+		break;
+	case EC_IOC_CONFIG_WRITE:
+		((struct ec_ioc_config_write *)arg)->write_pos = k % 2;
+		break;
 	case EC_IOC_CONFIG_IP:
 		((struct ec_ioc_sc_ip *)arg)->config = k % 2;
 		break;

@@ -74,10 +74,13 @@ static int configure(void)
 	       ecrt_slave_config_reg_pdo_entry_pos(sc, 1, 0, 0, domain, &bit) < 0;
 }
 
+static ec_reg_request_t *written;	/* before OP, so that it is recorded */
+
 /* Much to look at, of slaves that are not there. */
 static int configure_more(void)
 {
 	static const uint8_t value[4096];
+	static const ec_group_info_t group = { .name = "g", .by = EC_GROUP_ID, .value = 9 };
 	struct in_addr address = { .s_addr = 0x0100000a };
 
 	for (uint16_t i = 1; i < APP_CONFIGS; i++) {
@@ -95,7 +98,9 @@ static int configure_more(void)
 		    ecrt_slave_config_eoe_ip_address(more, address))
 			return -1;
 	}
-	return 0;
+	written = ecrt_slave_config_create_reg_request(sc, 1);
+	return !written || ecrt_master_group(master, &group) ||
+	       !ecrt_master_group_config(master, 0, 0, 1, 2);
 }
 
 int updates(unsigned int count)
@@ -211,6 +216,8 @@ int cycles(unsigned int count, int by_kernel)
 		fprintf(stderr, "no cycle\n");
 		return 2;
 	}
+	/* user memory of the controller */
+	ecrt_reg_request_write(written, 0x0F80, 1);
 	while (well < 100) {
 		well = one_cycle(&at, by_kernel, cost) ? well + 1 : 0;
 		if (now_ns() > end) {
