@@ -32,6 +32,7 @@
  * @emergency: -e
  * @force: -f
  * @reset: -r
+ * @retry: --retry: ports that wait are tried at once
  * @json: -j
  * @verbosity: -1 after -q, 1 after -v
  * @boot: --boot

@@ -519,6 +519,8 @@ END
 	[ "$(log_of rescan --wait)" = "rescan 0" ]
 	[ "$(log_of slaves --retry 2>/dev/null | grep rescan)" = "rescan 0" ]
 	[ -z "$(log_of slaves | grep rescan)" ]
+	run ethercat slaves --retry
+	[ "$status" -eq 0 ]
 	run ethercat rescan --wait=0
 	[ "$status" -eq 1 ]
 	[[ $output == *"has not finished after 0 s"* ]]
