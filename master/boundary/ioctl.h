@@ -48,6 +48,8 @@ int ec_refuse(struct ec_call *call, int err, const char *fmt, ...) __printf(3, 4
 int ec_ioc_limit(struct ec_call *call, int ret);
 int ec_ioc_get_slave(struct ec_call *call, const struct ec_ioc_address *address);
 int ec_ioc_lock_session(struct ec_call *call);
+int ec_ioc_copy_out(struct ec_call *call, const void *from, u32 size);
+int ec_ioc_wait_pdos(struct ec_call *call, struct ec_slave *slave);
 int ec_ioc_pause(struct ec_call *call);
 void ec_ioc_record(struct ec_call *call, const struct ec_startup *what);
 int ec_ioc_refuse_reserved(struct ec_call *call);

@@ -96,19 +96,6 @@ int ec_ioc_create_domain(struct ec_call *call)
 	return 0;
 }
 
-/* A configuration starts with the PDOs of its slave: wait until they are read. */
-static void wait_pdos(struct ec_call *call, const struct ec_ioc_slave_config *i)
-{
-	struct ec_slave *slave;
-
-	slave = ec_session_find(&call->master->sessions, i->alias, i->position, i->vendor_id,
-				i->product_code);
-	if (!slave)
-		return;
-	ec_bus_wait_slave(slave);
-	ec_slave_unref(slave);
-}
-
 static int config_failed(struct ec_call *call, const struct ec_ioc_slave_config *i,
 			 const struct ec_session *s, int ret)
 {
@@ -145,21 +132,38 @@ static int ioctl_app_slave_config(struct ec_call *call, struct ec_ioc_slave_conf
 	return 0;
 }
 
+/**
+ * ec_ioc_wait_pdos() - a configuration starts with the PDOs of its slave: wait until they are read
+ * @call: command, with the lock of the sessions held, which is released meanwhile
+ * @slave: slave with a reference, which is dropped; NULL: there is none to wait for
+ *
+ * Context: Process. May sleep.
+ * Return: 0, the lock is held again; or as ec_ioc_lock_session().
+ */
+int ec_ioc_wait_pdos(struct ec_call *call, struct ec_slave *slave)
+{
+	if (!slave)
+		return 0;
+	ec_sessions_unlock(&call->master->sessions);
+	ec_bus_wait_slave(slave);
+	ec_slave_unref(slave);
+	return ec_ioc_lock_session(call);
+}
+
 int ec_ioc_slave_config(struct ec_call *call)
 {
 	struct ec_master *m = call->master;
+	struct ec_slave *slave = NULL;
 	int ret = ec_ioc_lock_session(call);
 
 	if (ret)
 		return ret;
 	/* a candidate session: the running session has the slaves */
-	if (!call->session->wanted.active && call->session != m->sessions.candidate) {
-		ec_sessions_unlock(&m->sessions);
-		wait_pdos(call, call->arg);
-		ret = ec_ioc_lock_session(call);
-		if (ret)
-			return ret;
-	}
+	if (!call->session->wanted.active && call->session != m->sessions.candidate)
+		slave = ec_session_find(call->session, call->arg);
+	ret = ec_ioc_wait_pdos(call, slave);
+	if (ret)
+		return ret;
 	ret = ioctl_app_slave_config(call, call->arg);
 	ec_sessions_unlock(&m->sessions);
 	return ret;

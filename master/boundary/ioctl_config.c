@@ -97,8 +97,16 @@ int ec_ioc_config_entry(struct ec_call *call)
 	return 0;
 }
 
-/* Copy in pieces, up to the size of the buffer, with pauses. Return: as ec_ioc_pause(). */
-static int copy_pieces(struct ec_call *call, const void *from, u32 size)
+/**
+ * ec_ioc_copy_out() - copy to the buffer of a command in pieces, up to its size, with pauses
+ * @call: command, in a show section
+ * @from: of what is shown
+ * @size: bytes
+ *
+ * Context: Process. May sleep.
+ * Return: 0 within the same show section, or as ec_ioc_pause().
+ */
+int ec_ioc_copy_out(struct ec_call *call, const void *from, u32 size)
 {
 	u32 pos;
 	int ret;
@@ -145,7 +153,7 @@ int ec_ioc_config_sdo(struct ec_call *call)
 	i->sdo_index = u->index;
 	i->subindex = u->sub;
 	i->size = u->size;
-	return copy_pieces(call, u->data, u->size);
+	return ec_ioc_copy_out(call, u->data, u->size);
 }
 
 int ec_ioc_config_idn(struct ec_call *call)
@@ -160,7 +168,7 @@ int ec_ioc_config_idn(struct ec_call *call)
 	i->drive = u->sub;
 	i->state = EC_TRANSITION_FROM(u->transition);
 	i->size = u->size;
-	return copy_pieces(call, u->data, u->size);
+	return ec_ioc_copy_out(call, u->data, u->size);
 }
 
 int ec_ioc_config_flag(struct ec_call *call)

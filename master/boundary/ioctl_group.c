@@ -98,19 +98,13 @@ int ec_ioc_group_config(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	/* a configuration starts with the PDOs of its slave: wait until they are read */
 	if (!call->session->wanted.active && call->session != m->sessions.candidate &&
 	    i->group < call->session->wanted.n_groups)
 		slave = ec_session_find_member(call->session, group_at(call->session, i->group),
 					       i->member);
-	if (slave) {
-		ec_sessions_unlock(&m->sessions);
-		ec_bus_wait_slave(slave);
-		ec_slave_unref(slave);
-		ret = ec_ioc_lock_session(call);
-		if (ret)
-			return ret;
-	}
+	ret = ec_ioc_wait_pdos(call, slave);
+	if (ret)
+		return ret;
 	ret = add_member(call, i);
 	ec_sessions_unlock(&m->sessions);
 	return ret;

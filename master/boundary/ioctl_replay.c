@@ -10,7 +10,6 @@
 #include "../wire/soe.h"
 
 #define WALK	64	/* list entries at once */
-#define PIECE	4096	/* bytes to copy at once */
 
 /* of an entry, for programs */
 static const u8 kinds[] = {
@@ -132,7 +131,6 @@ int ec_ioc_config_write(struct ec_call *call)
 	struct ec_ioc_config_write *i = call->arg;
 	const struct ec_startup *u = NULL;
 	int ret = find_write(call, i->write_pos, &u);
-	u32 pos, size;
 
 	if (ret)
 		return ret;
@@ -144,12 +142,5 @@ int ec_ioc_config_write(struct ec_call *call)
 	i->total = call->config->replay.n;
 	i->forgotten = call->config->replay.forgotten;
 	i->size = u->write & EC_WRITE_DROPPED ? 0 : u->size;
-	size = min(i->size, call->size);
-	for (pos = 0; pos < size; pos += PIECE) {
-		ret = pos ? ec_ioc_pause(call) : 0;
-		if (ret)
-			return ret;
-		memcpy(call->data + pos, u->data + pos, min_t(u32, size - pos, PIECE));
-	}
-	return 0;
+	return ec_ioc_copy_out(call, u->data, i->size);
 }

@@ -1,38 +1,48 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/nospec.h>
 #include <linux/slab.h>
 #include "absent.h"
 #include "known.h"
 #include "slave.h"
 
-/* Where does the way to it break? False: nothing is known of it, or another slave is present. */
-static bool absent_root(struct ec_bus *bus, struct ec_lost *l, unsigned int n_slaves)
+#define NOWHERE	U64_MAX	/* root of a slave of whose place nothing is known */
+
+/* Where does the way to @l break? As for what was lost with it, or later. */
+static u64 find_root(const struct ec_bus *bus, const struct ec_lost *l, unsigned int n_slaves,
+		     u8 *port)
 {
 	const struct ec_lost *up = l;
-	const struct ec_slave *s;
 	unsigned int i;
 
+	for (i = 0; up && i <= bus->known.n_lost; i++) {
+		bool found = up->rooted == bus->lists;
+		u64 root = found ? up->root : up->up;
+		const struct ec_slave *s = ec_known_slave(bus, root);
+
+		*port = found ? up->root_port : up->up_port;
+		if (root == NOWHERE || (!root && n_slaves))
+			return NOWHERE;
+		/* another slave is there */
+		if (s && (*port >= EC_MAX_PORT || s->at[*port]))
+			return NOWHERE;
+		if (s || !root)
+			return root;
+		up = ec_known_lost(bus, root);
+	}
+	return NOWHERE;
+}
+
+/* Is it known where the way to it breaks, and is it of interest? */
+static bool absent_root(struct ec_bus *bus, struct ec_lost *l, unsigned int n_slaves)
+{
 	lockdep_assert_held_write(&bus->topo);
 	l->rooted = 0;
 	if (l->forgotten || !(l->vendor || l->product))
 		return false;
-	/* what was lost with it, or later */
-	for (i = 0; i <= bus->known.n_lost; i++) {
-		l->root = up->rooted == bus->lists ? up->root : up->up;
-		l->root_port = up->rooted == bus->lists ? up->root_port : up->up_port;
-		if (!l->root && n_slaves)
-			return false;
-		s = ec_known_slave(bus, l->root);
-		if (s && (l->root_port >= EC_MAX_PORT || s->at[l->root_port]))
-			return false;
-		if (s || !l->root) {
-			l->rooted = bus->lists;
-			return true;
-		}
-		up = ec_known_lost(bus, l->root);
-		if (!up)
-			return false;
-	}
-	return false;
+	l->root = find_root(bus, l, n_slaves, &l->root_port);
+	/* for those that were lost with it */
+	l->rooted = bus->lists;
+	return l->root != NOWHERE;
 }
 
 /* The entry of its port; NULL: there are too many. */
@@ -125,5 +135,7 @@ void ec_absent_forget(struct ec_bus *bus)
 void ec_absent_get(const struct ec_bus *bus, unsigned int index, struct ec_absent *a)
 {
 	ec_bus_assert_stays(bus);
-	*a = index < bus->known.n_absent ? bus->known.absent[index] : (struct ec_absent){ 0 };
+	*a = (struct ec_absent){ 0 };
+	if (index < bus->known.n_absent)
+		*a = bus->known.absent[array_index_nospec(index, bus->known.n_absent)];
 }

@@ -79,7 +79,7 @@ struct ec_bus {
 	bool down;
 	/** @guarded: process data run: ports behind which nothing is known are closed */
 	bool guarded;
-	/** @regroup: hot connect groups are to be looked for, as an identification was read */
+	/** @regroup: hot connect groups are to be looked for, as their slaves may have changed */
 	bool regroup;
 	/** @retry: ports that wait after losses or a trial without reply are tried at once */
 	bool retry;

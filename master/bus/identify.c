@@ -42,12 +42,18 @@ static bool asks_by_al(const struct ec_slave *s)
 	return s->general.flags & EC_SII_FLAG_ID_AL && READ_ONCE(s->al_status) == EC_AL_PREOP;
 }
 
+/* Registers are no memory: the read of some changes them. */
+static bool has_word(const struct ec_slave *s)
+{
+	return s->general.flags & EC_SII_FLAG_ID_MEM && s->general.id_address >= EC_REG_DIGITAL_OUT;
+}
+
 static void identify_add(struct identify *id, struct ec_slave *s)
 {
 	struct asked *a = &id->list[id->n];
 
 	a->by_al = asks_by_al(s);
-	if (!a->by_al && !(s->general.flags & EC_SII_FLAG_ID_MEM))
+	if (!a->by_al && !has_word(s))
 		return;
 	a->slave = s;
 	WRITE_ONCE(s->identified, true);

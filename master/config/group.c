@@ -162,6 +162,24 @@ void ec_group_drop(struct ec_config *c)
 }
 
 /**
+ * ec_groups_wait() - is a group connected that is not used because of one of its slaves?
+ * @w: what an application configures
+ *
+ * The slave may leave BOOT, or a host may come, without another slave in the list.
+ *
+ * Context: Process, lock of the session held.
+ * Return: whether there is one.
+ */
+bool ec_groups_wait(const struct ec_wanted *w)
+{
+	lockdep_assert_held(w->lock);
+	ec_for_each_group(g, w)
+		if (g->cause == EC_CAUSE_GROUP)
+			return true;
+	return false;
+}
+
+/**
  * ec_group_differs() - are groups of two sessions not the same?
  * @a: one
  * @b: the other

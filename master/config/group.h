@@ -70,6 +70,8 @@ static inline bool ec_group_is_optional(const struct ec_group *g)
 
 /* group_find.c */
 void ec_groups_mark(struct ec_wanted *w);
+bool ec_groups_wait(const struct ec_wanted *w);
+u32 ec_groups_place(const struct ec_wanted *w, u16 alias, u16 position, u32 *alias_at);
 bool ec_group_find(struct ec_group *g, struct ec_slave **found);
 
 #endif

@@ -118,6 +118,35 @@ void ec_groups_mark(struct ec_wanted *w)
 		g->host = NULL;
 }
 
+/**
+ * ec_groups_place() - the ring position that alias and offset mean between hot connect groups
+ * @w: what an application configures, with groups; they are marked
+ * @alias: alias of a slave of no group, 0: @position counts from the main device on
+ * @position: slaves of no group after that one
+ * @alias_at: result: ring position of the first one with @alias; the number of slaves: none has
+ *
+ * Slaves of groups do not count: they come and go.
+ *
+ * Context: Process, lock of the session and topo held.
+ * Return: ring position, also behind the end of the ring.
+ */
+u32 ec_groups_place(const struct ec_wanted *w, u16 alias, u16 position, u32 *alias_at)
+{
+	const struct ec_bus *bus = w->bus;
+	u32 at = 0, left = position;
+
+	lockdep_assert_held(w->lock);
+	lockdep_assert_held(&bus->topo);
+	while (alias && at < bus->n_slaves &&
+	       (bus->slaves[at]->alias != alias || ec_setup_of(bus->slaves[at])->group))
+		at++;
+	*alias_at = at;
+	for (; at < bus->n_slaves; at++)
+		if (!ec_setup_of(bus->slaves[at])->group && !left--)
+			return at;
+	return bus->n_slaves + left;
+}
+
 static bool is_member(const struct ec_group *g, const struct ec_slave *s)
 {
 	return ec_setup_of(s)->group == g->index + 1;

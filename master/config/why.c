@@ -35,23 +35,6 @@ bool ec_config_place(const struct ec_config *c, unsigned int *place)
 	return ec_find_place(c->wanted->bus, c->alias, c->alias_at, c->position, place);
 }
 
-/* Slaves of hot connect groups do not count: they come and go. */
-static u32 place_between_groups(struct ec_config *c)
-{
-	const struct ec_bus *bus = c->wanted->bus;
-	unsigned int at = 0, left = c->position;
-
-	ec_bus_assert_stays(bus);
-	while (c->alias && at < bus->n_slaves &&
-	       (bus->slaves[at]->alias != c->alias || ec_setup_of(bus->slaves[at])->group))
-		at++;
-	c->alias_at = at;
-	for (; at < bus->n_slaves; at++)
-		if (!ec_setup_of(bus->slaves[at])->group && !left--)
-			return at;
-	return bus->n_slaves + left;
-}
-
 /**
  * ec_config_locate() - look for the slaves by which the place of a configuration is known
  * @c: configuration
@@ -71,10 +54,10 @@ void ec_config_locate(struct ec_config *c)
 	if (!c->alias && !c->lost.text[0] && !c->wanted->n_groups)
 		return;
 	down_read(&bus->topo);
-	if (c->alias)
-		c->alias_at = ec_find_alias(bus, c->alias);
 	if (c->wanted->n_groups)
-		c->place = place_between_groups(c);
+		c->place = ec_groups_place(c->wanted, c->alias, c->position, &c->alias_at);
+	else if (c->alias)
+		c->alias_at = ec_find_alias(bus, c->alias);
 	for (i = 0; c->lost.text[0] && i < bus->n_slaves &&
 	     bus->slaves[i]->station != c->lost.at.station; i++)
 		;

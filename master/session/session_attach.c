@@ -9,29 +9,34 @@
 #include "session_slave.h"
 
 /**
- * ec_session_find() - the slave that a configuration means
- * @ss: sessions of a master
- * @alias: alias or 0
- * @position: position
- * @vendor: expected vendor id
- * @product: expected product code
+ * ec_session_find() - the slave that a new configuration would have
+ * @s: session
+ * @i: alias, position and identity
  *
- * Context: Process. May sleep.
+ * Context: Process, session lock held. May sleep.
  * Return: slave with a reference, or NULL.
  */
-struct ec_slave *ec_session_find(struct ec_sessions *ss, u16 alias, u16 position, u32 vendor,
-				 u32 product)
+struct ec_slave *ec_session_find(struct ec_session *s, const struct ec_ioc_slave_config *i)
 {
+	struct ec_bus *bus = s->sessions->bus;
 	struct ec_slave *slave;
+	u32 place, alias_at;
 
-	down_read(&ss->bus->topo);
-	slave = ec_find_slave_at(ss->bus, alias, position);
-	if (slave && slave->info.vendor == vendor && slave->info.product == product &&
-	    !READ_ONCE(slave->stop.gone))
+	lockdep_assert_held(s->wanted.lock);
+	down_read(&bus->topo);
+	if (s->wanted.n_groups) {
+		ec_groups_mark(&s->wanted);
+		place = ec_groups_place(&s->wanted, i->alias, i->position, &alias_at);
+		slave = place < bus->n_slaves ? bus->slaves[place] : NULL;
+	} else {
+		slave = ec_find_slave_at(bus, i->alias, i->position);
+	}
+	if (slave && slave->info.vendor == i->vendor_id &&
+	    slave->info.product == i->product_code && !READ_ONCE(slave->stop.gone))
 		ec_slave_ref(slave);
 	else
 		slave = NULL;
-	up_read(&ss->bus->topo);
+	up_read(&bus->topo);
 	return slave;
 }
 
@@ -68,21 +73,9 @@ static struct ec_slave *find_at_place(const struct ec_session *s, const struct e
 /* Connect a configuration of a session that is not active with the slave at its place. */
 static void attach_one(struct ec_session *s, struct ec_config *c)
 {
-	struct ec_slave *slave;
-
 	lockdep_assert_held(s->wanted.lock);
-	if (c->group)
-		return;
-	slave = find_at_place(s, c);
-	if (slave == c->slave) {
-		ec_slave_unref(slave);
-		return;
-	}
-	ec_session_detach(c);
-	if (slave && s == s->sessions->candidate)	/* only to read from it */
-		c->slave = slave;
-	else if (slave)
-		ec_session_give(s, c, slave);
+	if (!c->group)
+		ec_session_exchange(s, c, find_at_place(s, c));
 }
 
 /* The device that @c had: it has kept its station address, or has a serial number. */

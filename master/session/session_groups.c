@@ -50,15 +50,10 @@ void ec_session_report_groups(struct ec_session *s)
 /* A running session keeps the slave that a member has; @slave: with a reference, or NULL. */
 static void settle(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
 {
-	if (c->slave == slave || (c->slave && s->wanted.active)) {
+	if (c->slave && s->wanted.active)
 		ec_slave_unref(slave);
-		return;
-	}
-	ec_session_detach(c);
-	if (slave && s == s->sessions->candidate)	/* only to read from it */
-		c->slave = slave;
-	else if (slave)
-		ec_session_give(s, c, slave);
+	else
+		ec_session_exchange(s, c, slave);
 }
 
 static void attach_group(struct ec_session *s, struct ec_group *g)

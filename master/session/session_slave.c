@@ -119,3 +119,25 @@ bool ec_session_give(struct ec_session *s, struct ec_config *c, struct ec_slave 
 		ec_slave_kick(slave);
 	return true;
 }
+
+/**
+ * ec_session_exchange() - connect a configuration with a slave instead of the one that it has
+ * @s: session
+ * @c: its configuration
+ * @slave: slave with a reference, which the configuration takes over; NULL: none
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_exchange(struct ec_session *s, struct ec_config *c, struct ec_slave *slave)
+{
+	lockdep_assert_held(s->wanted.lock);
+	if (slave == c->slave) {
+		ec_slave_unref(slave);
+		return;
+	}
+	ec_session_detach(c);
+	if (slave && s == s->sessions->candidate)	/* only to read from it */
+		c->slave = slave;
+	else if (slave)
+		ec_session_give(s, c, slave);
+}

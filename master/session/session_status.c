@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The state of the bus for an active session, and log messages about its application. */
 #include "../config/why.h"
+#include "../config/group.h"
 #include "../cycle/counts.h"
 #include "../cycle/pll.h"
 #include "../cycle/cycle_sched.h"
@@ -138,6 +139,8 @@ static void status_configs(struct ec_session *s)
 	ec_for_each_config(c, &s->wanted)
 		WRITE_ONCE(st->configs[c->index], ec_config_status(c));
 	ec_counts_update(&s->cycle);
+	if (ec_groups_wait(&s->wanted))
+		WRITE_ONCE(s->sessions->bus->regroup, true);
 }
 
 /**

@@ -205,7 +205,7 @@ static void wiring_by_any_port(struct kunit *test)
 
 /*
  * A tree of slaves with two, three and four ports that are entered by port 0. One without a clock
- * is never a junction: what a frame takes between its branches nobody can measure.
+ * is never a junction: the time of a frame between its branches cannot be measured.
  */
 static u32 grow_junctions(struct tree *t, char *text, u32 size)
 {

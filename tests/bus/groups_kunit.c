@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Hot connect groups: who is taken for which, and what the others notice of it. */
+/* Hot connect groups: which slaves are used, and that the others are not disturbed. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 
@@ -282,7 +282,7 @@ static void wrong_desc(const struct wrong *w, char *desc)
 
 KUNIT_ARRAY_PARAM(wrong, wrongs, wrong_desc);
 
-/* What is not the group is not started, its reason is told, and the group is once it is right. */
+/* What is not the group is not started, with a reason; the group is once it is right. */
 static void groups_wrong_ones(struct kunit *test)
 {
 	const struct wrong *w = test->param_value;
@@ -332,7 +332,7 @@ static void groups_twins(struct kunit *test)
 	wait_op(t);
 }
 
-/* Groups of one kind, told apart by the port where they are */
+/* Groups of one kind, known by the port where they are */
 static void groups_by_port(struct kunit *test)
 {
 	struct tools *t = begin(test, NULL, 0);
@@ -377,6 +377,68 @@ static void groups_stuck_member_hides_nothing(struct kunit *test)
 	cyc_run(t->c, 500);
 	KUNIT_EXPECT_NE(test, cyc_state(t->c, 0)->wc_state, EC_STATUS_WC_COMPLETE);
 	KUNIT_EXPECT_GT(test, t->incomplete, i + 400u);
+}
+
+/* The EEPROM of a slave says that its identification is a word of its memory. */
+static void name_word(struct bus *b, u32 index, u16 address, u16 identification)
+{
+	struct ec_esc_eeprom *e = &bus_esc(b, index)->eep;
+	struct ec_sii_iter it;
+	struct ec_sii_cat cat;
+
+	ec_sii_iter_init(&it, e->data, e->len);
+	while (ec_sii_iter_next(&it, &cat) == 1) {
+		if (cat.type != EC_SII_CAT_GENERAL)
+			continue;
+		((u8 *)cat.data)[0x0b] |= EC_SII_FLAG_ID_MEM;
+		put_unaligned_le16(address, (u8 *)cat.data + 0x12);
+	}
+	put_unaligned_le16(identification, bus_esc(b, index)->mem + address);
+}
+
+/* A word of memory identifies; an EEPROM that names a register, whose read may change it, not. */
+static void groups_by_word_of_memory(struct kunit *test)
+{
+	struct tools *t = begin(test, NULL, 0);
+	struct bus *b = t->c->b;
+
+	name_word(b, X2, EC_REG_DL_STATUS, 0x1234);
+	name_word(b, Z1, 0x0f18, 9);
+	t->head = add_drive(t, add_group(t, "word", EC_GROUP_BY_ID, 9, EC_UAPI_NONE32, 0, 0), 0, 0);
+	add_fixed(t);
+	run(t);
+	bus_command(b, "plug hub.1 z1.0");
+	wait_slaves(t, N + 2);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->identification, 9);
+	KUNIT_EXPECT_TRUE(test, in_op(t, t->head));
+	bus_command(b, "plug f2.1 x1.0");
+	wait_slaves(t, N + 4);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->identification, 6);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 6)->identification, 0);
+}
+
+/* A member in BOOT keeps the group from use until it has left BOOT. */
+static void groups_member_in_boot(struct kunit *test)
+{
+	struct tools *t = with_tool(test, "plug hub.1 x1.0", N + 2, 0);
+	struct bus *b = t->c->b;
+
+	wait_op(t);
+	bus_command(b, "unplug hub.1");
+	wait_slaves(t, N);
+	bus_command(b, "unplug x1.1");
+	bus_command(b, "plug hub.1 x1.0");
+	wait_slaves(t, N + 1);
+	expect_why(t, t->head, EC_CAUSE_GROUP, "member 1 (");
+	bus_request(b, 1, EC_AL_BOOT);
+	cyc_run(t->c, 100);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(bus_slave(b, 1)->al_status), EC_AL_BOOT);
+	bus_command(b, "plug x1.1 x2.0");
+	wait_slaves(t, N + 2);
+	expect_why(t, t->head, EC_CAUSE_GROUP, "slave 1 is in BOOT");
+	KUNIT_EXPECT_FALSE(test, in_op(t, t->head + 1));
+	bus_request(b, 1, EC_AL_PREOP);
+	wait_op(t);
 }
 
 /* Its port is opened at once, and again and again after losses. */
@@ -489,7 +551,7 @@ static void groups_pinned_and_serial(struct kunit *test)
 	wait_op(t);
 }
 
-/* A description that cannot be told from another one, or means nothing, is refused. */
+/* A description that is the same as another one, or not valid, is refused. */
 static void groups_refused(struct kunit *test)
 {
 	static const struct {
@@ -540,6 +602,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(groups_by_port),
 	KUNIT_CASE(groups_by_port_without_power),
 	KUNIT_CASE(groups_stuck_member_hides_nothing),
+	KUNIT_CASE(groups_by_word_of_memory),
+	KUNIT_CASE(groups_member_in_boot),
 	KUNIT_CASE(groups_fast),
 	KUNIT_CASE(groups_pinned_and_serial),
 	KUNIT_CASE(groups_refused),

@@ -21,7 +21,7 @@ static const char text[] =
 	"branch none\nslave x0 drive in=8 out=8\n";
 
 #define FIXED	4
-#define TOOLS	9	/* with the stranger, who has no group */
+#define TOOLS	9	/* with the stranger, which has no group */
 #define GROUPS	8
 
 /* Index of each in the segment, and what the application expects; 20 is there twice. */

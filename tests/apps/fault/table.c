@@ -102,7 +102,7 @@ const struct cmd cmds[] = {
 	    .flags = EC_SC_REPLAY_SDO | EC_SC_REPLAY_IDN),
 	CMD(HOLD, APP, RSV1(ec_ioc_hold), .flags = EC_HOLD_FLAG_RESUME),
 	CMD(LATE, APP),
-	CMD(GROUP, APP, RSV2(ec_ioc_group), 
+	CMD(GROUP, APP, RSV2(ec_ioc_group),
 	    .flags = EC_GROUP_FLAG_MANDATORY | EC_GROUP_FLAG_FAST),
 	CMD(GROUP_CONFIG, APP, RSV1(ec_ioc_group_config)),
 	CMD(CONFIG_GROUP, RSV1(ec_ioc_config_group)),
