@@ -41,7 +41,7 @@ run() {
 	bench-legacy) EC_INTERRUPT=legacy tests/bench/cycle.sh ;;
 	reboot) tests/reboot/run.sh {generic,native}{,+off,+kexec,+suspend} ;;
 	ports) EC_UML_TIMEOUT=3000 EC_UML_ARGS=random_kunit.runs=80 tests/uml/run.sh bus_random ;;
-	groups) EC_UML_TIMEOUT=3000 EC_UML_ARGS=groups_random_kunit.events=10000 \
+	groups) EC_UML_TIMEOUT=3000 EC_UML_ARGS=groups_random_kunit.runs=100 \
 		tests/uml/run.sh bus_groups_random ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;

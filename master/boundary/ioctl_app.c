@@ -142,6 +142,7 @@ static int ioctl_app_slave_config(struct ec_call *call, struct ec_ioc_slave_conf
  */
 int ec_ioc_wait_pdos(struct ec_call *call, struct ec_slave *slave)
 {
+	lockdep_assert_held(&call->master->sessions.lock);
 	if (!slave)
 		return 0;
 	ec_sessions_unlock(&call->master->sessions);

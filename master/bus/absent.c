@@ -22,7 +22,7 @@ static u64 find_root(const struct ec_bus *bus, const struct ec_lost *l, unsigned
 		*port = found ? up->root_port : up->up_port;
 		if (root == NOWHERE || (!root && n_slaves))
 			return NOWHERE;
-		/* another slave is there */
+		/* another slave is connected there */
 		if (s && (*port >= EC_MAX_PORT || s->at[*port]))
 			return NOWHERE;
 		if (s || !root)

@@ -48,7 +48,8 @@ static const char * const free_ports[] = { "h0.2", "h1.2", "h2.2", "f1.1" };
  * @head: configuration of the head of each group
  * @incomplete: cycles in which the domain of the fixed drive was not complete
  * @events: so far
- * @started: times that a group was found in OP at an event
+ * @op: the group was in OP at the last check
+ * @started: times that a group came to OP
  * @wrong: configurations with a device that is not theirs, and strangers in operation
  */
 struct run {
@@ -57,6 +58,7 @@ struct run {
 	u32 at[TOOLS];
 	u32 used[ARRAY_SIZE(free_ports)];
 	u32 head[GROUPS];
+	bool op[GROUPS];
 	u64 incomplete;
 	u32 events;
 	u32 started;
@@ -89,6 +91,10 @@ static void check(struct run *r)
 		const struct ec_slave *s = bus_config(b, r->head[g])->slave;
 		const struct ec_esc *esc = s && !READ_ONCE(s->stop.gone) ? esc_of(b, s) : NULL;
 
+		bool op = esc && esc->mem[EC_REG_AL_STATUS] == EC_AL_OP;
+
+		r->started += op && !r->op[g];
+		r->op[g] = op;
 		/* unplugged, and not noticed so far */
 		if (!esc)
 			continue;
@@ -96,7 +102,6 @@ static void check(struct run *r)
 			;
 		if (i == TOOLS || tools[i].id != ids[g])
 			r->wrong++;
-		r->started += esc->mem[EC_REG_AL_STATUS] == EC_AL_OP;
 	}
 	r->wrong += bus_esc(b, tools[TOOLS - 1].index)->mem[EC_REG_AL_STATUS] > EC_AL_PREOP;
 }
@@ -176,19 +181,34 @@ static void add_groups(struct run *r)
 	}
 }
 
-/* in "make check" 100 events, in "make check-long" groups_random_kunit.events=10000 */
-static uint events = 100;
-module_param(events, uint, 0444);
-MODULE_PARM_DESC(events, "Hot connect events of the run");
+#define EVENTS	100	/* of a run: a case has 300 s, also of virtual time */
+
+/* in "make check" one run, in "make check-long" groups_random_kunit.runs=100 */
+static uint runs = 1;
+module_param(runs, uint, 0444);
+MODULE_PARM_DESC(runs, "Runs of 100 events, each with a seed of its own, at most 400");
+
+static const char seeds[400];	/* their addresses count */
+
+static const void *seed_gen_params(const void *prev, char *desc)
+{
+	const char *next = prev ? (const char *)prev + 1 : seeds;
+
+	if (next >= seeds + min_t(uint, runs, ARRAY_SIZE(seeds)))
+		return NULL;
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "seed %d", (int)(next - seeds));
+	return next;
+}
 
 static void groups_random_events(struct kunit *test)
 {
 	struct run *r = kunit_kzalloc(test, sizeof(*r), GFP_KERNEL);
 	struct bus *b = bus_up(test, text, FIXED);
+	u64 seed = (const char *)test->param_value - seeds;
 	u32 i;
 
 	KUNIT_ASSERT_NOT_NULL(test, r);
-	prandom_seed_state(&r->rng, 1);
+	prandom_seed_state(&r->rng, seed);
 	bus_idle(b);
 	r->c = cyc_new(b, 1000);
 	cyc_domain(r->c);
@@ -200,23 +220,24 @@ static void groups_random_events(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, cyc_state(r->c, 0)->wc_state, EC_STATUS_WC_COMPLETE);
 	r->c->ctx = r;
 	r->c->each = look;
-	while (r->events < events) {
+	while (r->events < EVENTS) {
 		event(r);
 		for (i = below(r, 30); i < 30; i++) {
 			cyc_run(r->c, 1 + below(r, 100));
 			check(r);
 		}
 	}
-	bus_figure("%u hot connect events with %u groups, seed 1: %u times a group seen in OP, %u wrong devices, %llu of %llu cycles of the fixed drive incomplete",
-		   r->events, GROUPS, r->started, r->wrong, r->incomplete, r->c->cycles);
+	bus_figure("%u hot connect events with %u groups, seed %llu: %u times a group came to OP, %u wrong devices, %llu of %llu cycles of the fixed drive incomplete",
+		   r->events, GROUPS, seed, r->started, r->wrong, r->incomplete, r->c->cycles);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
-	KUNIT_EXPECT_GT(test, r->started, r->events);
-	/* the frames in flight when a contact opens */
-	KUNIT_EXPECT_LE(test, r->incomplete, (u64)r->events);
+	/* of two events one connects a tool, of which some are wired the wrong way, or twins */
+	KUNIT_EXPECT_GT(test, r->started, r->events / 8);
+	/* between cycles: no frame is in flight, see bus_random for those */
+	KUNIT_EXPECT_EQ(test, r->incomplete, 0ull);
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(groups_random_events),
+	KUNIT_CASE_PARAM(groups_random_events, seed_gen_params),
 	{}
 };
 

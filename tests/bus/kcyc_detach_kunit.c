@@ -540,6 +540,37 @@ static void end_detached(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 5ll);
 }
 
+/* The same with a hot connect group, which the session that ends does not have. */
+static void end_detached_for_group(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, hold);
+	struct bus *b = a->c->b;
+	struct ec_ioc_group g = {
+		.by = EC_GROUP_BY_PORT, .port = 1, .flags = EC_GROUP_FLAG_FAST, .name = "second",
+	};
+	const struct ec_sii_info *info = &bus_slave(b, 1)->info;
+	struct ec_ioc_group_config m = {
+		.vendor_id = info->vendor, .product_code = info->product,
+	};
+	struct ec_ioc_activate activate = { 0 };
+	struct cyc *c;
+
+	die(a);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	g.at = cyc_config(c, 0);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_GROUP, &g), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_GROUP_CONFIG, &m), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->ports.fast, 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &activate), -EEXIST);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
+	cyc_activate(c);
+	KUNIT_EXPECT_PTR_EQ(test, bus_config(b, g.at)->slave, bus_slave(b, 0));
+	KUNIT_EXPECT_PTR_EQ(test, bus_config(b, m.index)->slave, bus_slave(b, 1));
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->ports.fast, BIT(1));
+	cyc_release(c);
+}
+
 /* Configures the second slave as the first one: it is not there to be asked. */
 static u32 absent(struct kcyc *a, u32 position)
 {
@@ -625,6 +656,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(takeover_refused),
 	KUNIT_CASE(candidate_changes_no_running_session),
 	KUNIT_CASE(end_detached),
+	KUNIT_CASE(end_detached_for_group),
 	KUNIT_CASE(slave_returns),
 	{ }
 };
