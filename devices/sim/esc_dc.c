@@ -195,6 +195,8 @@ static void compare(struct ec_esc *esc, u64 received, bool wide, u64 now)
 	if (!dc->have_cmp) {
 		dc->diff = diff * 256;
 		dl = 0;
+		/* measured with another offset or delay */
+		dc->dev_ppb16 = 0;
 	} else {
 		dc->diff += (diff * 256 - dc->diff) >>
 			    depth(esc, EC_REG_DC_FILTER_DIFF);

@@ -8,6 +8,7 @@
 #include "dc_job.h"
 
 #define ROUNDS		16	/* latches; the times have 10 ns of noise */
+#define HELD_ROUNDS	8	/* while clocks that are set wait for the delays */
 #define TOGETHER	4	/* latches in a row while clocks that are set drift apart */
 #define CORRECT_CYCLES	8	/* then the cycle compensates them, so many cycles */
 #define CORRECT_MS	20	/* or so long */
@@ -404,9 +405,10 @@ static int dc_job_measure(struct ec_dc_job *j)
 	bool latched = false;
 	int ret;
 
+	j->rounds = j->compensated && ec_dc_path_changed(j->dc) ? HELD_ROUNDS : ROUNDS;
 	memset(j->sum, 0, j->n * sizeof(*j->sum));
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	while (rounds < ROUNDS) {
+	while (rounds < j->rounds) {
 		if (ended(j))
 			return -ECANCELED;
 		n = latched ? ec_dc_add(j, 0, EC_DC_TIMES, EC_CMD_FPRD, EC_REG_DC_RECV(0),
@@ -424,7 +426,7 @@ static int dc_job_measure(struct ec_dc_job *j)
 		if (latched && !ret) {
 			sum_up(j);
 			rounds++;
-			if (j->compensated && rounds < ROUNDS && rounds % TOGETHER == 0 &&
+			if (j->compensated && rounds < j->rounds && rounds % TOGETHER == 0 &&
 			    !ec_dc_path_changed(j->dc))
 				ec_dc_correct_between(j, CORRECT_CYCLES, CORRECT_MS);
 		}
@@ -474,7 +476,7 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 
 		if (!j->nodes[i].dc)
 			continue;
-		c->delay = (u32)div_s64(j->sum[i], ROUNDS);
+		c->delay = (u32)div_s64(j->sum[i], j->rounds);
 		c->prev_delay = j->nodes[i].hop;
 		c->measured = scan;
 		WRITE_ONCE(c->delay_unreliable, j->nodes[i].unreliable);

@@ -21,6 +21,7 @@
  * @recv: receive times of the ports
  * @unit: receive times of the processing units
  * @sum: of the measured delays, ns
+ * @rounds: measurements of which it is
  * @dg: datagrams of a transfer
  * @spoiled: attempts that failed because of each slave
  * @silent: slaves without a valid reply in the last transfer
@@ -41,6 +42,7 @@ struct ec_dc_job {
 	u8 (*recv)[4 * EC_DC_PORTS];
 	u8 (*unit)[8];
 	s64 *sum;
+	unsigned int rounds;
 	struct ec_dg *dg;
 	u8 *spoiled;
 	bool *silent;

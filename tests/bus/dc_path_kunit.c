@@ -163,16 +163,21 @@ static void path_branch_unplugged(struct kunit *test)
 static void path_slave_inserted(struct kunit *test)
 {
 	struct way *p = path_start(test);
+	u32 i;
 
-	bus_command(p->b, "unplug x1.1");
-	bus_command(p->b, "plug x1.1 n.0");
-	bus_command(p->b, "plug n.1 x2.0");
-	path_settle(p, CONNECTED + 1);
-	expect_steady(p, "slave inserted upstream");
-	bus_command(p->b, "unplug n.0");
-	bus_command(p->b, "plug x1.1 x2.0");
-	path_settle(p, CONNECTED);
-	expect_steady(p, "slave removed upstream");
+	/* what a wrong frame does depends on the moment; ports that flap are opened later */
+	for (i = 0; i < 8; i++) {
+		path_run(p, 11000 * !!i + 137 * i);
+		bus_command(p->b, "unplug x1.1");
+		bus_command(p->b, "plug x1.1 n.0");
+		bus_command(p->b, "plug n.1 x2.0");
+		path_settle(p, CONNECTED + 1);
+		expect_steady(p, "slave inserted upstream");
+		bus_command(p->b, "unplug n.0");
+		bus_command(p->b, "plug x1.1 x2.0");
+		path_settle(p, CONNECTED);
+		expect_steady(p, "slave removed upstream");
+	}
 }
 
 /* One without a clock changes the delay of others all the same. */
