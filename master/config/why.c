@@ -11,7 +11,7 @@
 
 #define LOG_MAX		32	/* lines per activation */
 #define EVENTS_MAX	256	/* events per activation: others stay in the ring */
-#define WALK		64	/* configurations to check without a pause */
+#define WALK		16	/* configurations to check without a pause */
 
 /**
  * ec_config_place() - the ring position that a configuration means
