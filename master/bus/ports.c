@@ -243,13 +243,15 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 static void note_closed(struct ec_slave *s, unsigned int port, int why)
 {
 	struct ec_door *d = &s->ports.door[port];
+	u8 kept = why == -EOPNOTSUPP ? EC_PORT_LOOPS :
+		  why == -EXDEV ? EC_PORT_REVERSED : EC_PORT_NO_REPLY;
 
 	d->wait_ms = clamp_t(u32, 2 * d->wait_ms, WAIT_MIN_MS, WAIT_MAX_MS);
 	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
 	if (d->kept)
 		return;
-	WRITE_ONCE(d->kept, why == -EOPNOTSUPP ? EC_PORT_LOOPS : EC_PORT_NO_REPLY);
-	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, d->kept);
+	WRITE_ONCE(d->kept, kept);
+	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, kept);
 }
 
 static bool try_door(struct ec_slave *s, unsigned int port)
@@ -262,7 +264,7 @@ static bool try_door(struct ec_slave *s, unsigned int port)
 			     port, ret);
 		return true;
 	}
-	if (ret == -ENXIO || ret == -EOPNOTSUPP)
+	if (ret == -ENXIO || ret == -EOPNOTSUPP || ret == -EXDEV)
 		note_closed(s, port, ret);
 	else
 		s->ports.door[port].next_ns = ktime_get_ns() + STABLE_NS;

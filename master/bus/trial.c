@@ -48,6 +48,7 @@ struct trial {
 	u16 position;	/* of the first slave behind the port */
 	const struct ec_slave *next;	/* of the list, at that position now; NULL: there is none */
 	u16 dl;		/* DL status of the host at the end of the last trial */
+	u16 count;	/* slaves that reply then */
 	struct ec_dg work[WORK];
 	unsigned int n;
 };
@@ -145,8 +146,8 @@ static int trial_run(struct trial *t, u16 station)
 			       with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
 	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
-	struct ec_dg dg[WORK + 8], *close, *check;
-	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 };
+	struct ec_dg dg[WORK + 9], *close, *check;
+	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 }, any[1];
 	unsigned int n = 0, i;
 
 	/* twice: without it the work would be done by the next slave of the ring */
@@ -167,16 +168,18 @@ static int trial_run(struct trial *t, u16 station)
 	dg[n++] = EC_FPRD(station, EC_REG_STATION, 2, ghost);
 	dg[n++] = EC_FPRD(next ? next->station : station, EC_REG_STATION, 2, own);
 	dg[n++] = EC_FPRD(up ? up->station : station, EC_REG_DL_STATUS, 2, up_dl);
+	dg[n++] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, any);
 	ec_xfer_train(t->bus->links, dg, n);
 	for (i = 0; i < t->n; i++)
 		t->work[i] = dg[2 + i];
 	if (check[0].err || check[0].wkc != 1 ||
 	    !(get_unaligned_le16(dl) & EC_DLS_LOOP(t->port))) {
 		close_surely(t, closed);
-		for (i = 0; i < 4; i++)
+		for (i = 0; i < 5; i++)
 			check[i].repeat = true;
-		ec_xfer(t->bus->links, check, 4);
+		ec_xfer(t->bus->links, check, 5);
 	}
+	t->count = check[4].wkc;
 	t->dl = check[0].err || check[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!check[1].err && check[1].wkc) {
 		trial_give_back(t, station, next &&
@@ -188,6 +191,8 @@ static int trial_run(struct trial *t, u16 station)
 	for (i = 0; i < t->n; i++)
 		if (t->work[i].err)
 			return -EAGAIN;
+	if (check[4].err)
+		return -EAGAIN;
 	return close[0].wkc || close[1].wkc ? 0 : -EAGAIN;
 }
 
@@ -276,13 +281,18 @@ static bool is_last(const struct guest *g)
 	return hweight8(ec_graph_open_ports(get_unaligned_le16(g->dl))) <= 1;
 }
 
-/* Nothing of an earlier configuration is left that process data or a cycle could reach. */
+/*
+ * Nothing of an earlier configuration is left that process data or a cycle could reach. And the
+ * guest is alone: a frame passes a slave that is connected the wrong way round when it returns,
+ * behind those at its port 0, so it is not the first one at its position.
+ */
 static int tame(struct trial *t, struct guest *g)
 {
 	static const u8 zero[EC_MAX_FMMU * EC_FMMU_PAGE];
 	static const u8 init[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
 	u16 fmmus = min_t(u16, g->info[EC_REG_FMMUS], EC_MAX_FMMU) * EC_FMMU_PAGE;
-	u8 loops[1] = { guest_loops(g) }, is[1] = { 0 }, kept[2];
+	u8 loops[1] = { guest_loops(g) }, is[1] = { 0 }, kept[2], any[1];
+	const struct ec_dg *count;
 	u8 left[EC_MAX_FMMU * EC_FMMU_PAGE] = { 0 };
 	unsigned int last;
 	int ret;
@@ -297,6 +307,7 @@ static int tame(struct trial *t, struct guest *g)
 	trial_add(t, EC_FPRD(g->station, EC_REG_DL_LOOPS, 1, is));
 	if (fmmus)
 		trial_add(t, EC_FPRD(g->station, EC_REG_FMMU(0), fmmus, left));
+	count = trial_add(t, EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, any));
 	last = t->n;
 	trial_add(t, EC_FPWR(g->station, EC_REG_STATION, 2, kept));
 	ret = trial_run(t, g->station);
@@ -304,8 +315,10 @@ static int tame(struct trial *t, struct guest *g)
 		g->station = get_unaligned_le16(kept);
 	if (ret)
 		return ret;
-	if (t->work[last - 1].wkc != 1 || memchr_inv(left, 0, sizeof(left)))
+	if (t->work[last - 2].wkc != 1 || memchr_inv(left, 0, sizeof(left)))
 		return -EAGAIN;
+	if (is[0] == loops[0] && count->wkc > t->count + 1)
+		return -EXDEV;
 	/* one that does not keep its loops lets in what is behind it */
 	return is[0] == loops[0] ? 0 : -EOPNOTSUPP;
 }
@@ -315,7 +328,7 @@ static int try_often(struct trial *t, struct guest *g, int (*step)(struct trial 
 	int ret = -EAGAIN;
 	unsigned int i;
 
-	for (i = 0; i < TRIES && ret == -EAGAIN; i++)
+	for (i = 0; i < TRIES && (ret == -EAGAIN || ret == -EXDEV); i++)
 		ret = step(t, g);
 	return ret;
 }
@@ -452,7 +465,7 @@ static int trial_branch(struct trial *t, struct guest *first)
  * Context: The monitor thread. Waits for bus traffic.
  * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
  * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
- * behind it; -ENOSPC: no free station address.
+ * behind it; -EXDEV: others are behind its port 0; -ENOSPC: no free station address.
  */
 int ec_trial(struct ec_slave *s, unsigned int port)
 {

@@ -353,6 +353,37 @@ static void ports_slave_with_fixed_loops(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
 }
 
+/* One that is connected the wrong way round is let in alone, as port 0 cannot be closed. */
+static void ports_reversed_branch(struct kunit *test)
+{
+	static const char line[] = "is connected the wrong way round";
+	u32 lines = bus_log_lines(line);
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 i;
+
+	old_fmmus(c->b, X1, A1);
+	old_fmmus(c->b, X2, A1);
+	bus_command(c->b, "plug a2.1 x2.1");
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
+	KUNIT_EXPECT_EQ(test, bus_log_lines(line) - lines, 1u);
+	KUNIT_EXPECT_EQ(test, kept(c->b, A2).kept, (u32)EC_PORT_REVERSED);
+	bus_command(c->b, "unplug x2.0");
+	for (i = 0; i < 20000 && bus_n_slaves(c->b) == N; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), N + 1u);
+	bus_command(c->b, "unplug x2.1");
+	cyc_run(c, 200);
+	/* behind one that has its right way round */
+	bus_command(c->b, "plug a2.1 x2.0");
+	bus_command(c->b, "plug x2.1 x1.1");
+	cyc_run(c, 3000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), N + 2u);
+	KUNIT_EXPECT_EQ(test, w.foreign, 0u);
+	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+}
+
 /* A contact that bounces costs the frames of the first bounce, and is left alone then. */
 static void ports_flapping(struct kunit *test)
 {
@@ -406,6 +437,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_no_reply),
 	KUNIT_CASE(ports_slave_with_host_behind),
 	KUNIT_CASE(ports_slave_with_fixed_loops),
+	KUNIT_CASE(ports_reversed_branch),
 	KUNIT_CASE(ports_flapping),
 	KUNIT_CASE(ports_retry),
 	{}
