@@ -15,6 +15,7 @@
 #include "bus/ports.h"
 #include "bus/slave.h"
 #include "bus/survey.h"
+#include "bus/swallowed.h"
 #include "carry/xfer.h"
 #include "bus/scan.h"
 #include "wire/regs.h"
@@ -284,8 +285,10 @@ static void ask_slaves(struct watch *w)
 	/* frames that do not return say nothing of the slaves, unless that lasts */
 	w->lost_ns = !lost ? 0 : w->lost_ns ?: ktime_get_ns();
 	if (lost && READ_ONCE(m->bus.guarded) && w->link_up &&
-	    ktime_get_ns() - w->lost_ns < LOST_NS)
+	    ktime_get_ns() - w->lost_ns < LOST_NS) {
+		ec_swallowed(&m->bus);
 		return;
+	}
 	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
 		if (w->scanned)

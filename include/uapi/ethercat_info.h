@@ -143,6 +143,7 @@ struct ec_ioc_port {
 #define EC_PORT_NO_REPLY	1	/* no slave replies behind it */
 #define EC_PORT_LOOPS		2	/* a slave that does not keep 0x0101, others behind it */
 #define EC_PORT_LOSSES		3	/* it has lost its link too often */
+#define EC_PORT_SWALLOWS	5	/* no frame returned while it was open */
 #define EC_PORT_REVERSED	4	/* a slave connected the wrong way round, others behind */
 
 /* slaves that were disconnected and have not returned, behind one port */

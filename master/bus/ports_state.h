@@ -54,4 +54,10 @@ struct ec_ports {
 	struct ec_loss loss[EC_MAX_PORT];
 };
 
+/* Register 0x0101 with another value for one port */
+static inline u8 ec_loops_with(u8 loops, unsigned int port, u8 value)
+{
+	return (loops & ~(3 << 2 * port)) | value << 2 * port;
+}
+
 #endif

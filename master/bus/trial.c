@@ -53,11 +53,6 @@ struct trial {
 	unsigned int n;
 };
 
-static u8 with_loop(u8 loops, unsigned int port, u8 value)
-{
-	return (loops & ~(3 << 2 * port)) | value << 2 * port;
-}
-
 static struct ec_dg *trial_add(struct trial *t, struct ec_dg dg)
 {
 	t->work[t->n] = dg;
@@ -143,7 +138,7 @@ static void trial_give_back(const struct trial *t, u16 station, bool next)
 static int trial_run(struct trial *t, u16 station)
 {
 	const u8 opened[2] = { t->host.control | TEMPORARY,
-			       with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
+			       ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
 	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
 	struct ec_dg dg[WORK + 9], *close, *check;
@@ -272,7 +267,7 @@ static u8 guest_loops(const struct guest *g)
 
 	for (p = 1; p < EC_MAX_PORT; p++)
 		if (p != g->entry)
-			loops = with_loop(loops, p, EC_LOOP_CLOSED);
+			loops = ec_loops_with(loops, p, EC_LOOP_CLOSED);
 	return loops;
 }
 
@@ -345,7 +340,7 @@ static u16 kept_station(struct ec_bus *bus, const struct guest *g)
 static int let_in(struct trial *t)
 {
 	const u8 open[2] = { t->host.control & ~TEMPORARY,
-			     with_loop(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
+			     ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 
 	t->host.loops = open[1];
 	return ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, open, 2);

@@ -25,6 +25,10 @@ const struct ec_port_text *ec_port_text(u32 kept)
 			"it has lost its link again and again",
 			"check cable and plugs",
 		},
+		[EC_PORT_SWALLOWS] = {
+			"no frame returned while it was open",
+			"connect slaves there again, no PC or switch",
+		},
 		[EC_PORT_REVERSED] = {
 			"the slave behind it is connected the wrong way round, with others at its port 0",
 			"connect port 0 (IN) of that slave there",

@@ -27,11 +27,13 @@ static u8 loops(struct bus *b, u32 index)
 /**
  * struct watch - process data of the drives at port 1 of the hub
  * @incomplete: cycles in which their domain was not complete
+ * @silent: no frame of the last cycle has returned
  * @foreign: cycles in which a slave that does not belong to them took part
  */
 struct watch {
 	u32 incomplete;
 	u32 foreign;
+	bool silent;
 };
 
 static void look(struct cyc *c)
@@ -41,6 +43,7 @@ static void look(struct cyc *c)
 
 	w->incomplete += d->wc_state != 2;
 	w->foreign += d->working_counter > 6;
+	w->silent = d->age > 1;
 }
 
 static struct cyc *in_op(struct kunit *test, struct watch *w)
@@ -384,6 +387,57 @@ static void ports_reversed_branch(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
 }
 
+/*
+ * A port in use closes itself without link, and opens by a frame from outside: a PC that is
+ * connected there at once takes all frames.
+ */
+static void ports_host_instead_of_branch(struct kunit *test)
+{
+	static const char line[] = "no frame returned while it was open";
+	static const struct {
+		const char *unplug, *host, *back;
+		u32 left;
+	} at[] = {
+		{ "unplug hub.2", "host hub.2 every=1ms", "plug hub.2 b1.0", 3 },
+		{ "unplug b1.1", "host b1.1 every=1ms", "plug b1.1 b2.0", 4 },
+		{ "unplug a1.1", "host a1.1 every=1ms", "plug a1.1 a2.0", 4 },
+		{ "unplug hub.1", "host hub.1 every=1ms", "plug hub.1 a1.0", 3 },
+	};
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+	u32 k, i, none, first = 0;
+
+	for (k = 0; k < ARRAY_SIZE(at); k++) {
+		u32 lines = bus_log_lines(line);
+
+		bus_command(c->b, at[k].unplug);
+		bus_command(c->b, at[k].host);
+		cyc_run(c, 5);
+		KUNIT_EXPECT_TRUE(test, w.silent);
+		none = bus_log_lines("no slave replies behind it");
+		for (i = 0; i < 3000 && bus_n_slaves(c->b) != at[k].left; i++) {
+			cyc_run(c, 1);
+			if (w.silent)
+				first = i;
+		}
+		bus_figure("%s: frames again after %u cycles, list without those behind it after %u",
+			   at[k].host, first, i);
+		KUNIT_EXPECT_LE(test, first, 200u);
+		KUNIT_EXPECT_LE(test, i, 400u);
+		KUNIT_EXPECT_EQ(test, bus_log_lines(line) - lines, 1u);
+		w.incomplete = 0;
+		cyc_run(c, 1000);
+		KUNIT_EXPECT_EQ(test, bus_log_lines("no slave replies behind it"), none);
+		if (k < 2)
+			KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+		bus_command(c->b, at[k].unplug);
+		bus_command(c->b, at[k].back);
+		cyc_run(c, 12000);
+		KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
+		KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2u);
+	}
+}
+
 /* A contact that bounces costs the frames of the first bounce, and is left alone then. */
 static void ports_flapping(struct kunit *test)
 {
@@ -438,6 +492,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_slave_with_host_behind),
 	KUNIT_CASE(ports_slave_with_fixed_loops),
 	KUNIT_CASE(ports_reversed_branch),
+	KUNIT_CASE(ports_host_instead_of_branch),
 	KUNIT_CASE(ports_flapping),
 	KUNIT_CASE(ports_retry),
 	{}
