@@ -4,6 +4,7 @@
 #include "boundary/api.h"
 #include "boundary/cdev.h"
 #include "carry/posts.h"
+#include "clock/dc.h"
 #include "clock/dc_track.h"
 #include "link/device.h"
 #include "link/spec.h"

@@ -18,9 +18,11 @@
 #include "bus/swallowed.h"
 #include "carry/xfer.h"
 #include "bus/scan.h"
+#include "bus/scan_count.h"
 #include "wire/regs.h"
 #include "session/session_attach.h"
 #include "session/session_status.h"
+#include "clock/dc.h"
 
 #define PERIOD_MS	20
 #define SLACK_MS	4	/* by which a look may be earlier while all is well */

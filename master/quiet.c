@@ -11,6 +11,7 @@
 #include "quiet.h"
 #include "kernel/compat.h"
 #include "wire/event_ring.h"
+#include "clock/dc_app.h"
 
 #define LOOKS	49	/* of the timer, between two of the monitor: the rates need one a second */
 

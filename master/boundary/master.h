@@ -5,7 +5,7 @@
 
 #include "../base/base.h"
 #include "../bus/bus.h"
-#include "../clock/dc.h"
+#include "../clock/dc_state.h"
 #include "../cycle/cycle.h"
 #include "../link/links.h"
 #include "../carry/carry.h"

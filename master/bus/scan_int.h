@@ -5,7 +5,6 @@
 
 #include "../wire/regs.h"
 #include "slave.h"
-#include "scan.h"
 
 struct ec_dg;
 
@@ -66,18 +65,5 @@ static inline bool ec_scan_is_known(const struct scan *sc, const struct ec_slave
 {
 	return sc->known[s->station] == s;
 }
-
-/* scan_station.c */
-int ec_scan_stations(struct scan *sc);
-const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int i);
-
-/* scan_stretch.c */
-int ec_scan_stretches(struct scan *sc);
-
-/* scan_proof.c */
-int ec_scan_proof(struct scan *sc);
-
-/* scan_publish.c */
-int ec_scan_publish(struct scan *sc);
 
 #endif

@@ -8,6 +8,7 @@
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "scan_int.h"
+#include "scan_proof.h"
 
 /* scans in a row that are thrown away because of a slave that contradicts itself, at most */
 #define NEW_MAX		5	/* one that is new, or its ports */

@@ -6,8 +6,11 @@
 #include "absent.h"
 #include "graph.h"
 #include "known.h"
+#include "scan_count.h"
 #include "scan_int.h"
 #include "scan_lost.h"
+#include "scan_publish.h"
+#include "scan_station.h"
 
 /**
  * struct list - the list that the bus gets

@@ -14,7 +14,9 @@
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "known.h"
+#include "scan_count.h"
 #include "scan_int.h"
+#include "scan_sii.h"
 
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* of one access to the EEPROM */
 #define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */

@@ -7,7 +7,9 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "scan_count.h"
 #include "scan_int.h"
+#include "scan_station.h"
 
 #define NO_STATION	0xffff	/* the clocks use it for "no slave" */
 

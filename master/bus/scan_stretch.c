@@ -5,6 +5,7 @@
  */
 #include <linux/slab.h>
 #include "scan_int.h"
+#include "scan_stretch.h"
 
 #define NOWHERE	U16_MAX
 

@@ -5,7 +5,12 @@
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
+#include "dc.h"
+#include "dc_app.h"
 #include "dc_job.h"
+#include "dc_set.h"
+#include "dc_sync.h"
+#include "dc_watch.h"
 #include "../base/once64.h"
 #include "../base/report.h"
 
@@ -50,32 +55,6 @@ static void log_unreliable(const struct ec_dc_job *j)
 		ec_slave_warn(j->slaves[first],
 			      "receive times of this and %u more slave(s) contradict the topology; delays unreliable: check cables, then rescan\n",
 			      n - 1);
-}
-
-/**
- * ec_clock_event() - change the state of a clock
- * @c: clock of a slave
- * @event: what happens to it
- *
- * Context: Process. The worker, the monitor, or an activation.
- * Return: its state before.
- */
-enum ec_clock_state ec_clock_event(struct ec_clock *c, enum ec_clock_event event)
-{
-	static const u8 next[][3] = {
-		[EC_CLOCK_UNSET] = { EC_CLOCK_SET, EC_CLOCK_EXCLUDED, EC_CLOCK_UNSET },
-		[EC_CLOCK_SET] = { EC_CLOCK_SET, EC_CLOCK_LOST, EC_CLOCK_UNSET },
-		[EC_CLOCK_EXCLUDED] = { EC_CLOCK_SET, EC_CLOCK_EXCLUDED, EC_CLOCK_EXCLUDED },
-		[EC_CLOCK_LOST] = { EC_CLOCK_SET, EC_CLOCK_LOST, EC_CLOCK_EXCLUDED },
-	};
-	u32 old = READ_ONCE(c->state);
-
-	/* the monitor may measure during an activation */
-	while (!try_cmpxchg(&c->state, &old, next[old][event]))
-		;
-	if (event != EC_CLOCK_ON_SILENT)
-		c->failed_attempts = 0;
-	return old;
 }
 
 /**
@@ -133,31 +112,6 @@ static void await_time(struct ec_dc *dc, u64 since)
 			return;
 		usleep_range(900, 1100);
 	}
-}
-
-/**
- * ec_dc_set_state() - change the state of the clocks
- * @dc: clocks
- * @state: as the table at enum ec_dc_state allows
- *
- * Context: Process. The worker, the watch, or while neither of them runs.
- */
-void ec_dc_set_state(struct ec_dc *dc, enum ec_dc_state state)
-{
-	/* the states before */
-	static const u8 from[] = {
-		[EC_DC_OFF] = U8_MAX,
-		[EC_DC_BUSY] = U8_MAX,
-		[EC_DC_AWAIT_CYCLE] = BIT(EC_DC_BUSY),
-		[EC_DC_READY] = BIT(EC_DC_BUSY),
-		[EC_DC_FAILED] = BIT(EC_DC_BUSY),
-		[EC_DC_RETRY_WAIT] = BIT(EC_DC_BUSY),
-		[EC_DC_RETRY_DUE] = BIT(EC_DC_READY) | BIT(EC_DC_FAILED) | BIT(EC_DC_RETRY_WAIT),
-	};
-
-	WARN_ON_ONCE(!(from[state] & BIT(dc->state)));
-	WRITE_ONCE(dc->state, state);
-	wake_up_all(&dc->wq);
 }
 
 /* Poll until the application time has come or not (@seen), for @cycles at most. */

@@ -16,7 +16,7 @@
 #include <linux/sort.h>
 #include "ethercat_map.h"
 #include "../link/links.h"
-#include "dc.h"
+#include "dc_app.h"
 #include "../base/once64.h"
 
 #define EPOCH_2000_NS	(946684800ULL * NSEC_PER_SEC)

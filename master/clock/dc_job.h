@@ -4,7 +4,7 @@
 #define EC_DC_JOB_H
 
 #include "../carry/carry.h"
-#include "dc.h"
+#include "dc_state.h"
 #include "../bus/slave.h"
 #include "../wire/dc.h"
 #include "../carry/xfer.h"
@@ -70,7 +70,7 @@ static inline struct ec_clock *ec_job_clock(const struct ec_dc_job *j, unsigned 
 /* all with receive times; all clocks; those not set yet; of these 64 and 32 bits */
 enum ec_dc_who { EC_DC_TIMES, EC_DC_CLOCKS, EC_DC_NEW, EC_DC_NEW_WIDE, EC_DC_NEW_NARROW };
 
-/* dc_job.c */
+bool ec_dc_can_be(struct ec_dc *dc, u16 choice);
 int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends);
 void ec_dc_job_free(struct ec_dc_job *j);
 bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who);
@@ -84,11 +84,5 @@ void ec_dc_compute(struct ec_dc_job *j);
 int ec_dc_get_delays(struct ec_dc_job *j);
 void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms);
 bool ec_dc_has_upstream(const struct ec_dc_job *j);
-
-/* dc_set.c */
-int ec_dc_write(struct ec_dc_job *j);
-int ec_dc_near(struct ec_dc_job *j);
-void ec_dc_settle(struct ec_dc_job *j);
-int ec_dc_check(struct ec_dc_job *j);
 
 #endif

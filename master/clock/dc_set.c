@@ -4,7 +4,11 @@
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
+#include "dc_app.h"
 #include "dc_job.h"
+#include "dc_set.h"
+#include "dc_time.h"
+#include "dc_watch.h"
 
 #define SYNCS		72	/* datagrams of a frame: phase and rate settle alike */
 #define QUIET_SYNCS	12	/* of a frame shortly behind another one */

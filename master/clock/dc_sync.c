@@ -2,10 +2,12 @@
 /* SYNC0 and SYNC1 of one slave (ETG.1000.4 clause 6.8.5). */
 #include <linux/ktime.h>
 #include "../link/links.h"
-#include "dc.h"
+#include "dc_app.h"
+#include "dc_sync.h"
+#include "dc_time.h"
 #include "../bus/result.h"
-#include "../wire/dc.h"
 #include "../carry/xfer.h"
+#include "../wire/dc.h"
 
 #define LEAD_NS		(100 * NSEC_PER_MSEC)	/* until the first SYNC0 */
 #define LEAD_CYCLES	4			/* and so many cycles */

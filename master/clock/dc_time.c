@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The time of the reference clock, by its replies. */
 #include <linux/ktime.h>
-#include "dc.h"
+#include "dc_time.h"
 
 /**
  * ec_dc_clock() - take the time of a reply of the reference clock

@@ -8,12 +8,12 @@
 #include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../link/links.h"
-#include "dc.h"
+#include "dc_watch.h"
 #include "../base/once64.h"
 #include "../base/report.h"
 #include "../bus/slave.h"
-#include "../wire/dc.h"
 #include "../carry/xfer.h"
+#include "../wire/dc.h"
 
 #define PERIOD_MS	1000
 #define GRACE_NS	(10ULL * NSEC_PER_SEC)	/* for clocks that were set to settle */

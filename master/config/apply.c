@@ -11,6 +11,7 @@
 #include "apply_state.h"
 #include "apply_up.h"
 #include "replay_run.h"
+#include "../clock/dc_sync.h"
 
 #define ACKS		3	/* of an error, before INIT is requested */
 #define HOLD_MS		1000	/* a transfer that takes longer is cut off */

@@ -11,6 +11,7 @@
 #include "apply_state.h"
 #include "apply_up.h"
 #include "replay_run.h"
+#include "../clock/dc_sync.h"
 
 #define FLAG_MAX_MS	60000	/* upper limit of the flag */
 

@@ -9,7 +9,7 @@
 #include "../include/uapi/ethercat.h"
 #include "../base/budget.h"
 #include "../bus/pdo.h"
-#include "../clock/dc.h"
+#include "../clock/dc_state.h"
 #include "../wire/eoe.h"
 #include "../wire/regs.h"
 #include "startup.h"

@@ -6,7 +6,7 @@
 #include "../base/limits.h"
 #include "../carry/carry.h"
 #include "../carry/rider.h"
-#include "../clock/dc.h"
+#include "../clock/dc_state.h"
 #include "../config/config.h"
 #include "copy.h"
 #include "cyc_domain.h"

@@ -6,7 +6,8 @@
  * allocates, prints or waits.
  */
 #include "../carry/carry.h"
-#include "../clock/dc.h"
+#include "../clock/dc_state.h"
+#include "../clock/dc_time.h"
 #include "../link/links.h"
 #include "../wire/regs.h"
 #include "dc_datagrams.h"

@@ -10,6 +10,7 @@
 #include "../base/report.h"
 #include "cycle.h"
 #include "pll.h"
+#include "../clock/dc_app.h"
 
 /**
  * ec_pll_init() - reset the time of a cycle

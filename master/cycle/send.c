@@ -7,6 +7,7 @@
 #include "../base/once64.h"
 #include "../kernel/trace.h"
 #include "send.h"
+#include "../clock/dc_app.h"
 
 /*
  * An entry for one more frame. If there is none, the oldest frame in flight is

@@ -17,6 +17,8 @@
 #include "session_attach.h"
 #include "session_groups.h"
 #include "session_status.h"
+#include "../clock/dc.h"
+#include "../clock/dc_app.h"
 
 static const struct ec_cycle_ops cycle_ops = {
 	.cycle = ec_requests_notice,

@@ -3,6 +3,8 @@
 #include "../bus/slave.h"
 #include "clocks.h"
 #include "ref_clock.h"
+#include "../clock/dc.h"
+#include "../clock/dc_job.h"
 
 /**
  * ec_clocks_choice() - station address of the chosen reference clock

@@ -11,6 +11,7 @@
 #include "reserve.h"
 #include "session_attach.h"
 #include "session_slave.h"
+#include "../clock/dc_app.h"
 
 /* One application at a time; a candidate may prepare the takeover of a detached session. */
 static bool is_taken(const struct ec_sessions *ss)

@@ -15,6 +15,7 @@
 #include "session_status.h"
 #include "../bus/slave.h"
 #include "../bus/survey.h"
+#include "../clock/dc_app.h"
 
 /*
  * A timeout and its end are two lines, at most once in 10 s: on a busy host a cycle may time out

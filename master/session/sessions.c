@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/delay.h>
 #include "sessions.h"
+#include "../clock/dc.h"
 
 #define WAIT_US	100	/* between two attempts to get the session lock */
 #define TRIES	20

@@ -7,7 +7,7 @@
 #include <linux/types.h>
 #include <linux/workqueue.h>
 #include "../bus/bus.h"
-#include "../clock/dc.h"
+#include "../clock/dc_state.h"
 #include "../link/links.h"
 
 struct ec_cycles;

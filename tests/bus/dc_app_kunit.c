@@ -5,7 +5,7 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 #include "master/wire/dc_lock.h"
 

@@ -8,7 +8,7 @@
 #include <linux/prandom.h>
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 
 #define SLAVES		100

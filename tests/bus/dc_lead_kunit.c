@@ -7,7 +7,7 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 
 #define JITTER_NS	50000

@@ -4,7 +4,7 @@
 #include "devices/sim/esc_int.h"
 #include "master/cycle/cycle_thread.h"
 #include "master/cycle/pll.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 #include "master/wire/dc_lock.h"
 

@@ -5,7 +5,7 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_job.h"
 #include "master/boundary/ioctl.h"
 
 #define DELAY_ONLY_MS	50u	/* as clocks that do not answer they cost 600 ms */

@@ -5,7 +5,7 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 
 /* frames pass the branch of port 1 before that of port 2, in which slaves stay */

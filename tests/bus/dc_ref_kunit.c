@@ -7,7 +7,7 @@
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/cycle/cycle_thread.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_app.h"
 #include "master/boundary/ioctl.h"
 
 #define PERIOD_NS	1000000

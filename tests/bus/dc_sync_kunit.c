@@ -6,7 +6,7 @@
  */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/link/device.h"
 #include "master/boundary/ioctl.h"
 

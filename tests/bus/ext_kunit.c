@@ -2,7 +2,7 @@
 /* What this master offers beyond the field's interface. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 #include "master/config/why.h"
 #include "master/session/activate.h"

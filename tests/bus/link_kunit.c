@@ -7,7 +7,8 @@
 #include "cyc.h"
 #include "slow.h"
 #include "master/boundary/ioctl.h"
-#include "master/bus/scan.h"
+#include "master/bus/scan_count.h"
+#include "master/bus/scan_station.h"
 
 #define MANY	100
 

@@ -16,6 +16,7 @@
 #include "master/boundary/ioctl.h"
 #include "master/cycle/receive.h"
 #include "master/cycle/send.h"
+#include "master/clock/dc_app.h"
 
 #define CYCLES	1000
 #define ALL	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR)

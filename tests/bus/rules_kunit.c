@@ -2,7 +2,7 @@
 /* What applications written for the field's interface depend on. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 #include "master/config/why.h"
 

@@ -8,7 +8,7 @@
 #include "kapp.h"
 #include "cyc.h"
 #include "devices/sim/app.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 
 #define LIMIT_US	200000

@@ -2,7 +2,7 @@
 /* What an application is told about the bus from activation on, and a reset. */
 #include "cyc.h"
 #include "kapp.h"
-#include "master/clock/dc.h"
+#include "master/clock/dc_state.h"
 #include "master/boundary/ioctl.h"
 #include "master/session/activate.h"
 

@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "master/base/once64.h"
 #include "master/clock/dc.h"
+#include "master/clock/dc_app.h"
 #include "master/carry/xfer.h"
 #include "scanned.h"
 

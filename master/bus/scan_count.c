@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* What the monitor asks before a scan: how many slaves there are, and whether ports have changed. */
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../base/limits.h"
+#include "../link/links.h"
+#include "../carry/xfer.h"
+#include "scan_count.h"
+#include "scan_int.h"
+
+/**
+ * ec_scan_count() - count the slaves
+ * @bus: bus
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: slaves that a frame passes; negative: as ec_xfer().
+ */
+int ec_scan_count(struct ec_bus *bus)
+{
+	u8 type[1] = { 0 };
+	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
+	int ret = ec_xfer(bus->links, &dg, 1);
+
+	return ret ?: dg.back;
+}
+
+/* Has a slave other ports than the list says, or has one shown an event without such a reason? */
+static bool is_other(struct ec_slave *s, u16 dl, u16 *reason)
+{
+	u16 before = s->dl_seen ?: s->dl_status;
+
+	/* its PDI came or went */
+	*reason |= (dl ^ before) & ~EC_SCAN_PORTS;
+	s->dl_seen = dl;
+	return (dl ^ s->dl_status) & EC_SCAN_PORTS;
+}
+
+/**
+ * ec_scan_worth() - read all ports: is a scan worth it?
+ * @bus: bus
+ * @event: a slave has shown the event of its DL status
+ *
+ * Reads the DL status of all, which clears the events.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: whether ports have changed, or the event has no other reason.
+ */
+bool ec_scan_worth(struct ec_bus *bus, bool event)
+{
+	struct ec_dg *dg = kvcalloc(bus->n_slaves + 1, sizeof(*dg), GFP_KERNEL);
+	u8 (*dl)[2] = kvcalloc(bus->n_slaves + 1, sizeof(*dl), GFP_KERNEL);
+	bool other = !dg || !dl;
+	unsigned int n = 0;
+	u16 reason = 0;
+
+	if (!other) {
+		ec_for_each_slave(s, bus) {
+			dg[n] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[n]);
+			n++;
+		}
+		ec_xfer(bus->links, dg, n);
+		ec_for_each_slave(s, bus) {
+			const struct ec_dg *d = &dg[s->position];
+
+			if (!d->err && d->wkc == 1)
+				other |= is_other(s, get_unaligned_le16(dl[s->position]), &reason);
+		}
+	}
+	kvfree(dg);
+	kvfree(dl);
+	return other || (event && !reason);
+}
+
+/**
+ * ec_scan_limit() - how many slaves a scan accepts
+ *
+ * A broken or hostile slave can change a frame, but the master allocates at most a part
+ * of the memory of the computer.
+ *
+ * Context: Any.
+ * Return: slaves.
+ */
+unsigned int ec_scan_limit(void)
+{
+	u64 bytes = (u64)totalram_pages() << PAGE_SHIFT;
+
+	return clamp_t(u64, div_u64(bytes, EC_SLAVES_RAM * EC_SLAVE_BYTES), EC_MIN_SLAVES,
+		       EC_MAX_SLAVES);
+}

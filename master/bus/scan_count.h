@@ -1,0 +1,14 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What the monitor asks before a scan. */
+#ifndef EC_SCAN_COUNT_H
+#define EC_SCAN_COUNT_H
+
+#include <linux/types.h>
+
+struct ec_bus;
+
+int ec_scan_count(struct ec_bus *bus);
+bool ec_scan_worth(struct ec_bus *bus, bool event);
+unsigned int ec_scan_limit(void);
+
+#endif
