@@ -13,6 +13,7 @@
 #include "config/apply.h"
 #include "session/reserve.h"
 #include "session/session_attach.h"
+#include "bus/bus_list.h"
 
 static void master_device(struct ec_links *l, const struct ec_link *link, bool attached)
 {

@@ -19,6 +19,7 @@
 #include "carry/xfer.h"
 #include "bus/scan.h"
 #include "bus/scan_count.h"
+#include "bus/silent.h"
 #include "wire/regs.h"
 #include "session/session_attach.h"
 #include "session/session_status.h"

@@ -14,6 +14,7 @@
 #include <linux/workqueue.h>
 #include "boundary/cdev.h"
 #include "boundary/master.h"
+#include "bus/bus_list.h"
 #include "bus/slave.h"
 #include "carry/xfer.h"
 #include "mailbox/foe.h"

@@ -24,7 +24,7 @@ MOST_UP_SYMBOLS = 0
 MOST_OPS = 12
 MOST_IN_CIRCLE = 4
 # Rooms of the largest circle of each layer: they only go down. None: printed only.
-MOST_ROOMS = {"kernel": 0, "wire": 2, "base": 2, "link": 5, "carry": 5, "mailbox": 0, "bus": 10,
+MOST_ROOMS = {"kernel": 0, "wire": 2, "base": 2, "link": 5, "carry": 5, "mailbox": 0, "bus": 6,
               "clock": 0, "config": 4, "cycle": 0, "session": 0, "boundary": None, "top": 2}
 MOST_ROOMS_OF_NEW = 6
 

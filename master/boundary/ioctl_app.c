@@ -11,6 +11,7 @@
 #include "../session/session_attach.h"
 #include "../session/session_slave.h"
 #include "../session/takeover.h"
+#include "../bus/bus_list.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
 

@@ -6,6 +6,7 @@
 #include "../link/device.h"
 #include "../link/spec.h"
 #include "../session/session.h"
+#include "../bus/bus_list.h"
 
 static int check_name(struct ec_call *call, const struct ec_ioc_device_use *i)
 {

@@ -160,13 +160,6 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 		const struct ec_bus_ops *ops);
 void ec_bus_need_workers(struct ec_bus *bus, unsigned int n);
 void ec_bus_stop(struct ec_bus *bus);
-void ec_bus_exit(struct ec_bus *bus);
-struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position);
-int ec_bus_wait_scan(struct ec_bus *bus);
-int ec_bus_wait_due(struct ec_bus *bus, unsigned int ms);
-bool ec_bus_scan_awaited(const struct ec_bus *bus);
-int ec_bus_wait_slaves(struct ec_bus *bus);
-void ec_bus_wait_slave(struct ec_slave *slave);
 bool ec_bus_scan_busy(const struct ec_bus *bus);
 bool ec_bus_begin_scan(struct ec_bus *bus);
 bool ec_bus_hold(struct ec_bus *bus, bool always);

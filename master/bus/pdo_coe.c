@@ -6,7 +6,9 @@
 #include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../mailbox/coe.h"
+#include "pdo_coe.h"
 #include "slave.h"
+#include "slave_pdo.h"
 
 #define NO_OBJECT	0x06020000	/* abort code */
 #define WHOLE_MS	300000	/* for the PDOs of a SyncManager: up to 65,000 objects */

@@ -11,6 +11,7 @@
 #include "scan_lost.h"
 #include "scan_publish.h"
 #include "scan_station.h"
+#include "silent.h"
 
 /**
  * struct list - the list that the bus gets

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Slaves of the list that do not reply any more; they stay in their place until they do. */
 #include "../base/once64.h"
+#include "silent.h"
 #include "slave.h"
 
 /**

@@ -7,6 +7,8 @@
 #include "../carry/carry.h"
 #include "../kernel/trace.h"
 #include "slave.h"
+#include "slave_mbox.h"
+#include "slave_pdo.h"
 
 #define EXT_ALIGN	__alignof__(unsigned long long)	/* of parts of higher layers */
 

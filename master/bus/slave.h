@@ -277,26 +277,6 @@ void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...) __printf
 void ec_slave_retry(struct ec_slave *slave, u32 max_ms);
 size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size);
 
-/* silent.c */
-bool ec_slave_set_silent(struct ec_slave *s, const char *why);
-bool ec_slave_set_replies(struct ec_slave *s);
-
-/* slave_pdo.c */
-int ec_slave_read_pdos(struct ec_slave *slave);
-void ec_slave_note_profile(struct ec_slave *slave);
-void ec_slave_name_pdos(const struct ec_slave *slave, struct ec_pdo_list *l);
-const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index);
-
-/* slave_mbox.c */
-void ec_slave_settle_mbox(struct ec_slave *s);
-void ec_slave_mbox_text(const struct ec_slave *s, char *buf, size_t size);
-
-/* pdo_coe.c */
-void ec_slave_clear_warning(struct ec_slave *s);
-void ec_slave_read_coe_pdos(struct ec_slave *s);
-int ec_slave_read_sm_pdos(struct ec_slave *s, unsigned int sm);
-void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_pdo_list *l);
-
 /**
  * ec_slave_changed() - what ec_survey() or ec_config_status() reads of a slave was written
  * @slave: slave

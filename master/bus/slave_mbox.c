@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Has a slave a mailbox? Its EEPROM has three places for the answer. */
 #include "slave.h"
+#include "slave_mbox.h"
 
 /**
  * ec_slave_mbox_text() - in what the EEPROM contradicts itself about the mailbox

@@ -4,6 +4,7 @@
 #include "../mailbox/mailbox.h"
 #include "../bus/identify.h"
 #include "../bus/leave_init.h"
+#include "../bus/pdo_coe.h"
 #include "../bus/result.h"
 #include "../carry/xfer.h"
 #include "apply.h"

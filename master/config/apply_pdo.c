@@ -5,6 +5,7 @@
 #include "config.h"
 #include "../mailbox/mailbox.h"
 #include "../link/links.h"
+#include "../bus/pdo_coe.h"
 #include "../bus/result.h"
 #include "../wire/coe.h"
 #include "apply_pdo.h"

@@ -5,6 +5,7 @@
 #include "domain.h"
 #include "../link/links.h"
 #include "../base/once64.h"
+#include "../bus/pdo_coe.h"
 #include "../bus/result.h"
 #include "apply_pdo.h"
 #include "apply_regs.h"

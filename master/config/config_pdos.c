@@ -6,6 +6,7 @@
 #include "config.h"
 #include "../base/limits.h"
 #include "../bus/slave.h"
+#include "../bus/slave_pdo.h"
 
 /* values of an object that lists PDOs or entries; those beyond @n count once @n is larger */
 struct values {

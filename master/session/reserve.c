@@ -5,6 +5,7 @@
 #include <linux/slab.h>
 #include "../base/once64.h"
 #include "../base/report.h"
+#include "../bus/bus_list.h"
 #include "../bus/slave.h"
 #include "activate.h"
 #include "clear.h"

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* A configuration gets a slave, and loses it. */
+#include "../bus/pdo_coe.h"
 #include "../bus/ports.h"
 #include "../config/replay_run.h"
 #include "../mailbox/emerg.h"

@@ -4,6 +4,7 @@
 #include "devices/sim/esc_int.h"
 #include "master/clock/dc.h"
 #include "master/boundary/ioctl.h"
+#include "master/bus/bus_list.h"
 
 /* how long a frame is on its way from slave 0 to slave @i */
 static s32 true_delay(struct bus *b, u32 i)

@@ -4,6 +4,7 @@
 #include "master/mailbox/coe.h"
 #include "master/boundary/ioctl.h"
 #include "cyc.h"
+#include "master/bus/slave_pdo.h"
 
 static int put(struct ec_slave *s, u16 index, u8 sub, u32 value, size_t bytes)
 {

@@ -2,6 +2,7 @@
 /* The scan of a bus where something is wrong: it never holds up the others. */
 #include "bus.h"
 #include "master/boundary/ioctl.h"
+#include "master/bus/bus_list.h"
 
 #define N	6
 

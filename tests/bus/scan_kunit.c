@@ -6,6 +6,7 @@
 #include "bus.h"
 #include "master/boundary/ioctl.h"
 #include "master/boundary/cdev.h"
+#include "master/bus/bus_list.h"
 
 /* the built-in bench, in ring order */
 static const struct {
