@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* The look at the clocks that are set. */
+/* Clocks that are set are compared from time to time. */
 #ifndef EC_DC_WATCH_H
 #define EC_DC_WATCH_H
 
