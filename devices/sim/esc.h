@@ -293,6 +293,20 @@ struct ec_esc_fault {
 	u32 mailbox_after;
 };
 
+/**
+ * struct ec_esc_own - time that a slave has taken for itself since it was added
+ * @reads: accesses to its EEPROM
+ * @eeprom_ns: time of these
+ * @al_ns: time of its changes of state
+ * @mbox_ns: time to its mailbox replies
+ */
+struct ec_esc_own {
+	u32 reads;
+	u64 eeprom_ns;
+	u64 al_ns;
+	u64 mbox_ns;
+};
+
 #define EC_ESC_NO_SM	0xff
 
 /**
@@ -389,6 +403,7 @@ struct ec_esc_late {
  * @eep: EEPROM
  * @dc: clock
  * @fault: scripted misbehaviour
+ * @own: its own time
  * @al_unread: AL control was written and not yet read by the PDI
  * @emulation: device emulation: AL status follows AL control
  * @wd_due: time at which the process data watchdog expires
@@ -437,6 +452,7 @@ struct ec_esc {
 	struct ec_esc_eeprom eep;
 	struct ec_esc_dc dc;
 	struct ec_esc_fault fault;
+	struct ec_esc_own own;
 	bool al_unread;
 	bool emulation;
 	u64 wd_due;

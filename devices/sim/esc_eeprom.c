@@ -189,6 +189,8 @@ static void command(struct ec_esc *esc, u16 control,
 	e->wdata = ec_esc_get16(esc, EC_REG_EEP_DATA);
 	if (!esc->cfg.eeprom_emulated) {
 		e->busy_until = ctx->now + duration(esc, cmd);
+		esc->own.reads += cmd == EC_EEP_CMD_READ;
+		esc->own.eeprom_ns += duration(esc, cmd);
 		return;
 	}
 	e->busy_until = EC_ESC_NEVER;	/* until the PDI answers */

@@ -455,6 +455,7 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 	app->al_to = to;
 	app->al_waits = false;
 	app->al_due = now + step_ns(app, to);
+	app->esc->own.al_ns += step_ns(app, to);
 	show(app, now);	/* the acknowledge shows at once */
 	if (app->al_due == now)
 		finish(app, now);

@@ -314,6 +314,7 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		return;		/* sent twice, taken once */
 	m->rx_counter = h.counter;
 	m->now = now;
+	app->esc->own.mbox_ns += app->response_ns;
 	if (h.channel)
 		out_error(app, EC_MBOX_ERR_CHANNEL, due);
 	else if (!speaks(app, h.type))
