@@ -17,9 +17,9 @@
 #include "scan_sii_int.h"
 
 #define BUSY_NS		(20 * NSEC_PER_MSEC)	/* of one access */
-#define BUSY_LOOKS	4			/* and so many reads of its result */
-#define AGAIN		5			/* starts of one access */
-#define DIRECT_NS	(100 * NSEC_PER_USEC)	/* between frames if the cycle has ended meanwhile */
+#define BUSY_LOOKS	4	/* and so many reads of its result */
+#define AGAIN		5	/* starts of one access */
+#define DIRECT_NS	(100 * NSEC_PER_USEC)	/* between frames if the cycle has ended */
 #define LOOK_MS		20
 
 enum chain_state {
@@ -100,7 +100,7 @@ static enum chain_state chain_take(struct chain *c)
 	c->since_ns = ktime_get_ns();
 	c->looks = 0;
 	c->starts = 0;
-	/* the data before their number */
+	/* the data before their number; pairs with chain_follow() */
 	smp_store_release(&c->got, c->got + c->step);
 	return more ? CHAIN_RUNS : CHAIN_RESTS;
 }
@@ -113,7 +113,7 @@ static void chain_done(struct ec_post *post)
 
 	if (state == CHAIN_RUNS)
 		chain_send(c);
-	else
+	else	/* pairs with chain_follow() */
 		smp_store_release(&c->state, state);
 	/* @got before @want; pairs with chain_want() */
 	smp_mb();
@@ -144,13 +144,16 @@ static void chain_begin(struct chain *c)
 	chain_send(c);
 }
 
-/* It has read what was needed: how much more is? It goes on meanwhile, as mostly there is more. */
+/* It has read what was needed: how much more is? It continues meanwhile: mostly there is more. */
 static void chain_want(struct chain *c, u32 got)
 {
 	struct reader *r = c->reader;
 	u32 before = 2 * c->first;
 
-	if (r->kept || got < c->want)
+	if (r->kept)
+		return;
+	r->slave->part_bytes = before + got;
+	if (got < c->want)
 		return;
 	if (ec_scan_image_reads_on(r, before + got)) {
 		WRITE_ONCE(c->want, r->need - before);
@@ -167,12 +170,17 @@ static void chain_want(struct chain *c, u32 got)
 /* Return: whether it runs. */
 static bool chain_follow(struct chain *c)
 {
+	/* pairs with chain_done() */
 	u8 state = smp_load_acquire(&c->state);
+	/* pairs with chain_take() */
 	u32 got = smp_load_acquire(&c->got);
 	struct reader *r = c->reader;
 
-	if (r->done || r->alone)
-		return false;
+	/* no access is left over when the EEPROM goes to the PDI */
+	if (r->done || r->alone) {
+		WRITE_ONCE(c->limit, 0);
+		return state == CHAIN_RUNS;
+	}
 	if (state == CHAIN_RUNS) {
 		chain_want(c, got);
 		return true;
@@ -180,7 +188,7 @@ static bool chain_follow(struct chain *c)
 	if (got && r->kept)
 		ec_scan_image_take(r, c->check, got);
 	else if (got)
-		ec_scan_image_took(r, got);
+		ec_scan_image_reached(r, 2 * c->first + got);
 	if (r->done)
 		return false;
 	if (state == CHAIN_FAILED) {

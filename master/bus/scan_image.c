@@ -13,7 +13,7 @@
 
 #define FIRST_BYTES	EC_SII_FIXED_SIZE
 #define FIRST_CAP	2048
-#define SIZE_WORD	0x3c	/* the access with size and version of the EEPROM */
+#define SIZE_WORD	0x3e	/* size and version of the EEPROM, also in an access of 4 bytes */
 #define PART_BYTES	16384	/* a part has so many at least */
 #define PART_NS		(2ULL * NSEC_PER_SEC)	/* and may take so long */
 #define PART_MAX_NS	(10ULL * NSEC_PER_SEC)	/* beside a slow cycle it has fewer */
@@ -152,8 +152,8 @@ void ec_scan_image_enlarge(struct reader *r, size_t bytes)
 }
 
 /**
- * ec_scan_image_plan() - enlarge the memory for the next access, or end the reader after the last one
- * @r: reader
+ * ec_scan_image_plan() - enlarge the memory for the next access
+ * @r: reader; it is done after the last access
  *
  * Context: The monitor thread. May sleep.
  */
@@ -209,7 +209,7 @@ u32 ec_scan_image_room(const struct reader *r)
 }
 
 /**
- * ec_scan_image_reads_on() - is more to be read, and has the memory of the image room for it?
+ * ec_scan_image_reads_on() - is more to be read, and does it fit into the memory of the image?
  * @r: reader; @need is set if so
  * @bytes: read so far
  *
@@ -275,24 +275,25 @@ static void take_kept(struct reader *r)
 
 static void compare_kept(struct reader *r, const u8 *data, size_t len)
 {
+	len = min(len, r->kept->bytes - 2 * r->check);
 	if (memcmp(r->kept->sii + 2 * r->check, data, len))
 		ec_scan_image_drop(r);
-	else if (r->check == SIZE_WORD && last_word(r->kept) != SIZE_WORD)
+	else if (r->check == SIZE_WORD)
 		r->check = last_word(r->kept);
 	else
 		take_kept(r);
 }
 
 /**
- * ec_scan_image_took() - more of the image is in its memory
+ * ec_scan_image_reached() - more of the image is in its memory
  * @r: reader
- * @len: bytes behind those before
+ * @bytes: read so far
  *
  * Context: The monitor thread. May sleep.
  */
-void ec_scan_image_took(struct reader *r, size_t len)
+void ec_scan_image_reached(struct reader *r, size_t bytes)
 {
-	r->slave->part_bytes += len;
+	r->slave->part_bytes = bytes;
 	ec_scan_image_plan(r);
 	look_for_kept(r);
 }
@@ -314,11 +315,11 @@ void ec_scan_image_take(struct reader *r, const u8 *data, size_t len)
 		return;
 	}
 	memcpy(s->part + s->part_bytes, data, len);
-	ec_scan_image_took(r, len);
+	ec_scan_image_reached(r, s->part_bytes + len);
 }
 
 /**
- * ec_scan_image_begin() - begin to read an EEPROM, or continue where the previous scan was interrupted
+ * ec_scan_image_begin() - read an EEPROM, from where the previous scan was interrupted
  * @r: zeroed reader
  * @s: its slave
  *

@@ -4,7 +4,8 @@
 #define EC_SCAN_SII_INT_H
 
 #include "../link/links.h"
-#include "scan_int.h"
+#include "../wire/regs.h"
+#include "slave.h"
 
 /* one slave being read, into its @part */
 struct reader {
@@ -78,7 +79,7 @@ u32 ec_scan_image_word(const struct reader *r);
 u32 ec_scan_image_room(const struct reader *r);
 bool ec_scan_image_reads_on(struct reader *r, size_t bytes);
 void ec_scan_image_take(struct reader *r, const u8 *data, size_t len);
-void ec_scan_image_took(struct reader *r, size_t len);
+void ec_scan_image_reached(struct reader *r, size_t bytes);
 void ec_scan_image_drop(struct reader *r);
 void ec_scan_image_interrupt(struct job *j);
 
