@@ -5,6 +5,7 @@
  * EEPROM, changes of state, mailbox replies. A port is open for the first time in a trial.
  */
 #include "cyc.h"
+#include "slow.h"
 #include "devices/sim/esc_int.h"
 
 #define BACK		200	/* cycles to OP */
@@ -51,6 +52,7 @@ static const u32 periods_us[] = { 1000, 4000, 10000 };
  * @off: it has lost its power meanwhile
  * @sync: it has SYNC0
  * @remap: its mapping is written
+ * @ring: the device has rings of descriptors, as a native one, and is polled by the cycle
  * @cycle_bytes: result: of the frame of the cycle, on the wire
  * @wire_ns: result: wire time of the frames beside the cycle
  * @own_ns: result: its own time
@@ -64,6 +66,7 @@ struct way {
 	bool off;
 	bool sync;
 	bool remap;
+	bool ring;
 	u64 cycle_bytes;
 	u64 wire_ns;
 	u64 own_ns;
@@ -114,7 +117,10 @@ static struct cyc *without_x(struct kunit *test, struct way *w)
 	}
 	if (w->large)
 		enlarge(b, w->p->a + 2, w->large);
-	bus_plug(b);
+	if (w->ring)
+		slow_plug(b, 64, 1);
+	else
+		bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, w->p->n, EC_AL_PREOP, 20000), ~0ull);
 	bus_idle(b);
 	c = cyc_new(b, w->period_us);
@@ -183,8 +189,8 @@ static u32 cycles_to(struct cyc *c, struct way *w, u32 index, u8 state)
 	KUNIT_ASSERT_LT(b->test, i, 20000u);
 	w->own_ns = own->eeprom_ns - before.eeprom_ns + own->al_ns - before.al_ns +
 		    own->mbox_ns - before.mbox_ns;
-	bus_figure("cycle of %u us, bus of %u: %s %s%s%s%s in %s %llu cycles after its port was opened; %llu frames, on the wire %llu us; its own time: %u accesses to %u bytes of EEPROM %llu us, changes of state %llu us, mailbox replies %llu us",
-		   w->period_us, w->p->n, state == EC_AL_OP ? "known" : "new",
+	bus_figure("cycle of %u us, bus of %u%s: %s %s%s%s%s in %s %llu cycles after its port was opened; %llu frames, on the wire %llu us; its own time: %u accesses to %u bytes of EEPROM %llu us, changes of state %llu us, mailbox replies %llu us",
+		   w->period_us, w->p->n, w->ring ? " at a device with rings" : "", state == EC_AL_OP ? "known" : "new",
 		   w->four ? "4-byte slave" : "slave", w->off ? ", power off" : "",
 		   w->sync ? ", SYNC0" : "", w->remap ? ", mapping written" : "",
 		   state == EC_AL_OP ? "OP" : "PREOP", c->cycles - began, bus_frames(b) - frames,
@@ -273,6 +279,15 @@ static void return_new(struct kunit *test)
 	at_each(test, (struct way){ .p = &short_bus, .bytes = 1024, .four = true }, arrives);
 	/* what takes more than 2 s and 16 KiB, or 10 s, is read by several scans */
 	arrives(test, &large);
+}
+
+/* The same at a device with rings of descriptors */
+static void return_at_rings(struct kunit *test)
+{
+	at_each(test, (struct way){ .p = &short_bus, .bytes = 1024, .ring = true }, back);
+	at_each(test, (struct way){ .p = &short_bus, .bytes = 1024, .ring = true, .sync = true },
+		back);
+	at_each(test, (struct way){ .p = &short_bus, .bytes = 1024, .ring = true }, arrives);
 }
 
 /* In a bus of 1,000 slaves the same, and the wire time */
@@ -379,6 +394,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(return_known),
 	KUNIT_CASE(return_known_sync),
 	KUNIT_CASE(return_new),
+	KUNIT_CASE(return_at_rings),
 	KUNIT_CASE(return_of_1000),
 	KUNIT_CASE(return_compares),
 	KUNIT_CASE(return_eeprom_faults),
