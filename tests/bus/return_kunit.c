@@ -190,7 +190,8 @@ static u32 cycles_to(struct cyc *c, struct way *w, u32 index, u8 state)
 	w->own_ns = own->eeprom_ns - before.eeprom_ns + own->al_ns - before.al_ns +
 		    own->mbox_ns - before.mbox_ns;
 	bus_figure("cycle of %u us, bus of %u%s: %s %s%s%s%s in %s %llu cycles after its port was opened; %llu frames, on the wire %llu us; its own time: %u accesses to %u bytes of EEPROM %llu us, changes of state %llu us, mailbox replies %llu us",
-		   w->period_us, w->p->n, w->ring ? " at a device with rings" : "", state == EC_AL_OP ? "known" : "new",
+		   w->period_us, w->p->n, w->ring ? " at a device with rings" : "",
+		   state == EC_AL_OP ? "known" : "new",
 		   w->four ? "4-byte slave" : "slave", w->off ? ", power off" : "",
 		   w->sync ? ", SYNC0" : "", w->remap ? ", mapping written" : "",
 		   state == EC_AL_OP ? "OP" : "PREOP", c->cycles - began, bus_frames(b) - frames,
