@@ -10,6 +10,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "gap.h"
 #include "graph.h"
 #include "known.h"
 #include "ports.h"
@@ -24,6 +25,7 @@
 /* a slave at whose port something is tried */
 struct host {
 	u16 station;
+	u16 position;
 	u8 control;
 	u8 loops;	/* with all ports closed behind which nothing is known */
 };
@@ -131,6 +133,17 @@ static void trial_give_back(const struct trial *t, u16 station, bool next)
 			t->host.station, t->port, station);
 }
 
+/* Between the host and its port: the slaves of the branches that a frame passes before. */
+static struct ec_gaps find_gaps(const struct trial *t)
+{
+	u32 passed = t->position > t->host.position ? t->position - t->host.position - 1 : 0;
+	u32 bytes = 0, i;
+
+	for (i = 0; i < t->n; i++)
+		bytes += t->work[i].len;
+	return ec_gap_find(t->bus->links, passed, bytes);
+}
+
 /*
  * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0, or
  * -EAGAIN: frames were lost; -ENOLINK: the contact broke.
@@ -141,18 +154,22 @@ static int trial_run(struct trial *t, u16 station)
 			       ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
 	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
-	struct ec_dg dg[WORK + 9], *close, *check;
+	struct ec_dg dg[WORK + 9 + 2 * EC_GAP_FRAMES], *work, *close, *check;
 	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 }, any[1];
-	unsigned int n = 0, i;
+	struct ec_gaps gaps = find_gaps(t);
+	unsigned int n, i;
 
+	n = ec_gap_add(dg, gaps.before_ns);
 	/* twice: without it the work would be done by the next slave of the ring */
 	for (i = 0; i < 2; i++) {
 		dg[n] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, opened);
 		dg[n++].last = true;
 	}
+	work = &dg[n];
 	for (i = 0; i < t->n; i++)
 		dg[n++] = t->work[i];
 	dg[n - 1].last = true;
+	n += ec_gap_add(&dg[n], gaps.after_ns);
 	close = &dg[n];
 	for (i = 0; i < 2; i++) {
 		dg[n] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, closed);
@@ -166,7 +183,7 @@ static int trial_run(struct trial *t, u16 station)
 	dg[n++] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, any);
 	ec_xfer_train(t->bus->links, dg, n);
 	for (i = 0; i < t->n; i++)
-		t->work[i] = dg[2 + i];
+		t->work[i] = work[i];
 	if (check[0].err || check[0].wkc != 1 ||
 	    !(get_unaligned_le16(dl) & EC_DLS_LOOP(t->port))) {
 		close_surely(t, closed);
@@ -402,6 +419,7 @@ static unsigned int next_link(const struct guest *g, unsigned int after)
 struct level {
 	struct host host;
 	struct guest guest;
+	u16 position;
 	unsigned int port;
 };
 
@@ -415,13 +433,14 @@ static int trial_branch(struct trial *t, struct guest *first)
 	if (!stack)
 		return n;
 	stack[0].guest = *first;
+	stack[0].position = t->position;
 	for (;;) {
 		struct level *l = &stack[depth];
 		int ret;
 
 		if (!l->port)
-			l->host = (struct host){ l->guest.station, l->guest.control[0],
-						 guest_loops(&l->guest) };
+			l->host = (struct host){ l->guest.station, l->position,
+						 l->guest.control[0], guest_loops(&l->guest) };
 		l->port = next_link(&l->guest, l->port);
 		if (!l->port || READ_ONCE(t->bus->base->stopping)) {
 			if (!depth--)
@@ -443,7 +462,7 @@ static int trial_branch(struct trial *t, struct guest *first)
 		/* a line of slaves needs no depth */
 		if (next_link(&l->guest, l->port) && ++depth == DEPTH)
 			break;
-		stack[depth] = (struct level){ .guest = g };
+		stack[depth] = (struct level){ .guest = g, .position = t->position };
 	}
 	kvfree(stack);
 	return n;
@@ -466,7 +485,7 @@ int ec_trial(struct ec_slave *s, unsigned int port)
 {
 	struct trial t = {
 		.bus = s->bus,
-		.host = { s->station, s->ports.control, s->ports.loops },
+		.host = { s->station, s->position, s->ports.control, s->ports.loops },
 		.port = port,
 		.position = ec_graph_place(s, port),
 	};

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* A trial at a port that frames come to late: large branches are in front of it. */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+
+#define N	41u	/* connected at first */
+
+/* each frame takes its way from slave to slave; it is lost where a loop closes in front of it */
+#define TEXT(ways) \
+	"segment seed=3 response=100us transition=1ms under_way=" ways "\n" \
+	"slave hub EK1100\n" \
+	"repeat 40 slave a drive in=8 out=8 cable=200\n" \
+	"branch none\nslave x1 drive in=8 out=8\nslave x2 EK1100\n" \
+	"branch x2 2\nslave x3 drive in=8 out=8\n"
+
+/* A slave behind the port that has processed the frame changes its counter. */
+static void look(struct cyc *c)
+{
+	u64 *wrong = c->ctx;
+
+	*wrong += cyc_state(c, 0)->working_counter != cyc_state(c, 0)->expected;
+}
+
+/* The slaves have been let in, and no frame of the cycle has met the trials. */
+static void let_in(struct kunit *test, const char *text)
+{
+	struct bus *b = bus_up(test, text, N);
+	struct cyc *c = cyc_in_op(b, 0, N);
+	u64 wrong = 0;
+	char line[64];
+	u32 i;
+
+	cyc_run(c, 200);
+	c->ctx = &wrong;
+	c->each = look;
+	/* as another master left it: over the process data of the first drive */
+	snprintf(line, sizeof(line), "old x1 state=OP logical=%u", bus_esc(b, 1)->fmmu[0].logical);
+	bus_command(b, line);
+	cyc_run(c, 5);
+	bus_command(b, "plug hub.2 x1.0");
+	for (i = 0; i < 2000 && bus_n_slaves(b) < N + 3; i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), N + 3);
+	cyc_run(c, 200);
+	bus_expect_graph(b, "plug");
+	KUNIT_EXPECT_EQ(test, wrong, 0ull);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("contact lost"), 0u);
+}
+
+static void trial_behind_large_branch(struct kunit *test)
+{
+	let_in(test, TEXT("lost"));
+}
+
+static void trial_behind_large_branch_by_chance(struct kunit *test)
+{
+	let_in(test, TEXT("random"));
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(trial_behind_large_branch),
+	KUNIT_CASE(trial_behind_large_branch_by_chance),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_trial", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
