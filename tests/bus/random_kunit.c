@@ -1,180 +1,136 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Random events at all ports of a tree while process data run: who is not cut off does not notice,
- * and afterwards the list is the bus.
+ * Random events at all ports of a random tree, during the scan, the configuration, the set-up of
+ * clocks and in OP, beside objects and files: who is not cut off does not notice, and afterwards
+ * list and neighbors are those of the model.
  */
-#include "cyc.h"
-#include "tests/unit/port_events.h"
+#include "random.h"
 
-#define SLAVES	32	/* slaves of the segment */
-
-static const char text[] =
-	"segment seed=7 response=100us transition=1ms\n"
-	"slave hub EK1100\n"
-	"slave a1 drive in=8 out=8\nslave a2 drive in=8 out=8\nslave a3 drive in=8 out=8\n"
-	"branch hub 2\nslave mid EK1100\n"
-	"slave b1 drive in=8 out=8\nslave b2 drive in=8 out=8\nslave b3 drive in=8 out=8\n"
-	"branch mid 2\nslave low EK1100\n"
-	"slave c1 drive in=8 out=8\nslave c2 drive in=8 out=8\n"
-	"branch low 2\nslave d1 drive in=8 out=8\nslave d2 drive in=8 out=8\n"
-	"branch none\nslave x1 drive in=8 out=8\nslave x2 drive in=8 out=8\n";
-
-#define N	13	/* connected at first */
-
-/**
- * struct run - what the run has to keep
- * @e: events
- * @last_ns: time of the last check
- * @entitled: was in OP, and its path was whole since
- * @slave: its object then
- * @broken: slaves that were entitled, and were not in OP, or not in the list
- * @checked: slaves and cycles
- */
-struct run {
-	struct port_events e;
-	u64 last_ns;
-	bool entitled[SLAVES];
-	struct ec_slave *slave[SLAVES];
-	u32 broken;
-	u64 checked;
-};
-
-static struct ec_slave *by_station(struct bus *b, u16 station)
-{
-	u32 i;
-
-	for (i = 0; i < bus_n_slaves(b); i++)
-		if (bus_slave(b, i)->station == station)
-			return bus_slave(b, i);
-	return NULL;
-}
-
-static bool is_well(const struct ec_esc *esc, const struct ec_slave *s)
-{
-	return esc->mem[EC_REG_AL_STATUS] == EC_AL_OP && !READ_ONCE(s->stop.gone) &&
-	       !READ_ONCE(s->silent) && !READ_ONCE(s->reconfigure) &&
-	       READ_ONCE(s->al_status) == EC_AL_OP;
-}
-
-/* A port that has closed itself at a loss of link stays closed when the link is back. */
-static bool is_passed(struct bus *b, const struct ec_esc *esc)
-{
-	const struct ec_sim_route *r = &b->sim->route[0];
-	u32 at = (u32)esc->route_pos[0];
-
-	return at < r->steps && r->step[at].esc == esc;
-}
-
-static void check(struct bus *b, struct run *r, u32 i, bool whole)
-{
-	struct ec_esc *esc = bus_esc(b, i);
-	struct ec_slave *s;
-
-	if (!whole) {
-		r->entitled[i] = false;
-		return;
-	}
-	if (r->entitled[i]) {
-		r->checked++;
-		if (is_well(esc, r->slave[i]))
-			return;
-		s = r->slave[i];
-		pr_info("# broken: slave %u of the segment, AL 0x%02x, gone %d silent %d, reconfigure %d, AL of the list 0x%02x, %llu ns\n",
-			i, esc->mem[EC_REG_AL_STATUS], s->stop.gone, s->silent, s->reconfigure,
-			s->al_status, ktime_get_ns());
-		r->broken++;
-		r->entitled[i] = false;
-		return;
-	}
-	s = by_station(b, get_unaligned_le16(esc->mem + EC_REG_STATION));
-	if (!s || !is_well(esc, s))
-		return;
-	if (r->slave[i])
-		ec_slave_unref(r->slave[i]);
-	r->slave[i] = ec_slave_ref(s);
-	r->entitled[i] = true;
-}
-
-static void look(struct cyc *c)
-{
-	struct run *r = c->ctx;
-	u64 now = ktime_get_ns();
-	u8 mark[SLAVES];
-	u32 i;
-
-	port_events_plan(&r->e, now);
-	port_events_reached(c->b->sim, r->last_ns, -1, mark);
-	for (i = 0; i < c->b->sim->count; i++)
-		check(c->b, r, i, mark[i] && is_passed(c->b, bus_esc(c->b, i)));
-	r->last_ns = now;
-}
+#define EVENTS	250	/* of a run: a case has 300 s, also of virtual time */
 
 /* The list is that of the model, and has all that have a path. */
 static void expect_graph(struct bus *b, const char *after)
 {
-	u8 mark[SLAVES];
+	u8 mark[RANDOM_SLAVES];
 
 	KUNIT_EXPECT_EQ_MSG(b->test, port_events_reached(b->sim, ktime_get_ns(), -1, mark),
 			    b->sim->route[0].steps, "after %s: let in", after);
 	bus_expect_graph(b, after);
 }
 
-/* Events for a while; then the list is the bus, and again once all is as in the beginning. */
-static void run_events(struct cyc *c, struct run *r, u64 seed, u32 events)
+static void let_pass(struct random_run *r, u32 ms)
 {
-	struct bus *b = c->b;
-	u64 until = ktime_get_ns() + 80 * NSEC_PER_SEC;
-
-	port_events_init(&r->e, b->sim, seed, ktime_get_ns());
-	/* a host at a port that has just lost its branch opens it, and takes all frames */
-	r->e.no_hosts = true;
-	r->last_ns = ktime_get_ns();
-	c->ctx = r;
-	c->each = look;
-	while (r->e.events < events && ktime_get_ns() < until)
-		cyc_run(c, 100);
-	port_events_stop(&r->e);
-	cyc_run(c, 1000);
-	/* a contact that was lost often is tried after a minute of link */
-	cyc_run(c, 70000);
-	expect_graph(b, "events");
-	c->each = NULL;
-	port_events_restore(&r->e, ktime_get_ns());
-	cyc_run(c, 75000);
-	expect_graph(b, "the end");
+	if (r->c)
+		cyc_run(r->c, ms);
+	else
+		msleep(ms);
 }
 
-static void random_events(struct kunit *test, u64 seed, u32 events)
+static void begin_events(struct random_run *r, bool hosts)
 {
-	struct bus *b = bus_up(test, text, N);
-	struct run *r = kunit_kzalloc(test, sizeof(*r), GFP_KERNEL);
-	struct cyc *c;
+	u64 events = r->e.events, bursts = r->e.bursts;
+
+	port_events_init(&r->e, r->b->sim, r->seed + (r->c ? 0 : 1000000), ktime_get_ns());
+	r->e.events = events;
+	r->e.bursts = bursts;
+	r->e.no_hosts = !hosts;
+}
+
+/* Events while the bus is scanned, without an application: everything is found then. */
+static void events_in_scan(struct random_run *r)
+{
+	u64 until = ktime_get_ns() + 4 * NSEC_PER_SEC;
+
+	begin_events(r, false);
+	while (ktime_get_ns() < until) {
+		port_events_plan(&r->e, ktime_get_ns());
+		usleep_range(2000, 2001);
+	}
+	port_events_stop(&r->e);
+	let_pass(r, 1000);
+	bus_idle(r->b);
+	expect_graph(r->b, "events in the scan");
+	port_events_restore(&r->e, ktime_get_ns());
+	let_pass(r, 1000);
+	bus_idle(r->b);
+	expect_graph(r->b, "the scan");
+	KUNIT_ASSERT_EQ(r->b->test, bus_n_slaves(r->b), r->n);
+}
+
+/* Events for a while; then the list is the bus, and again once all is as in the beginning. */
+static void events_in_operation(struct random_run *r)
+{
+	u64 until = ktime_get_ns() + 80 * NSEC_PER_SEC;
+
+	begin_events(r, r->hosts);
+	random_users_begin(r);
+	while (r->e.events < EVENTS && ktime_get_ns() < until)
+		cyc_run(r->c, 100);
+	port_events_stop(&r->e);
+	cyc_run(r->c, 1000);
+	r->rescan_ns = ~0ull;
+	random_users_end(r);
+	/* a contact that was lost often is tried after a minute of link */
+	cyc_run(r->c, 70000);
+	expect_graph(r->b, "events");
+	port_events_restore(&r->e, ktime_get_ns());
+	cyc_run(r->c, 75000);
+	expect_graph(r->b, "the end");
+	KUNIT_EXPECT_TRUE_MSG(r->b->test, cyc_all_op(r->c), "not all in OP at the end");
+}
+
+static void start(struct random_run *r, struct kunit *test)
+{
+	r->b = bus_new(test, random_tree(r, test));
+	if (r->early == RANDOM_FROM_SCAN) {
+		bus_plug(r->b);
+		events_in_scan(r);
+	} else {
+		bus_plug_scanned(r->b, r->n, 60000);
+	}
+	bus_idle(r->b);
+	random_application(r);
+	if (r->early == RANDOM_IN_OP) {
+		KUNIT_ASSERT_NE(test, cyc_wait_op(r->c, 20000), ~0ull);
+		cyc_run(r->c, 200);
+	}
+}
+
+static void random_events(struct kunit *test, u64 seed)
+{
+	struct random_run *r = kunit_kzalloc(test, sizeof(*r), GFP_KERNEL);
+	static const char * const from[] = {
+		[RANDOM_IN_OP] = "OP", [RANDOM_FROM_START] = "start", [RANDOM_FROM_SCAN] = "scan",
+	};
+	const struct random_user *u;
 	u32 i;
 
 	KUNIT_ASSERT_NOT_NULL(test, r);
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 1, 3, 0);
-	cyc_map_all(c, 5, 3, 0);
-	cyc_map_all(c, 9, 2, 0);
-	cyc_map_all(c, 11, 2, 0);
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
-	cyc_run(c, 200);
-	run_events(c, r, seed, events);
-	KUNIT_EXPECT_EQ(test, r->broken, 0u);
-	bus_figure("%llu random events, %llu bursts among them, seed %llu: of %llu checks of slaves that were not cut off %u failed",
-		   r->e.events, r->e.bursts, seed, r->checked, r->broken);
-	for (i = 0; i < SLAVES; i++)
-		if (r->slave[i])
-			ec_slave_unref(r->slave[i]);
+	r->seed = seed;
+	start(r, test);
+	events_in_operation(r);
+	u = r->user;
+	KUNIT_EXPECT_EQ(test, r->broken, 0ull);
+	KUNIT_EXPECT_EQ(test, r->wrong, 0ull);
+	KUNIT_EXPECT_EQ(test, u[0].bad + u[1].bad, 0u);
+	bus_figure("seed %llu, %u slaves%s%s, from %s: %llu random events, %llu bursts among them; of %llu checks of slaves that were not cut off %llu failed, %llu values and counters wrong, %llu by events that met a frame (%llu cycles), %llu with the address of a trial (at most %u cycles); objects %u good, %u cut off, %u failed, files %u, %u, %u",
+		   seed, r->n, r->clocks ? ", clocks" : "", r->hosts ? ", hosts" : "",
+		   from[r->early], r->e.events, r->e.bursts, r->checked, r->broken, r->wrong,
+		   r->in_flight, r->met, r->readdressed, r->longest, u[0].good, u[0].cut, u[0].bad,
+		   u[1].good, u[1].cut, u[1].bad);
+	for (i = 0; i < RANDOM_SLAVES; i++)
+		if (r->s[i].slave)
+			ec_slave_unref(r->s[i].slave);
 }
 
 /* in "make check" one run, in "make check-long" EC_UML_ARGS=random_kunit.runs=80 */
 static uint runs = 1;
 module_param(runs, uint, 0444);
 MODULE_PARM_DESC(runs, "Runs of 250 events, each with a seed of its own, at most 400");
+
+static uint first;
+module_param(first, uint, 0444);
+MODULE_PARM_DESC(first, "Seed of the first run");
 
 static const char seeds[400];	/* their addresses count */
 
@@ -184,13 +140,13 @@ static const void *seed_gen_params(const void *prev, char *desc)
 
 	if (next >= seeds + min_t(uint, runs, ARRAY_SIZE(seeds)))
 		return NULL;
-	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "seed %d", (int)(next - seeds));
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "seed %u", first + (uint)(next - seeds));
 	return next;
 }
 
 static void random_events_at_all_ports(struct kunit *test)
 {
-	random_events(test, (const char *)test->param_value - seeds, 250);
+	random_events(test, first + (u64)((const char *)test->param_value - seeds));
 }
 
 static struct kunit_case cases[] = {
