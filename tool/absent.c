@@ -69,21 +69,32 @@ static void absent_json(const struct ect_absent *a, const struct ect_slave *up)
 	out_end();
 }
 
-static void closed_text(const struct ect_slave *s, unsigned int port, char *buf, size_t size)
+/* @b: what is behind it, without a device: zeros */
+static void closed_text(const struct ect_slave *s, unsigned int port, const struct ect_behind *b,
+			char *buf, size_t size)
 {
 	const struct ec_port_text *text = ec_port_text(s->port_kept[port]);
-	char name[ECT_STRING + 1], wait[64] = "";
+	char name[ECT_STRING + 1], more[160] = "", how[64] = "";
 
 	if (s->port_kept[port] == ECT_PORT_LOSSES)
-		snprintf(wait, sizeof(wait), ", opens after %u s of link without loss",
+		snprintf(more, sizeof(more), ", opens after %u s of link without loss",
 			 s->port_wait_s[port]);
-	snprintf(buf, size, "port %u of slave %u%s stays closed despite its link: %s%s; %s", port,
-		 s->position, label(s, name, sizeof(name)), text->reason, wait, text->remedy);
+	if (text->device) {
+		text_behind(b, more, sizeof(more));
+		snprintf(how, sizeof(how), ", or 'ethercat slaves -p %u --let-in %u'", s->position,
+			 port);
+	}
+	snprintf(buf, size, "port %u of slave %u%s stays closed despite its link: %s%s; %s%s",
+		 port, s->position, label(s, name, sizeof(name)), text->reason, more,
+		 text->remedy, how);
 }
 
-static void closed_json(const struct ect_slave *s, unsigned int port)
+static void closed_json(const struct ect_slave *s, unsigned int port, const struct ect_behind *b)
 {
-	static const char *const keys[] = { "", "no_reply", "no_loop_control", "losses" };
+	static const char *const keys[] = {
+		"", "no_reply", "no_loop_control", "losses", "other_device", "other_sign",
+		"other_serial", "second", "reversed", "boot", "unreadable", "unexpected",
+	};
 	u8 kept = s->port_kept[port];
 
 	out_object(NULL);
@@ -91,23 +102,66 @@ static void closed_json(const struct ect_slave *s, unsigned int port)
 	out_u("port", port, NULL);
 	out_str("reason", kept < ARRAY_SIZE(keys) ? keys[kept] : "unknown", NULL);
 	out_u("wait_s", s->port_wait_s[port], NULL);
+	if (b->kept < ECT_PORT_OTHER) {
+		out_null("behind", NULL);
+	} else {
+		out_object("behind");
+		out_u("vendor_id", b->vendor_id, NULL);
+		out_u("product_code", b->product_code, NULL);
+		out_u("revision_number", b->revision_number, NULL);
+		out_u("serial_number", b->serial_number, NULL);
+		out_u("alias", b->alias, NULL);
+		out_u("identification", b->identification, NULL);
+		out_u("slaves", b->slaves, NULL);
+		out_str("name", b->name, NULL);
+		out_end();
+	}
 	out_end();
 }
 
-static void closed_ports(const struct dev *d, const struct slaves *all, absent_line *line)
+/* A port that has opened meanwhile has nothing behind it. */
+static struct ect_behind behind(struct dev *d, const struct ect_slave *s, unsigned int port)
 {
-	char text[320];
+	struct ect_behind b = { .struct_size = sizeof(b) };
+
+	if (s->port_kept[port] < ECT_PORT_OTHER || ect_behind_read(d->h, s->device, port, &b))
+		return (struct ect_behind){ 0 };
+	return b;
+}
+
+static void closed_ports(struct dev *d, const struct slaves *all, absent_line *line)
+{
+	char text[480];
 
 	out_array("closed_ports");
 	for (size_t i = 0; i < all->n; i++)
 		for (unsigned int p = 0; p < ECT_PORTS; p++) {
+			struct ect_behind b;
+
 			if (!all->v[i].port_kept[p])
 				continue;
-			closed_text(&all->v[i], p, text, sizeof(text));
+			b = behind(d, &all->v[i], p);
+			closed_text(&all->v[i], p, &b, text, sizeof(text));
 			line(d, text);
-			closed_json(&all->v[i], p);
+			closed_json(&all->v[i], p, &b);
 		}
 	out_end();
+}
+
+static void closed_draw(struct dev *d, const struct slaves *all)
+{
+	for (size_t i = 0; i < all->n; i++)
+		for (unsigned int p = 0; p < ECT_PORTS; p++) {
+			struct ect_behind b = behind(d, &all->v[i], p);
+
+			if (b.kept < ECT_PORT_OTHER)
+				continue;
+			out_text("\n\tclosed%zu_%u [shape=\"box\", style=\"dotted\", label=\"",
+				 i, p);
+			out_quoted(b.name[0] ? b.name : "unknown device");
+			out_text("\\nnot let in\"]\n\tslave%u -- closed%zu_%u [style=\"dotted\", taillabel=\"%u\"]\n",
+				 all->v[i].position, i, p, p);
+		}
 }
 
 static int absent_list(struct dev *d, struct ect_list **list)
@@ -164,5 +218,6 @@ int absent_draw(struct dev *d, const struct slaves *all)
 			out_text("\tmaster -- absent%zu [style=\"dashed\"]\n", i);
 	}
 	ect_list_free(list);
+	closed_draw(d, all);
 	return 0;
 }

@@ -12,13 +12,6 @@ enum info { PLAIN, DC, CRC };
 
 #define TYPE_EBUS	2
 
-/* text inside double quotes */
-static void quoted(const char *s)
-{
-	for (; *s; s++)
-		out_text(*s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
-}
-
 static void node(const struct ect_slave *s, enum info info)
 {
 	out_object(NULL);
@@ -29,7 +22,7 @@ static void node(const struct ect_slave *s, enum info info)
 	out_u("relative_position", slave_alias_pos(s), NULL);
 	if (s->order[0]) {
 		out_text("\\n");
-		quoted(s->order);
+		out_quoted(s->order);
 	}
 	out_str("order_number", s->order, NULL);
 	if (info == DC) {

@@ -4,6 +4,7 @@
 #include <string.h>
 #include <unistd.h>
 
+#include "../lib/tools/text.h"
 #include "absent.h"
 #include "config_info.h"
 #include "dev.h"
@@ -143,6 +144,27 @@ static int retry(struct dev *d)
 	return err ? dev_fail(d, err, "Master%u: cannot scan the bus", d->master) : 0;
 }
 
+/* The device that is listed behind a closed port of the selected slave */
+static int let_in(const struct tool *t, struct dev *d, const struct slaves *sel)
+{
+	struct ect_behind b = { .struct_size = sizeof(b) };
+	char device[160];
+	int err;
+
+	if (sel->n != 1)
+		return fail("Master%u: --let-in is for a port of one slave, not of %zu: select it with --position or --alias",
+			    d->master, sel->n);
+	err = ect_behind_read(d->h, sel->v->device, t->let_in, &b);
+	if (!err)
+		err = ect_let_in(d->h, sel->v->device, t->let_in, &b);
+	if (err)
+		return dev_fail(d, err, "Master%u: cannot let in what is behind port %u of slave %u",
+				d->master, t->let_in, sel->v->position);
+	note("Master%u: the device behind port %u of slave %u is let in%s", d->master, t->let_in,
+	     sel->v->position, text_behind(&b, device, sizeof(device)));
+	return 0;
+}
+
 static int each(const struct tool *t, struct dev *d)
 {
 	struct ect_master m;
@@ -157,6 +179,10 @@ static int each(const struct tool *t, struct dev *d)
 		return 1;
 	if (dev_master(d, &m) || dev_select(d, t, &sel, NULL))
 		return 1;
+	if (t->let_in && let_in(t, d, &sel)) {
+		slaves_free(&sel);
+		return 1;
+	}
 	remark(d, &m);
 	missing(d, m.config_count);
 	out_object(NULL);
@@ -188,7 +214,7 @@ static int run(struct tool *t, int argc, char **argv)
 
 	(void)argc, (void)argv;
 	out_array("masters");
-	ret = dev_each(t, t->retry, each);
+	ret = dev_each(t, t->retry || t->let_in, each);
 	out_end();
 	return ret;
 }
@@ -197,7 +223,7 @@ const struct cmd cmd_slaves = {
 	.name = "slaves",
 	.run = run,
 	.args = "",
-	.opts = "mapvwR",
+	.opts = "mapvwRN",
 	.summary = "Show the slaves on the bus",
 	.help = "One line for each slave: ring position, alias:relative position, state, flag, name.\n"
 		"'+ERROR' after the state: the slave reports an error; state LOST: it does not reply.\n"
@@ -207,6 +233,10 @@ const struct cmd cmd_slaves = {
 		"them, and ports that stay closed although they have a link.\n"
 		"--retry tries ports at once that wait because they have lost their link too often, and\n"
 		"failed ones, as 'ethercat rescan' does.\n"
+		"While an application runs, a port at which it expects a hot connect group stays closed if\n"
+		"another device is behind it, which stderr lists. --let-in PORT opens the port for the device\n"
+		"behind it, at the slave that --position or --alias selects. It holds for this device at this\n"
+		"port until the application has ended; the right device needs no command.\n"
 		"'xxx LINK FAILURE xxx' marks the break of a redundant ring.\n"
 		"From its reservation of the master to activation, and after deactivation, an application\n"
 		"has the list of slaves held: no scan changes it, and stderr shows which process that is.\n"
@@ -227,6 +257,8 @@ const struct cmd cmd_slaves = {
 		"sync_managers, fmmus, sii_words),\n"
 		"absent[] (upstream and port (null: the main device), slaves, since_ns, first, last (ring\n"
 		"positions they had), first_name), closed_ports[] (slave, port, reason (no_reply,\n"
-		"no_loop_control, losses), wait_s)",
+		"no_loop_control, losses, other_device, other_sign, other_serial, second, reversed, boot,\n"
+		"unreadable, unexpected), wait_s, behind (null: no device that can be let in; vendor_id,\n"
+		"product_code, revision_number, serial_number, alias, identification, slaves, name))",
 	.flags = CMD_HISTORIC,
 };

@@ -31,6 +31,7 @@ const struct opt opts[] = {
 	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
 	{ 'W', "watch", "SECONDS", "repeat after SECONDS, 0.1 to 86400, and show what has grown" },
 	{ 'R', "retry", NULL, "try at once what waits" },
+	{ 'N', "let-in", "PORT", "let the device behind a closed port in" },
 	{ 'E', "tree", NULL, "tree of text" },
 	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
@@ -62,6 +63,7 @@ static const struct option longs[] = {
 	{ "texts", required_argument, NULL, 'T' },
 	{ "watch", required_argument, NULL, 'W' },
 	{ "retry", no_argument, NULL, 'R' },
+	{ "let-in", required_argument, NULL, 'N' },
 	{ "tree", no_argument, NULL, 'E' },
 	{ "follow", no_argument, NULL, 'F' },
 	{ "json", no_argument, NULL, 'j' },
@@ -134,6 +136,15 @@ static int timeout(const char *text, u32 *ms)
 		return usage_error("invalid time '%s' for --timeout: expected 0.001 to 600 seconds",
 				   text);
 	*ms = (u32)(s * 1000 + 0.5);
+	return 0;
+}
+
+static int port(const char *text, u32 *value)
+{
+	if (text[0] < '1' || text[0] >= '0' + ECT_PORTS || text[1])
+		return usage_error("invalid port '%s' for --let-in: expected 1 to %u", text,
+				   ECT_PORTS - 1);
+	*value = (u32)(text[0] - '0');
 	return 0;
 }
 
@@ -242,6 +253,8 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 	case 'R':
 		t->retry = true;
 		return 0;
+	case 'N':
+		return port(optarg, &t->let_in);
 	case 'j':
 		t->json = true;
 		return 0;

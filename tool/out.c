@@ -203,6 +203,13 @@ void out_hex(const char *key, const u8 *data, size_t size, const char *indent)
 	putchar('"');
 }
 
+/* text inside double quotes, for Graphviz */
+void out_quoted(const char *s)
+{
+	for (; *s; s++)
+		out_text(*s == '"' || *s == '\\' ? "\\%c" : "%c", *s);
+}
+
 /* may the character at @at go to a terminal? @step: its bytes */
 static bool is_shown(const u8 *at, size_t size, size_t *step)
 {

@@ -34,6 +34,7 @@ void out_null(const char *key, const char *fmt, ...) OUT_FMT(2);
 /* bytes: one string of hex digits in JSON, rows of 16 behind @indent in text */
 void out_hex(const char *key, const u8 *data, size_t size, const char *indent);
 /* unchanged; on a terminal without characters that could control it */
+void out_quoted(const char *s);
 void out_text_bytes(const u8 *data, size_t size);
 bool out_is_line(const u8 *data, size_t size);
 void out_utf16(const u8 *data, size_t size);

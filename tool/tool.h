@@ -33,6 +33,7 @@
  * @force: -f
  * @reset: -r
  * @retry: --retry: ports that wait are tried at once
+ * @let_in: argument of --let-in, 0: not given
  * @json: -j
  * @verbosity: -1 after -q, 1 after -v
  * @boot: --boot
@@ -61,6 +62,7 @@ struct tool {
 	bool force;
 	bool reset;
 	bool retry;
+	u32 let_in;
 	bool json;
 	int verbosity;
 	bool boot;

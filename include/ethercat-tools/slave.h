@@ -146,6 +146,59 @@ struct ect_slave {
 #define ECT_PORT_NO_REPLY	1	/* no slave replies behind it */
 #define ECT_PORT_LOOPS		2	/* a slave without loop control, others behind it */
 #define ECT_PORT_LOSSES		3	/* it has lost its link too often */
+/* a device that is not let in; from ECT_PORT_OTHER on: ect_behind_read() */
+#define ECT_PORT_OTHER		4	/* no head of a hot connect group of this port */
+#define ECT_PORT_SIGN		5	/* one with another alias or identification */
+#define ECT_PORT_SERIAL		6	/* one with another serial number */
+#define ECT_PORT_SECOND		7	/* a slave of the bus has its alias or identification */
+#define ECT_PORT_REVERSED	8	/* not connected by port 0 */
+#define ECT_PORT_BOOT		9	/* in BOOT */
+#define ECT_PORT_UNREADABLE	10	/* its EEPROM or identification cannot be read */
+#define ECT_PORT_UNKNOWN	11	/* neither known nor expected anywhere */
+
+/** struct ect_behind - the device behind a port that stays closed; what was not read is 0 */
+struct ect_behind {
+	uint32_t struct_size;
+	uint32_t kept;		/* ECT_PORT_*; below ECT_PORT_OTHER: there is none */
+	uint32_t vendor_id;
+	uint32_t product_code;
+	uint32_t revision_number;
+	uint32_t serial_number;
+	uint32_t slaves;	/* with those behind it */
+	uint16_t alias;
+	uint16_t identification;	/* explicit device identification, if it was asked for */
+	char name[ECT_STRING];	/* order number or name in its EEPROM */
+};
+
+/**
+ * ect_behind_read() - the device behind a port that stays closed
+ * @h: master
+ * @device: number of the slave whose port it is
+ * @port: port
+ * @b: result, with its @struct_size
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: 0 or a negative errno.
+ */
+int ect_behind_read(struct ect_handle *h, uint64_t device, unsigned int port,
+		    struct ect_behind *b);
+
+/**
+ * ect_let_in() - let the device behind a closed port in
+ * @h: master, open for writing
+ * @device: number of the slave whose port it is
+ * @port: port
+ * @b: device, as read: another one is not let in
+ *
+ * The device is connected some cycles later. This holds for it at this port, also when it is
+ * disconnected meanwhile, until the session ends.
+ *
+ * Context: The thread of the handle.
+ * Return: 0; -ENOENT: no device is kept behind the port; -ESTALE: it is another one; or another
+ * negative errno.
+ */
+int ect_let_in(struct ect_handle *h, uint64_t device, unsigned int port,
+	       const struct ect_behind *b);
 
 /** struct ect_absent - slaves that were disconnected and have not returned, behind one port */
 struct ect_absent {

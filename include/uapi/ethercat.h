@@ -80,6 +80,7 @@
 #define EC_IOC_REG_RDWR		EC_IOC_RW(0x32, struct ec_ioc_reg)	/* data: in, out */
 #define EC_IOC_STATE		EC_IOC_W(0x24, struct ec_ioc_state)
 #define EC_IOC_RESCAN		EC_IOC_N(0x25)
+#define EC_IOC_LET_IN		EC_IOC_W(0x33, struct ec_ioc_let_in)
 #define EC_IOC_DEBUG		EC_IOC_W(0x26, struct ec_ioc_debug)
 #define EC_IOC_RESET		EC_IOC_N(0x27)
 #define EC_IOC_CYCLE_RESET	EC_IOC_N(0x28)

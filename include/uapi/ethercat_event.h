@@ -46,7 +46,7 @@
 #define EC_EVENT_NO_ANSWER	0x19	/* no reply at a station address: polls; a scan follows */
 /*
  * a port with a link stays closed: port, EC_PORT_*; with EC_PORT_LOSSES their number, in s, longest
- * wait in s
+ * wait in s; of the device behind it: vendor, product, slaves
  */
 #define EC_EVENT_PORT_KEPT	0x1a
 

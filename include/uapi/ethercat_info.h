@@ -137,14 +137,43 @@ struct ec_ioc_port {
 	__u16 reserved;
 	__u32 kept;		/* EC_PORT_*: why it is closed although it has a link */
 	__u32 wait_s;		/* EC_PORT_LOSSES: it opens after so many s of link without loss */
+	/* from EC_PORT_OTHER on: the device behind it; 0: not read */
+	__u32 vendor_id;
+	__u32 product_code;
+	__u32 revision_number;
+	__u32 serial_number;
+	__u32 slaves;		/* with those behind it */
+	__u16 alias;
+	__u16 identification;
+	char name[EC_UAPI_STRING];
 };
 
 #define EC_PORT_NOT_KEPT	0
 #define EC_PORT_NO_REPLY	1	/* no slave replies behind it */
 #define EC_PORT_LOOPS		2	/* a slave that does not keep 0x0101, others behind it */
 #define EC_PORT_LOSSES		3	/* it has lost its link too often */
-#define EC_PORT_SWALLOWS	5	/* no frame returned while it was open */
-#define EC_PORT_REVERSED	4	/* a slave connected the wrong way round, others behind */
+/* a device that is not let in, but by EC_IOC_LET_IN; see the module parameter border */
+#define EC_PORT_OTHER		4	/* no head of a hot connect group of this port */
+#define EC_PORT_SIGN		5	/* one with another alias or identification */
+#define EC_PORT_SERIAL		6	/* one with another serial number */
+#define EC_PORT_SECOND		7	/* a slave of the bus has its alias or identification */
+#define EC_PORT_REVERSED	8	/* not connected by port 0 */
+#define EC_PORT_BOOT		9	/* in BOOT */
+#define EC_PORT_UNREADABLE	10	/* its EEPROM or identification cannot be read */
+#define EC_PORT_UNKNOWN		11	/* neither known nor expected anywhere */
+#define EC_PORT_WRONG_WAY	12	/* connected the wrong way round, others behind it */
+#define EC_PORT_SWALLOWS	13	/* no frame returned while it was open */
+
+/* let the device behind a port in; only if it is the one with this identity */
+struct ec_ioc_let_in {
+	__u32 flags;
+	__u32 port;
+	struct ec_ioc_address slave;
+	__u32 vendor_id;
+	__u32 product_code;
+	__u32 revision_number;
+	__u32 serial_number;
+};
 
 /* slaves that were disconnected and have not returned, behind one port */
 struct ec_ioc_absent {

@@ -342,3 +342,42 @@ int ect_absent_read(struct ect_handle *h, struct ect_list **list)
 		*list = l;
 	return ret;
 }
+
+static void convert_behind(struct ect_behind *to, const struct ec_ioc_port *from)
+{
+	COPY(kept);
+	COPY(vendor_id);
+	COPY(product_code);
+	COPY(revision_number);
+	COPY(serial_number);
+	COPY(slaves);
+	COPY(alias);
+	COPY(identification);
+	memcpy(to->name, from->name, sizeof(to->name));
+	string_clean(to->name, sizeof(to->name));
+}
+
+int ect_behind_read(struct ect_handle *h, uint64_t device, unsigned int port,
+		    struct ect_behind *b)
+{
+	struct ec_ioc_port from = { .slave = ect_address(device), .port = port };
+	struct ect_behind own = { .struct_size = sizeof(own) };
+	int ret = ect_command(h, EC_IOC_PORT, &from);
+
+	if (ret)
+		return ret;
+	convert_behind(&own, &from);
+	return ect_give(h, b, &own, sizeof(own));
+}
+
+int ect_let_in(struct ect_handle *h, uint64_t device, unsigned int port,
+	       const struct ect_behind *b)
+{
+	struct ec_ioc_let_in i = {
+		.slave = ect_address(device), .port = port, .vendor_id = b->vendor_id,
+		.product_code = b->product_code, .revision_number = b->revision_number,
+		.serial_number = b->serial_number,
+	};
+
+	return ect_command(h, EC_IOC_LET_IN, &i);
+}

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <string.h>
 
+#include "../../include/ethercat-tools/slave.h"
 #include "../../master/wire/env.h"
 
 /**
@@ -139,5 +140,28 @@ const char *text_duration(uint64_t ns, char *buf, size_t size)
 		snprintf(buf, size, "%llu min", ds / 600);
 	else
 		snprintf(buf, size, "%llu h", ds / 36000);
+	return buf;
+}
+
+/**
+ * text_behind() - the device behind a closed port
+ * @b: device
+ * @buf: result: " (EL2008 0x00000002/0x07d83052, serial number 0x00000001, 3 slaves)", or ""
+ * @size: of @buf
+ *
+ * Return: @buf.
+ */
+const char *text_behind(const struct ect_behind *b, char *buf, size_t size)
+{
+	char slaves[32] = "", serial[40] = "";
+
+	if (b->slaves > 1)
+		snprintf(slaves, sizeof(slaves), ", %u slaves", b->slaves);
+	if (b->serial_number)
+		snprintf(serial, sizeof(serial), ", serial number 0x%08x", b->serial_number);
+	buf[0] = '\0';
+	if (b->vendor_id || b->product_code)
+		snprintf(buf, size, " (%s%s0x%08x/0x%08x%s%s)", b->name, b->name[0] ? " " : "",
+			 b->vendor_id, b->product_code, serial, slaves);
 	return buf;
 }

@@ -422,12 +422,17 @@ static void unused(struct why *w, const struct ect_slave *s, const struct ect_ab
 static void kept(struct why *w, const struct ect_slave *s, unsigned int port)
 {
 	const struct ec_port_text *text = ec_port_text(s->port_kept[port]);
+	struct ect_behind b = { .struct_size = sizeof(b) };
+	char name[96], device[160] = "", remedy[160];
 	struct ect_finding *f;
-	char name[96];
 
+	if (text->device && !ect_behind_read(w->h, s->device, port, &b))
+		text_behind(&b, device, sizeof(device));
 	f = why_add(w, PORT_KEPT, port, why_slave_name(w, s->position, name, sizeof(name)),
-		    text->reason);
-	why_remedy(f, PLAIN, text->remedy);
+		    text->reason, device);
+	snprintf(remedy, sizeof(remedy), "%s, or 'ethercat slaves -p %u --let-in %u'",
+		 text->remedy, s->position, port);
+	why_remedy(f, PLAIN, text->device ? remedy : text->remedy);
 	f->slave = s->position;
 	f->port = (int)port;
 }

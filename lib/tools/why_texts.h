@@ -72,7 +72,7 @@
 	  WHY_CABLE_REMEDY "; if they were removed on purpose: 'ethercat rescan'", \
 	  "behind port %u of %s: %u %s disconnected, since %s, the first: slave %u (%s); link %s") \
 	X(PORT_KEPT, "port_closed", WARNING, "", "", \
-	  "port %u of %s stays closed despite its link: %s") \
+	  "port %u of %s stays closed despite its link: %s%s") \
 	X(MISSING, "missing", FAULT, "missing", \
 	  "check power and cable of the missing slaves, or correct the configuration", \
 	  "%u %s missing from position %u on: the bus has %zu, %s %s") \

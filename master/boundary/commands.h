@@ -75,6 +75,7 @@ CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
 CMD(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, SLAVE(ec_ioc_ip),
 	RSV(FIELD(ec_ioc_ip, params.reserved), FIELD(ec_ioc_ip, reserved)))
 CMD(EC_IOC_RESCAN, ec_ioc_rescan, F_WRITE)
+CMD(EC_IOC_LET_IN, ec_ioc_let_in, F_WRITE, SLAVE(ec_ioc_let_in))
 CMD(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE)
 CMD(EC_IOC_RESET, ec_ioc_reset, F_WRITE)
 CMD(EC_IOC_CYCLE_RESET, ec_ioc_cycle_reset, F_WRITE)

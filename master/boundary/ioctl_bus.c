@@ -10,6 +10,7 @@
 #include "../session/session_attach.h"
 #include "../bus/bus_list.h"
 #include "../bus/ports.h"
+#include "../wire/port_text.h"
 #include "../bus/slave.h"
 #include "../carry/xfer.h"
 
@@ -135,6 +136,47 @@ int ec_ioc_rescan(struct ec_call *call)
 	ec_ports_retry(&m->bus);
 	ec_bus_rescan(&m->bus);
 	return 0;
+}
+
+/* Why is no device let in at a port? */
+static int no_device(struct ec_call *call, const struct ec_slave *s, u32 port, u32 kept)
+{
+	if (kept)
+		return ec_refuse(call, -ENOENT, "port %u of slave %u: %s; %s", port, s->position,
+				 ec_port_text(kept)->reason, ec_port_text(kept)->remedy);
+	return ec_refuse(call, -ENOENT,
+			 "no device waits behind port %u of slave %u; 'ethercat slaves' lists the closed ports",
+			 port, s->position);
+}
+
+int ec_ioc_let_in(struct ec_call *call)
+{
+	const struct ec_ioc_let_in *i = call->arg;
+	const struct ec_behind what = {
+		.vendor = i->vendor_id, .product = i->product_code,
+		.revision = i->revision_number, .serial = i->serial_number,
+	};
+	struct ec_slave *s = call->slave;
+	u32 kept, wait_s;
+	int ret;
+
+	if (!i->port || i->port >= EC_UAPI_PORTS)
+		return ec_refuse(call, -EINVAL, "devices are let in by the ports 1 to %u, not %u",
+				 EC_UAPI_PORTS - 1, i->port);
+	down_read(&s->bus->topo);
+	kept = ec_ports_kept(s, i->port, &wait_s);
+	ret = ec_ports_let_in(s, i->port, &what);
+	up_read(&s->bus->topo);
+	switch (ret) {
+	case -ENOENT:
+		return no_device(call, s, i->port, kept < EC_PORT_OTHER ? kept : 0);
+	case -ESTALE:
+		return ec_refuse(call, ret,
+				 "another device is behind port %u of slave %u now; see 'ethercat slaves'",
+				 i->port, s->position);
+	default:
+		return ret;
+	}
 }
 
 int ec_ioc_debug(struct ec_call *call)

@@ -207,6 +207,7 @@ int ec_ioc_port(struct ec_call *call)
 	const struct ec_slave *s = call->slave;
 	struct ec_ioc_port *i = call->arg;
 	unsigned int p = i->port;
+	struct ec_behind is;
 
 	if (p >= EC_UAPI_PORTS)
 		return ec_refuse(call, -EINVAL, "a slave has ports 0 to %u, no port %u",
@@ -219,6 +220,16 @@ int ec_ioc_port(struct ec_call *call)
 	i->next_slave = s->at[p] ? s->at[p]->position : EC_UAPI_NONE16;
 	i->delay_to_next_dc = way(s, p);
 	i->kept = ec_ports_kept(s, p, &i->wait_s);
+	if (i->kept >= EC_PORT_OTHER && ec_border_get(s->bus, s->device, p, &is)) {
+		i->vendor_id = is.vendor;
+		i->product_code = is.product;
+		i->revision_number = is.revision;
+		i->serial_number = is.serial;
+		i->slaves = is.slaves;
+		i->alias = is.alias;
+		i->identification = is.identification;
+		strscpy(i->name, is.name, sizeof(i->name));
+	}
 	return 0;
 }
 

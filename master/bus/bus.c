@@ -26,6 +26,7 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	spin_lock_init(&bus->scan_lock);
 	init_waitqueue_head(&bus->settled);
 	ec_known_init(&bus->known);
+	ec_border_init(&bus->border);
 	/* what one waits for is not done by another one */
 	return ec_workers_init(&bus->workers, base);
 }

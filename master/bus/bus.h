@@ -10,6 +10,7 @@
 #include <linux/spinlock.h>
 #include <linux/wait.h>
 #include "../base/base.h"
+#include "border.h"
 #include "known_table.h"
 #include "workers.h"
 
@@ -63,6 +64,8 @@ struct ec_bus {
 	unsigned int n_slaves;
 	/** @known: device numbers */
 	struct ec_known known;
+	/** @border: ports at which not every device is let in */
+	struct ec_border border;
 	/** @trials: attempts to open a port; only the monitor writes it */
 	u32 trials;
 

@@ -176,6 +176,46 @@ bool ec_known_was_there(const struct ec_bus *bus, u16 station)
 }
 
 /**
+ * ec_known_by_station() - the disconnected device that had a station address
+ * @bus: bus
+ * @station: station address
+ *
+ * Context: The monitor thread.
+ * Return: its number, or 0.
+ */
+u64 ec_known_by_station(const struct ec_bus *bus, u16 station)
+{
+	const struct ec_lost *l;
+
+	list_for_each_entry(l, &bus->known.oldest, age)
+		if (l->station == station)
+			return l->number;
+	return 0;
+}
+
+/**
+ * ec_known_is() - was a device connected before?
+ * @bus: bus
+ * @station: station address that it has kept, 0: none
+ * @vendor: vendor id
+ * @product: product code
+ * @serial: serial number, 0: none
+ *
+ * Context: The monitor thread.
+ * Return: whether a disconnected device is equal, and has the station address or serial number.
+ */
+bool ec_known_is(const struct ec_bus *bus, u16 station, u32 vendor, u32 product, u32 serial)
+{
+	const struct ec_lost *l;
+
+	list_for_each_entry(l, &bus->known.oldest, age)
+		if (l->vendor == vendor && l->product == product && l->serial == serial &&
+		    (serial || (station && l->station == station)))
+			return true;
+	return false;
+}
+
+/**
  * ec_known_fresh_station() - a station address that no device has or had
  * @bus: bus
  *

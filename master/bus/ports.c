@@ -11,6 +11,7 @@
 #include "trial.h"
 
 #define STABLE_NS	(100 * NSEC_PER_MSEC)	/* of link without loss, then a port is tried */
+#define UNKNOWN_NS	(2 * (u64)NSEC_PER_SEC)	/* of a new slave, which may get a configuration */
 #define WAIT_MIN_MS	1000	/* between trials at a port where no slave replies; doubles */
 #define WAIT_MAX_MS	60000
 #define LOSSES		3	/* of a port within LOSS_NS, then it stays closed for longer */
@@ -51,11 +52,19 @@ MODULE_PARM_DESC(loops,
  *
  * The monitor writes the registers.
  *
- * Context: Process.
+ * Context: Process. May sleep.
  */
 void ec_ports_guard(struct ec_bus *bus, bool on)
 {
+	if (on) {
+		down_read(&bus->topo);
+		ec_for_each_slave(s, bus)
+			WRITE_ONCE(s->ports.settled, true);
+		up_read(&bus->topo);
+	}
 	WRITE_ONCE(bus->guarded, on && closes);
+	if (!on)
+		ec_border_clear(bus);
 	if (bus->ops && bus->ops->wake)
 		bus->ops->wake(bus);
 }
@@ -212,6 +221,16 @@ static bool has_door(const struct ec_slave *s)
 	return false;
 }
 
+/* One that is new may be a slave at whose port a group is expected, which shows soon. */
+static u64 stable_ns(const struct ec_slave *s, unsigned int port)
+{
+	const struct ec_bus *bus = s->bus;
+	bool attached = bus->ops && bus->ops->attached && bus->ops->attached(s);
+
+	return attached || READ_ONCE(s->ports.settled) || !ec_border_may_be(s->bus, 0, port) ?
+		STABLE_NS : UNKNOWN_NS;
+}
+
 /* Has the link of a door been there without loss? Its counters show losses in between. */
 static bool is_stable(struct ec_slave *s, unsigned int port, u8 lost, u64 now)
 {
@@ -223,10 +242,13 @@ static bool is_stable(struct ec_slave *s, unsigned int port, u8 lost, u64 now)
 	}
 	s->ports.lost[port] = lost;
 	d->link_ns = d->link_ns ?: now;
+	if (xchg(&s->ports.let_in[port], false))
+		d->next_ns = 0;
 	if (READ_ONCE(s->ports.fast) & BIT(port) && !d->wait_ms)
 		return now >= d->next_ns;
 	return now >= d->next_ns &&
-	       now - d->link_ns >= max(STABLE_NS, s->ports.loss[port].wait_s * (u64)NSEC_PER_SEC);
+	       now - d->link_ns >= max(stable_ns(s, port),
+				       s->ports.loss[port].wait_s * (u64)NSEC_PER_SEC);
 }
 
 /* The port is in use, or has no link any more. */
@@ -236,36 +258,45 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 
 	if (d->link_ns && !s->at[port])
 		ec_ports_note_loss(s, port, false);
+	if (d->kept)
+		ec_border_forget(s->bus, s->device, port);
 	*d = (struct ec_door){ 0 };
 }
 
 /* The port stays closed: reported once, and tried again ever less often. */
-static void note_closed(struct ec_slave *s, unsigned int port, int why)
+static void note_closed(struct ec_slave *s, unsigned int port, const struct ec_behind *is)
 {
+	bool differs = ec_border_note(s->bus, s->device, port, is);
 	struct ec_door *d = &s->ports.door[port];
-	u8 kept = why == -EOPNOTSUPP ? EC_PORT_LOOPS :
-		  why == -EXDEV ? EC_PORT_REVERSED : EC_PORT_NO_REPLY;
 
 	d->wait_ms = clamp_t(u32, 2 * d->wait_ms, WAIT_MIN_MS, WAIT_MAX_MS);
 	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
-	if (d->kept)
+	if (d->kept == is->kept && !differs)
 		return;
-	WRITE_ONCE(d->kept, kept);
-	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, kept);
+	WRITE_ONCE(d->kept, is->kept);
+	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, d->kept, 0, 0, 0, is->vendor, is->product,
+			is->slaves);
 }
 
 static bool try_door(struct ec_slave *s, unsigned int port)
 {
-	int ret = ec_trial(s, port);
+	struct ec_behind is = { 0 };
+	int ret = ec_trial(s, port, &is);
 
 	if (ret > 0) {
+		ec_border_forget(s->bus, s->device, port);
 		s->ports.door[port] = (struct ec_door){ 0 };
 		ec_slave_dbg(s, 1, "port %u: %d new slave(s), made harmless before process data reached them\n",
 			     port, ret);
 		return true;
 	}
 	if (ret == -ENXIO || ret == -EOPNOTSUPP || ret == -EXDEV)
-		note_closed(s, port, ret);
+		is = (struct ec_behind){
+			.kept = ret == -ENXIO ? EC_PORT_NO_REPLY :
+				ret == -EXDEV ? EC_PORT_WRONG_WAY : EC_PORT_LOOPS,
+		};
+	if (is.kept)
+		note_closed(s, port, &is);
 	else
 		s->ports.door[port].next_ns = ktime_get_ns() + STABLE_NS;
 	if (ret == -ENOLINK)
@@ -402,6 +433,34 @@ u32 ec_ports_kept(const struct ec_slave *s, unsigned int port, u32 *wait_s)
 void ec_ports_retry(struct ec_bus *bus)
 {
 	WRITE_ONCE(bus->retry, true);
+}
+
+/**
+ * ec_ports_let_in() - a user lets the device behind a closed port in
+ * @s: slave
+ * @port: its port
+ * @what: identity of the device that the user has seen there
+ *
+ * The monitor tries the port at once.
+ *
+ * Context: Topo held.
+ * Return: 0; -ENOENT: no device is kept behind the port; -ESTALE: it is another one.
+ */
+int ec_ports_let_in(struct ec_slave *s, unsigned int port, const struct ec_behind *what)
+{
+	u32 wait_s;
+	int ret;
+
+	lockdep_assert_held(&s->bus->topo);
+	if (ec_ports_kept(s, port, &wait_s) < EC_PORT_OTHER)
+		return -ENOENT;
+	ret = ec_border_let_in(s->bus, s->device, port, what);
+	if (ret)
+		return ret;
+	WRITE_ONCE(s->ports.let_in[port], true);
+	if (s->bus->ops && s->bus->ops->wake)
+		s->bus->ops->wake(s->bus);
+	return 0;
 }
 
 /**

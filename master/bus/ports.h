@@ -8,6 +8,7 @@
 
 #include <linux/types.h>
 
+struct ec_behind;
 struct ec_bus;
 struct ec_slave;
 
@@ -21,6 +22,7 @@ void ec_ports_guard(struct ec_bus *bus, bool on);
 enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned);
 void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open);
 void ec_ports_retry(struct ec_bus *bus);
+int ec_ports_let_in(struct ec_slave *s, unsigned int port, const struct ec_behind *what);
 void ec_ports_set_fast(struct ec_slave *s, u8 ports);
 u32 ec_ports_kept(const struct ec_slave *s, unsigned int port, u32 *wait_s);
 void ec_ports_open_all(struct ec_bus *bus);

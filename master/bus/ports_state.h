@@ -39,6 +39,8 @@ struct ec_loss {
  * @fixed: the slave does not keep what is written there
  * @doors: a port is a door
  * @fast: ports that are opened as soon as they have a link, a bit each; of the session
+ * @settled: connected before process data began
+ * @let_in: by port: a user has just let the device behind it in
  * @lost: its counters of lost links, 0x0310, as read last
  * @door: by port
  * @loss: by port
@@ -49,6 +51,8 @@ struct ec_ports {
 	bool fixed;
 	bool doors;
 	u8 fast;
+	bool settled;
+	bool let_in[EC_MAX_PORT];
 	u8 lost[EC_MAX_PORT];
 	struct ec_door door[EC_MAX_PORT];
 	struct ec_loss loss[EC_MAX_PORT];

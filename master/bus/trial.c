@@ -16,57 +16,31 @@
 #include "ports.h"
 #include "slave.h"
 #include "trial.h"
+#include "trial_int.h"
 
 #define TEMPORARY	BIT(1)	/* of register 0x0100: for a second */
-#define WORK		8	/* datagrams of the work, at most */
-#define TRIES		3
 #define DEPTH		64	/* slaves one behind the other at which a branch begins */
 
-/* a slave at whose port something is tried */
-struct host {
-	u16 station;
-	u16 position;
-	u8 control;
-	u8 loops;	/* with all ports closed behind which nothing is known */
-};
-
-/* a slave that was found there */
-struct guest {
-	u16 station;
-	u16 kept;	/* address that it had, 0: none that it may have again */
-	u8 entry;
-	bool mute;	/* no frame to it has returned */
-	u8 info[EC_INFO_SIZE];
-	u8 station_was[4];
-	u8 dl[2];
-	u8 control[2];
-	u8 times[16];
-};
-
-struct trial {
-	struct ec_bus *bus;
-	struct host host;
-	u8 port;
-	u16 position;	/* of the first slave behind the port */
-	const struct ec_slave *next;	/* of the list, at that position now; NULL: there is none */
-	u16 dl;		/* DL status of the host at the end of the last trial */
-	u16 count;	/* slaves that reply then */
-	struct ec_dg work[WORK];
-	unsigned int n;
-};
-
-static struct ec_dg *trial_add(struct trial *t, struct ec_dg dg)
+/**
+ * ec_trial_add() - add a datagram to the work of a trial
+ * @t: trials
+ * @dg: datagram; there are %EC_TRIAL_WORK at most
+ *
+ * Context: The monitor thread.
+ * Return: the datagram, with its result after ec_trial_run().
+ */
+struct ec_dg *ec_trial_add(struct ec_trials *t, struct ec_dg dg)
 {
 	t->work[t->n] = dg;
 	return &t->work[t->n++];
 }
 
 /* Close the port for good: the frames for that may be lost. */
-static void close_surely(const struct trial *t, const u8 *closed)
+static void close_surely(const struct ec_trials *t, const u8 *closed)
 {
 	unsigned int i;
 
-	for (i = 0; i < TRIES; i++)
+	for (i = 0; i < EC_TRIAL_TRIES; i++)
 		if (!ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, closed, 2))
 			return;
 }
@@ -119,7 +93,7 @@ out:
  * before the address was written. It is the next one of the ring, unless others were disconnected
  * as well.
  */
-static void trial_give_back(const struct trial *t, u16 station, bool next)
+static void trial_give_back(const struct ec_trials *t, u16 station, bool next)
 {
 	u16 owner = next ? t->next->station : find_owner(t->bus);
 	u8 own[2];
@@ -134,7 +108,7 @@ static void trial_give_back(const struct trial *t, u16 station, bool next)
 }
 
 /* Between the host and its port: the slaves of the branches that a frame passes before. */
-static struct ec_gaps find_gaps(const struct trial *t)
+static struct ec_gaps find_gaps(const struct ec_trials *t)
 {
 	u32 passed = t->position > t->host.position ? t->position - t->host.position - 1 : 0;
 	u32 bytes = 0, i;
@@ -144,17 +118,21 @@ static struct ec_gaps find_gaps(const struct trial *t)
 	return ec_gap_find(t->bus->links, passed, bytes);
 }
 
-/*
- * The trial: its work is in @t, for the slave that has or gets address @station. Returns 0, or
- * -EAGAIN: frames were lost; -ENOLINK: the contact broke.
+/**
+ * ec_trial_run() - one trial: open, work, close, check
+ * @t: trials with the work
+ * @station: address that the slave behind the port has or gets
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: 0; -EAGAIN: frames were lost; -ENOLINK: the contact broke.
  */
-static int trial_run(struct trial *t, u16 station)
+int ec_trial_run(struct ec_trials *t, u16 station)
 {
 	const u8 opened[2] = { t->host.control | TEMPORARY,
 			       ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
 	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
-	struct ec_dg dg[WORK + 9 + 2 * EC_GAP_FRAMES], *work, *close, *check;
+	struct ec_dg dg[EC_TRIAL_WORK + 9 + 2 * EC_GAP_FRAMES], *work, *close, *check;
 	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 }, any[1];
 	struct ec_gaps gaps = find_gaps(t);
 	unsigned int n, i;
@@ -208,8 +186,8 @@ static int trial_run(struct trial *t, u16 station)
 	return close[0].wkc || close[1].wkc ? 0 : -EAGAIN;
 }
 
-/* The first slave behind the port gets an address; 0, -ENXIO: none replies, or as trial_run(). */
-static int greet(struct trial *t, struct guest *g)
+/* The first slave behind the port gets an address; -ENXIO: none replies; or as ec_trial_run(). */
+static int greet(struct ec_trials *t, struct ec_guest *g)
 {
 	static const u8 all_closed[1] = { 0xfc };
 	const struct ec_dg *was;
@@ -227,32 +205,36 @@ static int greet(struct trial *t, struct guest *g)
 	 */
 	if (g->mute) {
 		g->mute = false;
-		trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
-		ret = trial_run(t, g->station);
+		ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
+		ret = ec_trial_run(t, g->station);
 		return ret == -ENOLINK ? ret : -EAGAIN;
 	}
-	was = trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, g->station_was));
-	trial_add(t, EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, fresh));
-	ret = trial_run(t, g->station);
+	was = ec_trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, g->station_was));
+	ec_trial_add(t, EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, fresh));
+	ret = ec_trial_run(t, g->station);
 	g->mute = was->err;
 	if (!was->err && !was->wkc && ret != -ENOLINK)
 		return -ENXIO;
 	return ret;
 }
 
-static int trial_ask(struct trial *t, struct guest *g)
+static int trial_ask(struct ec_trials *t, struct ec_guest *g)
 {
 	static const u8 latch[4];
 	unsigned int i;
+	u8 type = 0;
 	int ret;
 
 	t->n = 0;
-	trial_add(t, EC_FPWR(g->station, EC_REG_DC_RECV(0), 4, latch))->last = true;
-	trial_add(t, EC_FPRD(g->station, EC_REG_TYPE, EC_INFO_SIZE, g->info));
-	trial_add(t, EC_FPRD(g->station, EC_REG_DL_CONTROL, 2, g->control));
-	trial_add(t, EC_FPRD(g->station, EC_REG_DL_STATUS, 2, g->dl));
-	trial_add(t, EC_FPRD(g->station, EC_REG_DC_RECV(0), 16, g->times));
-	ret = trial_run(t, g->station);
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DC_RECV(0), 4, latch))->last = true;
+	ec_trial_add(t, EC_FPRD(g->station, EC_REG_TYPE, EC_INFO_SIZE, g->info));
+	ec_trial_add(t, EC_FPRD(g->station, EC_REG_DL_CONTROL, 2, g->control));
+	ec_trial_add(t, EC_FPRD(g->station, EC_REG_DL_STATUS, 2, g->dl));
+	ec_trial_add(t, EC_FPRD(g->station, EC_REG_DC_RECV(0), 16, g->times));
+	ec_trial_add(t, EC_FPRD(g->station, EC_REG_AL_STATUS, 2, g->al));
+	ec_trial_add(t, EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, &type));
+	ret = ec_trial_run(t, g->station);
+	g->behind = t->work[6].wkc > t->bus->n_slaves ? t->work[6].wkc - t->bus->n_slaves : 1;
 	/* not every controller has receive times */
 	for (i = 1; i < 4 && !ret; i++)
 		ret = t->work[i].wkc == 1 ? 0 : -EAGAIN;
@@ -262,7 +244,7 @@ static int trial_ask(struct trial *t, struct guest *g)
 }
 
 /* The port by which frames come in: the open one that latched first. */
-static u8 guest_entry(const struct guest *g)
+static u8 guest_entry(const struct ec_guest *g)
 {
 	u8 open = ec_graph_open_ports(get_unaligned_le16(g->dl));
 	int best = -1;
@@ -277,7 +259,7 @@ static u8 guest_entry(const struct guest *g)
 }
 
 /* All ports of the guest but port 0 and its entry closed */
-static u8 guest_loops(const struct guest *g)
+static u8 guest_loops(const struct ec_guest *g)
 {
 	u8 loops = 0;
 	unsigned int p;
@@ -288,7 +270,7 @@ static u8 guest_loops(const struct guest *g)
 	return loops;
 }
 
-static bool is_last(const struct guest *g)
+static bool is_last(const struct ec_guest *g)
 {
 	return hweight8(ec_graph_open_ports(get_unaligned_le16(g->dl))) <= 1;
 }
@@ -298,7 +280,7 @@ static bool is_last(const struct guest *g)
  * guest is alone: a frame passes a slave that is connected the wrong way round when it returns,
  * behind those at its port 0, so it is not the first one at its position.
  */
-static int tame(struct trial *t, struct guest *g)
+static int tame(struct ec_trials *t, struct ec_guest *g)
 {
 	static const u8 zero[EC_MAX_FMMU * EC_FMMU_PAGE];
 	static const u8 init[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
@@ -311,18 +293,18 @@ static int tame(struct trial *t, struct guest *g)
 
 	put_unaligned_le16(g->kept ?: g->station, kept);
 	t->n = 0;
-	trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops));
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops));
 	if (fmmus)
-		trial_add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
-	trial_add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
-	trial_add(t, EC_FPWR(g->station, EC_REG_AL_CONTROL, 2, init));
-	trial_add(t, EC_FPRD(g->station, EC_REG_DL_LOOPS, 1, is));
+		ec_trial_add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_AL_CONTROL, 2, init));
+	ec_trial_add(t, EC_FPRD(g->station, EC_REG_DL_LOOPS, 1, is));
 	if (fmmus)
-		trial_add(t, EC_FPRD(g->station, EC_REG_FMMU(0), fmmus, left));
-	count = trial_add(t, EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, any));
+		ec_trial_add(t, EC_FPRD(g->station, EC_REG_FMMU(0), fmmus, left));
+	count = ec_trial_add(t, EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, any));
 	last = t->n;
-	trial_add(t, EC_FPWR(g->station, EC_REG_STATION, 2, kept));
-	ret = trial_run(t, g->station);
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_STATION, 2, kept));
+	ret = ec_trial_run(t, g->station);
 	if (t->work[last].wkc == 1)
 		g->station = get_unaligned_le16(kept);
 	if (ret)
@@ -335,18 +317,19 @@ static int tame(struct trial *t, struct guest *g)
 	return is[0] == loops[0] ? 0 : -EOPNOTSUPP;
 }
 
-static int try_often(struct trial *t, struct guest *g, int (*step)(struct trial *, struct guest *))
+static int try_often(struct ec_trials *t, struct ec_guest *g,
+		     int (*step)(struct ec_trials *, struct ec_guest *))
 {
 	int ret = -EAGAIN;
 	unsigned int i;
 
-	for (i = 0; i < TRIES && (ret == -EAGAIN || ret == -EXDEV); i++)
+	for (i = 0; i < EC_TRIAL_TRIES && (ret == -EAGAIN || ret == -EXDEV); i++)
 		ret = step(t, g);
 	return ret;
 }
 
 /* The address that a slave may have again: of this bus, and of no other slave now */
-static u16 kept_station(struct ec_bus *bus, const struct guest *g)
+static u16 kept_station(struct ec_bus *bus, const struct ec_guest *g)
 {
 	u16 station = get_unaligned_le16(g->station_was);
 
@@ -354,7 +337,7 @@ static u16 kept_station(struct ec_bus *bus, const struct guest *g)
 }
 
 /* Let the guest in: its port is open from now on. */
-static int let_in(struct trial *t)
+static int let_in(struct ec_trials *t)
 {
 	const u8 open[2] = { t->host.control & ~TEMPORARY,
 			     ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
@@ -364,7 +347,7 @@ static int let_in(struct trial *t)
 }
 
 /* The DL status of the host; its port may have lost its link since it was seen. */
-static int look(struct trial *t)
+static int look(struct ec_trials *t)
 {
 	u8 dl[2];
 
@@ -374,11 +357,11 @@ static int look(struct trial *t)
 }
 
 /* One slave; -EALREADY: it is let in, but the slaves behind it are not. */
-static int trial_one(struct trial *t, struct guest *g)
+static int trial_one(struct ec_trials *t, struct ec_guest *g)
 {
-	int ret;
+	int ret, judged;
 
-	*g = (struct guest){ .station = ec_known_fresh_station(t->bus) };
+	*g = (struct ec_guest){ .station = ec_known_fresh_station(t->bus) };
 	if (!g->station)
 		return -ENOSPC;
 	ret = look(t) ?: try_often(t, g, greet);
@@ -390,19 +373,24 @@ static int trial_one(struct trial *t, struct guest *g)
 		return ret;
 	g->kept = kept_station(t->bus, g);
 	g->entry = guest_entry(g);
+	if (ec_trial_in_boot(t, g))
+		return -EPERM;
 	ret = try_often(t, g, tame);
 	/* what is behind a guest that does not keep its loops would get process data at once */
 	if (ret == -EOPNOTSUPP && !is_last(g))
 		return ret;
 	if (ret && ret != -EOPNOTSUPP)
 		return ret;
+	judged = ec_trial_judge(t, g);
+	if (judged)
+		return judged;
 	if (let_in(t))
 		return -EAGAIN;
 	return ret || g->entry ? -EALREADY : 0;
 }
 
 /* The port of the guest that the ring passes next, behind which there is a link; 0: none. */
-static unsigned int next_link(const struct guest *g, unsigned int after)
+static unsigned int next_link(const struct ec_guest *g, unsigned int after)
 {
 	static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 	unsigned int k = 0;
@@ -417,17 +405,28 @@ static unsigned int next_link(const struct guest *g, unsigned int after)
 
 /* a guest whose other ports are being tried */
 struct level {
-	struct host host;
-	struct guest guest;
+	struct ec_host host;
+	struct ec_guest guest;
 	u16 position;
 	unsigned int port;
 };
 
+static struct ec_host host_of(const struct ec_trials *t, const struct level *l)
+{
+	const struct ec_guest *g = &l->guest;
+
+	return (struct ec_host){
+		.station = g->station, .position = l->position,
+		.control = g->control[0], .loops = guest_loops(g),
+		.device = g->kept ? ec_known_by_station(t->bus, g->kept) : 0,
+	};
+}
+
 /* What is behind the guests, slave by slave in the order of the ring. Returns their number. */
-static int trial_branch(struct trial *t, struct guest *first)
+static int trial_branch(struct ec_trials *t, struct ec_guest *first)
 {
 	struct level *stack = kvcalloc(DEPTH, sizeof(*stack), GFP_KERNEL);
-	struct guest g;
+	struct ec_guest g;
 	int depth = 0, n = 1;
 
 	if (!stack)
@@ -439,14 +438,15 @@ static int trial_branch(struct trial *t, struct guest *first)
 		int ret;
 
 		if (!l->port)
-			l->host = (struct host){ l->guest.station, l->position,
-						 l->guest.control[0], guest_loops(&l->guest) };
+			l->host = host_of(t, l);
 		l->port = next_link(&l->guest, l->port);
 		if (!l->port || READ_ONCE(t->bus->base->stopping)) {
 			if (!depth--)
 				break;
 			continue;
 		}
+		if (ec_border_may_be(t->bus, l->host.device, l->port))
+			continue;
 		t->host = l->host;
 		t->port = l->port;
 		t->position++;
@@ -472,6 +472,7 @@ static int trial_branch(struct trial *t, struct guest *first)
  * ec_trial() - make the slaves behind a closed port harmless, and let them in
  * @s: slave
  * @port: its port, closed, with a link
+ * @is: result: a device that is not let in
  *
  * Afterwards the port is open, if a slave was found; those behind it are found by the next scan:
  * in INIT, without FMMUs and SYNC signals.
@@ -479,17 +480,22 @@ static int trial_branch(struct trial *t, struct guest *first)
  * Context: The monitor thread. Waits for bus traffic.
  * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
  * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
- * behind it; -EXDEV: others are behind its port 0; -ENOSPC: no free station address.
+ * behind it; -EXDEV: others are behind its port 0; -ENOSPC: no free station address; -EPERM: @is
+ * is not let in.
  */
-int ec_trial(struct ec_slave *s, unsigned int port)
+int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 {
-	struct trial t = {
+	struct ec_trials t = {
 		.bus = s->bus,
-		.host = { s->station, s->position, s->ports.control, s->ports.loops },
+		.host = {
+			.station = s->station, .position = s->position,
+			.control = s->ports.control, .loops = s->ports.loops,
+			.device = s->device,
+		},
 		.port = port,
 		.position = ec_graph_place(s, port),
 	};
-	struct guest g;
+	struct ec_guest g;
 	int ret;
 
 	WRITE_ONCE(s->bus->trials, s->bus->trials + 1);
@@ -497,6 +503,7 @@ int ec_trial(struct ec_slave *s, unsigned int port)
 	ret = trial_one(&t, &g);
 	s->ports.loops = t.host.loops;
 	s->dl_seen = t.dl ?: s->dl_seen;
+	*is = t.is;
 	if (ret)
 		return ret == -EALREADY ? 1 : ret;
 	return trial_branch(&t, &g);

@@ -2,8 +2,9 @@
 #ifndef EC_TRIAL_H
 #define EC_TRIAL_H
 
+struct ec_behind;
 struct ec_slave;
 
-int ec_trial(struct ec_slave *s, unsigned int port);
+int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is);
 
 #endif

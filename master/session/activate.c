@@ -148,7 +148,7 @@ int ec_session_activate(struct ec_session *s)
 	bytes = ec_session_place(s);
 	if (bytes > EC_MAX_IMAGE)
 		return -EOVERFLOW;
-	ret = activate_prepare(s, bytes);
+	ret = ec_session_set_borders(s) ?: activate_prepare(s, bytes);
 	if (ret)
 		return ret;
 	/* from now on workers use the configurations, which do not change */

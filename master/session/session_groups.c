@@ -86,6 +86,47 @@ static u8 fast_ports(const struct ec_wanted *w, const struct ec_config *at)
 	return ports;
 }
 
+static struct ec_border_sign sign_of(const struct ec_group *g)
+{
+	const struct ec_config *head = g->n_members ? g->members[0] : NULL;
+
+	return (struct ec_border_sign){
+		.device = g->at ? g->at->slave->device : 0, .port = g->port, .by = g->by,
+		.value = g->value, .vendor = head ? head->vendor : 0,
+		.product = head ? head->product : 0,
+		.serial = head ? ec_config_flag(head, EC_FLAG_SERIAL) : 0,
+	};
+}
+
+/**
+ * ec_session_set_borders() - pass on which groups are expected behind ports
+ * @s: session, not the candidate
+ *
+ * Context: Process, session lock held. May sleep.
+ * Return: 0, or -ENOMEM: what was expected before still is.
+ */
+int ec_session_set_borders(struct ec_session *s)
+{
+	struct ec_border_sign *signs = NULL;
+	bool waiting = false;
+	unsigned int n = 0;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (s->wanted.n_groups) {
+		signs = kvcalloc(s->wanted.n_groups, sizeof(*signs), GFP_KERNEL);
+		if (!signs)
+			return -ENOMEM;
+	}
+	ec_for_each_group(g, &s->wanted) {
+		if (g->at && !g->at->slave)
+			waiting = true;
+		else
+			signs[n++] = sign_of(g);
+	}
+	ec_border_set(s->sessions->bus, signs, n, waiting);
+	return 0;
+}
+
 /**
  * ec_session_attach_groups() - connect the members of groups that are on the bus with their slaves
  * @s: session, after ec_session_mark()
@@ -100,6 +141,9 @@ void ec_session_attach_groups(struct ec_session *s)
 	ec_for_each_group(g, &s->wanted)
 		if (g->fast && g->at->slave && ec_session_owns(g->at))
 			ec_ports_set_fast(g->at->slave, fast_ports(&s->wanted, g->at));
+	/* without memory the next scan tries it again */
+	if (s->wanted.active)
+		ec_session_set_borders(s);
 }
 
 /**

@@ -69,7 +69,7 @@ static const struct row kinds[] = {
 	     "a slave did not answer at its station address in %0 polls; rescanning",
 	     U("polls")),
 	KIND(PORT_KEPT, "port_kept", WARNING | SLAVE, SPECIAL, U("port"), U("reason"), U("losses"),
-	     U("period_s"), U("longest_wait_s")),
+	     U("period_s"), U("longest_wait_s"), U("vendor_id"), U("product_code"), U("slaves")),
 	/* only what fails has a line */
 	KIND(AL_STATE, "al_state", NONE | SLAVE, SPECIAL, AL("state"), AL("before"),
 	     U("slaves"), AL("lowest")),

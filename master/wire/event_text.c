@@ -67,7 +67,13 @@ static void about_port(struct ec_event_buf *t, const struct ec_event *e,
 	if (e->arg[2])
 		add(t, " (%u times in %u s; opened after 1 s of link, then after up to %u s)",
 		    e->arg[2], e->arg[3], e->arg[4]);
+	if (e->arg[5] || e->arg[6])
+		add(t, ": 0x%08x/0x%08x", e->arg[5], e->arg[6]);
+	if (e->arg[7] > 1)
+		add(t, ", %u slaves", e->arg[7]);
 	add(t, "; %s", text->remedy);
+	if (text->device)
+		add(t, ", or 'ethercat slaves -p %u --let-in %u'", e->slave, e->arg[0]);
 }
 
 static void about_back(struct ec_event_buf *t, const struct ec_event *e,

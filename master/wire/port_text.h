@@ -9,10 +9,12 @@
  * struct ec_port_text - a reason, in words
  * @reason: behind "port 2 stays closed: "
  * @remedy: what to do
+ * @device: a device is kept behind it, which a user can let in
  */
 struct ec_port_text {
 	const char *reason;
 	const char *remedy;
+	bool device;
 };
 
 const struct ec_port_text *ec_port_text(u32 kept);

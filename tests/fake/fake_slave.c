@@ -339,6 +339,24 @@ static int why(struct ec_ioc_slave_why *x)
 	return 0;
 }
 
+/* FAKE_BORDER: a device that is not the group at port 2 of slave 1; "boot": it was not read */
+static void kept_out(struct ec_ioc_port *x)
+{
+	x->kept = EC_PORT_SIGN;
+	x->slaves = 3;
+	x->alias = 7;
+	x->identification = 9;
+	if (!strcmp(getenv("FAKE_BORDER"), "boot")) {
+		x->kept = EC_PORT_BOOT;
+		return;
+	}
+	x->vendor_id = 2;
+	x->product_code = 0x07d83052;
+	x->revision_number = 0x110000;
+	x->serial_number = 61;
+	strcpy(x->name, "EL\"2008\x1b");
+}
+
 static int port(struct ec_ioc_port *x)
 {
 	struct fake_slave s;
@@ -360,6 +378,17 @@ static int port(struct ec_ioc_port *x)
 		x->kept = s.position ? EC_PORT_NO_REPLY : EC_PORT_LOSSES;
 		x->wait_s = s.position ? 0 : 4;
 	}
+	if (getenv("FAKE_BORDER") && s.position == 1 && x->port == 2)
+		kept_out(x);
+	return 0;
+}
+
+static int let_in(const struct ec_ioc_let_in *x)
+{
+	if (!getenv("FAKE_BORDER") || x->slave.position != 1 || x->port != 2)
+		return fake_fail(ENOENT, "no device waits there");
+	fake_record("let_in %u %u 0x%x 0x%x 0x%x 0x%x\n", x->slave.position, x->port,
+		    x->vendor_id, x->product_code, x->revision_number, x->serial_number);
 	return 0;
 }
 
@@ -406,6 +435,8 @@ int fake_slave_command(unsigned long request, void *arg)
 		return why(arg);
 	case EC_IOC_PORT:
 		return port(arg);
+	case EC_IOC_LET_IN:
+		return let_in(arg);
 	case EC_IOC_SM:
 		return sm(arg);
 	case EC_IOC_PDO:

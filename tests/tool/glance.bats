@@ -172,8 +172,49 @@ $lines
 		json '(lambda m: list(m["absent"][0].values()) ==
 			[0, 2, 7, 3100000000, 1, 7, "EL2008"] and
 			m["absent"][2]["upstream"] is None and m["closed_ports"][0] ==
-			{"slave": 0, "port": 3, "reason": "losses", "wait_s": 4} and
+			{"slave": 0, "port": 3, "reason": "losses", "wait_s": 4, "behind": None} and
 			m["closed_ports"][1]["reason"] == "no_reply")(d.get("masters", [d])[0])' \
 			<"$BATS_TEST_TMPDIR/json"
 	done
+}
+
+@test "slaves, graph: devices behind closed ports, and --let-in" {
+	local line c
+
+	line="port 2 of slave 1 EL2008 stays closed despite its link: another alias or identification than the group"
+	line+=" (EL\"2008? 0x00000002/0x07d83052, serial number 0x0000003d, 3 slaves); connect the right one, or 'ethercat slaves -p 1 --let-in 2'"
+	export FAKE_BORDER=1
+	[[ $(err slaves) == "Master0: $line"* ]]
+	[[ $(out graph --tree) == *"$line"* ]]
+	[[ $(out graph) == *'label="EL\"2008?\nnot let in"]
+	slave1 -- closed1_2 [style="dotted", taillabel="2"]'* ]]
+	[[ $(FAKE_BORDER=boot err slaves) == *"a device in BOOT; switch it off and on, or 'ethercat slaves -p 1 --let-in 2'"* ]]
+	[[ $(FAKE_BORDER=boot out graph) == *'label="unknown device\nnot let in"'* ]]
+	for c in "slaves" "graph" "graph --tree"; do
+		out $c -j | json 'd.get("masters", [d])[0]["closed_ports"] == [{"slave": 1, "port": 2,
+			"reason": "other_sign", "wait_s": 0, "behind": {"vendor_id": 2,
+			"product_code": 0x7d83052, "revision_number": 0x110000, "serial_number": 61,
+			"alias": 7, "identification": 9, "slaves": 3, "name": "EL\"2008?"}}]'
+	done
+	# the identity that was shown goes with the command
+	[ "$(log_of slaves -p 1 --let-in 2 2>/dev/null | grep let_in)" = "let_in 1 2 0x2 0x7d83052 0x110000 0x3d" ]
+	[[ $(err slaves -p 1 --let-in 2) == *"Master0: the device behind port 2 of slave 1 is let in (EL"* ]]
+}
+
+@test "slaves --let-in refuses wrong arguments with a reason" {
+	export FAKE_BORDER=1
+	run ethercat slaves --let-in 2
+	[ "$status" -eq 1 ]
+	[[ $output == *"--let-in is for a port of one slave, not of "*": select it with --position or --alias" ]]
+	run ethercat slaves -p 1 --let-in 1
+	[ "$status" -eq 1 ]
+	[[ $output == *"cannot let in what is behind port 1 of slave 1: no device waits there"* ]]
+	for p in 0 4 -1 2x ""; do
+		run ethercat slaves -p 1 --let-in "$p"
+		[ "$status" -ne 0 ]
+		[[ $output == *"invalid port '$p' for --let-in: expected 1 to 3"* ]]
+	done
+	FAKE_READONLY=1 run ethercat slaves -p 1 --let-in 2
+	[ "$status" -eq 1 ]
+	[ -z "$(FAKE_READONLY=1 log_of slaves -p 1 --let-in 2 2>/dev/null | grep let_in)" ]
 }

@@ -255,6 +255,8 @@ is() {
 	[[ $output == *"Warning: behind port 2 of slave 0 (EK1100): 7 slaves disconnected, since 3.1 s, the first: slave 1 (EL2008); link "* ]]
 	[[ $output == *"  Place: slave 0 (EK1100), port 2"* && $output == *"'ethercat rescan'"* ]]
 	[[ $output == *"Warning: port 3 of slave 1 (EL2008) stays closed despite its link: no slave replies behind it"*"  Remedy: connect port 0 (IN) of a slave there, or remove the cable"* ]]
+	FAKE_BORDER=1 run ethercat why
+	[[ $output == *"Warning: port 2 of slave 1 (EL2008) stays closed despite its link: another alias or identification than the group (EL"*"3 slaves)"*"  Remedy: connect the right one, or 'ethercat slaves -p 1 --let-in 2'"* ]]
 	# one finding for a port that configurations miss slaves behind
 	[ "$(FAKE_WHY=cable out why | grep -c 'behind port 1 of slave 1')" = 1 ]
 	[[ $(FAKE_WHY=cable out why) == *"Fault: behind port 1 of slave 1 (EL2008): 1 slave disconnected, since 5 min, the first: slave 2 (EL7201); link "* ]]

@@ -268,6 +268,10 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "slave 5: port 2 stays closed despite its link: no slave replies behind it; connect port 0 (IN) of a slave there, or remove the cable");
 	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_LOSSES, 3, 10, 60),
 	       "slave 5: port 2 stays closed despite its link: it has lost its link again and again (3 times in 10 s; opened after 1 s of link, then after up to 60 s); check cable and plugs");
+	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_SIGN, 0, 0, 0, 2, 0x07d83052, 3),
+	       "slave 5: port 2 stays closed despite its link: another alias or identification than the group: 0x00000002/0x07d83052, 3 slaves; connect the right one, or 'ethercat slaves -p 5 --let-in 2'");
+	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_BOOT),
+	       "slave 5: port 2 stays closed despite its link: a device in BOOT; switch it off and on, or 'ethercat slaves -p 5 --let-in 2'");
 	expect(test, E(GROUP, 4, 0, EC_CAUSE_NONE, 0, 2),
 	       "group 0: connected, 2 slave(s) from slave 4 on");
 	expect(test, E(GROUP, EC_EVENT_NO_SLAVE, 1, EC_CAUSE_NO_GROUP, 1, 2),

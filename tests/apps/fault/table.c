@@ -64,6 +64,7 @@ const struct cmd cmds[] = {
 	CMD(FOE_WRITE, BUS, RSV1(ec_ioc_foe)),
 	CMD(STATE, BUS, RSV1(ec_ioc_state)),
 	CMD(RESCAN, BUS),
+	CMD(LET_IN, BUS),
 	CMD(DEBUG, BUS),
 	CMD(RESET, BUS),
 	CMD(CYCLE_RESET, BUS),

@@ -1,0 +1,91 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Parts of trials; see trial.c. */
+#ifndef EC_TRIAL_INT_H
+#define EC_TRIAL_INT_H
+
+#include "../carry/dg.h"
+#include "border.h"
+#include "slave.h"
+
+#define EC_TRIAL_WORK	8	/* datagrams of the work, at most */
+#define EC_TRIAL_TRIES	3
+
+/**
+ * struct ec_host - a slave at whose port something is tried
+ * @station: its station address
+ * @position: its ring position
+ * @control: register 0x0100
+ * @loops: register 0x0101 with all ports closed behind which nothing is known
+ * @device: number of the slave; 0: a new one
+ */
+struct ec_host {
+	u16 station;
+	u16 position;
+	u8 control;
+	u8 loops;
+	u64 device;
+};
+
+/**
+ * struct ec_guest - a slave that was found there
+ * @station: its station address
+ * @kept: address that it had, 0: none that it may have again
+ * @entry: port by which frames come in
+ * @mute: no frame to it has returned
+ * @behind: slaves from it on
+ * @info: registers from 0x0000 on
+ * @station_was: station address that it had, and its alias
+ * @dl: DL status
+ * @control: registers 0x0100 and 0x0101
+ * @al: AL status
+ * @times: receive times of its ports
+ */
+struct ec_guest {
+	u16 station;
+	u16 kept;
+	u8 entry;
+	bool mute;
+	u32 behind;
+	u8 info[EC_INFO_SIZE];
+	u8 station_was[4];
+	u8 dl[2];
+	u8 control[2];
+	u8 al[2];
+	u8 times[16];
+};
+
+/**
+ * struct ec_trials - trials at a port
+ * @bus: bus
+ * @host: slave with the port
+ * @port: port
+ * @position: of the first slave behind the port
+ * @next: slave of the list at that position now; NULL: there is none
+ * @dl: DL status of the host at the end of the last trial
+ * @count: slaves that reply then
+ * @work: datagrams of the next trial, then of the last one
+ * @n: how many
+ * @is: result: a device that is not let in
+ */
+struct ec_trials {
+	struct ec_bus *bus;
+	struct ec_host host;
+	u8 port;
+	u16 position;
+	const struct ec_slave *next;
+	u16 dl;
+	u16 count;
+	struct ec_dg work[EC_TRIAL_WORK];
+	unsigned int n;
+	struct ec_behind is;
+};
+
+/* trial.c */
+struct ec_dg *ec_trial_add(struct ec_trials *t, struct ec_dg dg);
+int ec_trial_run(struct ec_trials *t, u16 station);
+
+/* trial_judge.c */
+bool ec_trial_in_boot(struct ec_trials *t, const struct ec_guest *g);
+int ec_trial_judge(struct ec_trials *t, struct ec_guest *g);
+
+#endif
