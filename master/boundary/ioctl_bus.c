@@ -8,6 +8,7 @@
 #include "../session/reserve.h"
 #include "../session/session.h"
 #include "../session/session_attach.h"
+#include "../bus/border.h"
 #include "../bus/bus_list.h"
 #include "../bus/ports.h"
 #include "../wire/port_text.h"

@@ -14,6 +14,7 @@
 #include "../cycle/cycle_stats.h"
 #include "../session/session.h"
 #include "../bus/absent.h"
+#include "../bus/border.h"
 #include "../bus/find.h"
 #include "../bus/ports.h"
 #include "../bus/slave.h"

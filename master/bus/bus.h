@@ -10,7 +10,7 @@
 #include <linux/spinlock.h>
 #include <linux/wait.h>
 #include "../base/base.h"
-#include "border.h"
+#include "border_table.h"
 #include "known_table.h"
 #include "workers.h"
 

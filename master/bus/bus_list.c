@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The list of slaves: one of it, all of it, and until they have settled. */
-#include "border.h"
 #include "bus_list.h"
 #include "slave.h"
 #include "../link/links.h"
@@ -161,5 +160,5 @@ void ec_bus_exit(struct ec_bus *bus)
 	bus->slaves = NULL;
 	WRITE_ONCE(bus->n_slaves, 0);
 	ec_known_exit(&bus->known);
-	ec_border_clear(bus);
+	ec_border_clear(&bus->border);
 }

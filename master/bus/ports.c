@@ -5,6 +5,7 @@
 #include <linux/sysfs.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "border.h"
 #include "graph.h"
 #include "ports.h"
 #include "slave.h"
@@ -64,7 +65,7 @@ void ec_ports_guard(struct ec_bus *bus, bool on)
 	}
 	WRITE_ONCE(bus->guarded, on && closes);
 	if (!on)
-		ec_border_clear(bus);
+		ec_border_clear(&bus->border);
 	if (bus->ops && bus->ops->wake)
 		bus->ops->wake(bus);
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "../base/report.h"
+#include "../bus/border.h"
 #include "../bus/ports.h"
 #include "../config/group.h"
 #include "session_groups.h"
