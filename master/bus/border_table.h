@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* What is expected behind ports, and what is there; see border.h. */
+/* What is expected behind ports, and the devices that wait there; see border.h. */
 #ifndef EC_BORDER_TABLE_H
 #define EC_BORDER_TABLE_H
 
