@@ -274,6 +274,9 @@ static void note_closed(struct ec_slave *s, unsigned int port, const struct ec_b
 	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
 	if (d->kept == is->kept && !differs)
 		return;
+	/* the first one says more */
+	if (d->kept == EC_PORT_SWALLOWS && is->kept == EC_PORT_NO_REPLY)
+		return;
 	WRITE_ONCE(d->kept, is->kept);
 	ec_slave_report(s, EC_EVENT_PORT_KEPT, port, d->kept, 0, 0, 0, is->vendor, is->product,
 			is->slaves);

@@ -14,6 +14,7 @@
 #include "scan_sii.h"
 #include "scan_sii_int.h"
 
+#define CHAINS		16	/* slaves that are read in the context of the cycle, at most */
 #define STEP_TIMEOUT_NS	(20 * NSEC_PER_MSEC)	/* of one access to the EEPROM */
 #define STRAGGLER_NS	(4 * NSEC_PER_MSEC)	/* when the slowest tenth is left behind */
 #define PROBE_NS	(2 * NSEC_PER_MSEC)	/* while no slave is ready, few are asked */
@@ -285,7 +286,8 @@ static void scan_sii_run(struct job *j)
 	/* no fault of a slave: the scan begins again */
 	if (scan_sii_take_over(j, j->rds, n) == -ENOMEM)
 		return;
-	if (ec_access_is_cyclic(&j->bus->links->access))
+	/* what the cycle does for each of them takes its time; many share frames in lockstep */
+	if (ec_access_is_cyclic(&j->bus->links->access) && n <= CHAINS)
 		ec_scan_chain_run(j);
 	for (n = waiting(j, &word); n && ec_scan_sii_goes_on(j); n = waiting(j, &word)) {
 		scan_sii_step(j, j->rds, n, word);
