@@ -293,7 +293,8 @@ static int tame(struct ec_trials *t, struct ec_guest *g)
 
 	put_unaligned_le16(g->kept ?: g->station, kept);
 	t->n = 0;
-	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops));
+	/* in a frame of its own: its ports close behind that */
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops))->last = true;
 	if (fmmus)
 		ec_trial_add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
 	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
