@@ -347,14 +347,24 @@ static int let_in(struct ec_trials *t)
 	return ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, open, 2);
 }
 
-/* The DL status of the host; its port may have lost its link since it was seen. */
+/*
+ * The port may have lost its link since it was seen, and the ring slaves before it: then another
+ * slave than the next one of the list is at the position, or none.
+ */
 static int look(struct ec_trials *t)
 {
-	u8 dl[2];
+	u16 next = t->next ? t->next->station : 0;
+	u8 dl[2], station[2] = { 0 };
+	struct ec_dg dg[2] = {
+		EC_FPRD(t->host.station, EC_REG_DL_STATUS, 2, dl),
+		EC_DG(EC_CMD_APRD, -t->position, EC_REG_STATION, 2, station),
+	};
 
-	t->dl = ec_xfer_fprd(t->bus->links, t->host.station, EC_REG_DL_STATUS, dl, 2) ?
-		0 : get_unaligned_le16(dl);
-	return t->dl & EC_DLS_LINK(t->port) ? 0 : -ENOLINK;
+	ec_xfer(t->bus->links, dg, 2);
+	t->dl = dg[0].err || dg[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
+	if (!(t->dl & EC_DLS_LINK(t->port)))
+		return -ENOLINK;
+	return dg[1].err || get_unaligned_le16(station) != next ? -ESTALE : 0;
 }
 
 /* One slave; -EALREADY: it is let in, but the slaves behind it are not. */
@@ -377,6 +387,8 @@ static int trial_one(struct ec_trials *t, struct ec_guest *g)
 	if (ec_trial_in_boot(t, g))
 		return -EPERM;
 	ret = try_often(t, g, tame);
+	if (ret == -EXDEV && look(t))
+		return -ESTALE;
 	/* what is behind a guest that does not keep its loops would get process data at once */
 	if (ret == -EOPNOTSUPP && !is_last(g))
 		return ret;
@@ -481,8 +493,8 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
  * Context: The monitor thread. Waits for bus traffic.
  * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
  * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
- * behind it; -EXDEV: others are behind its port 0; -ENOSPC: no free station address; -EPERM: @is
- * is not let in.
+ * behind it; -EXDEV: others are behind its port 0; -ESTALE: the ring is not that of the list;
+ * -ENOSPC: no free station address; -EPERM: @is is not let in.
  */
 int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 {

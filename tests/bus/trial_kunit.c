@@ -57,9 +57,42 @@ static void trial_behind_large_branch_by_chance(struct kunit *test)
 	let_in(test, TEXT("random"));
 }
 
+/*
+ * Slaves have left the ring before the port, and the master does not know yet: nobody else gets an
+ * address for that.
+ */
+static void trial_after_slaves_have_gone(struct kunit *test)
+{
+	static const char text[] =
+		"segment seed=3 response=100us transition=1ms\n"
+		"slave hub EK1100\n"
+		"repeat 3 slave a drive in=8 out=8\n"
+		"branch hub 2\nslave fork EK1122\n"
+		"repeat 6 slave b drive in=8 out=8\n"
+		"branch none\nslave x1 drive in=8 out=8\n";
+	struct bus *b = bus_up(test, text, 11);
+	struct cyc *c = cyc_in_op(b, 0, 11);
+	u32 lines = bus_log_lines("contact lost"), ms;
+
+	cyc_run(c, 200);
+	for (ms = 60; ms < 120; ms += 5) {
+		bus_command(b, "plug fork.3 x1.0");
+		cyc_run(c, ms);
+		bus_command(b, "cut a2.0");
+		cyc_run(c, 1000);
+		bus_command(b, "unplug fork.3");
+		bus_command(b, "heal a2.0");
+		/* not as a contact that is lost again and again */
+		cyc_run(c, 12000);
+		KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 11u);
+	}
+	KUNIT_EXPECT_EQ(test, bus_log_lines("contact lost"), lines);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(trial_behind_large_branch),
 	KUNIT_CASE(trial_behind_large_branch_by_chance),
+	KUNIT_CASE(trial_after_slaves_have_gone),
 	{}
 };
 
