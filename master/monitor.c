@@ -91,9 +91,9 @@ static void check_links(struct watch *w)
 /* The status of a slave has changed without its worker. */
 static void note_change(struct ec_slave *s, u16 status, u16 code)
 {
-	u8 state = status & EC_AL_STATE_MASK, before = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
-	bool left = state < before && before == READ_ONCE(s->requested) &&
-		    state != READ_ONCE(s->awaited);
+	u8 state = status & EC_AL_STATE_MASK, before = READ_ONCE(s->al.status) & EC_AL_STATE_MASK;
+	bool left = state < before && before == READ_ONCE(s->al.requested) &&
+		    state != READ_ONCE(s->al.awaited);
 
 	ec_slave_set_al(s, status, code, left ? EC_AL_BY_ITSELF : EC_AL_BY_REQUEST);
 }
@@ -111,16 +111,16 @@ static void note_reply(struct watch *w, struct ec_slave *s, const struct ec_dg *
 	/* a lost frame says nothing of a slave, unless all are lost */
 	bool missing = dg->err ? !w->count : dg->wkc != 1;
 
-	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->silent))
+	if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->reply.silent))
 		return;
 	if (!missing && !dg->err) {
-		s->missed = 0;
+		s->reply.missed = 0;
 		/* a loose contact must not fill the log */
 		if (!ec_survey_is_due(s, ktime_get_ns()) || !ec_slave_set_replies(s))
 			return;
 		ec_slave_kick(s);
-	} else if (missing && ++s->missed >= SILENT_LOOKS) {
-		s->missed = SILENT_LOOKS;
+	} else if (missing && ++s->reply.missed >= SILENT_LOOKS) {
+		s->reply.missed = SILENT_LOOKS;
 		if (!ec_slave_set_silent(s, !dg->err && dg->wkc ? doubled : lost))
 			return;
 		WRITE_ONCE(w->m->bus.due, true);
@@ -151,7 +151,7 @@ static bool check_slaves(struct watch *w)
 	if (!dg || !r)
 		goto out;
 	for (i = 0; i < m->bus.n_slaves; i++) {
-		r[i].reads = READ_ONCE(m->bus.slaves[i]->al_reads);
+		r[i].reads = READ_ONCE(m->bus.slaves[i]->al.reads);
 		dg[i] = EC_FPRD(m->bus.slaves[i]->station, EC_REG_AL_STATUS, 6, r[i].al);
 	}
 	ec_xfer(&m->links, dg, m->bus.n_slaves);
@@ -160,20 +160,20 @@ static bool check_slaves(struct watch *w)
 		u16 status = get_unaligned_le16(r[i].al), code = get_unaligned_le16(r[i].al + 4);
 		u8 state;
 
-		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED)
+		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED)
 			all = false;
 		if (w->held)
 			note_reply(w, s, &dg[i]);
 		if (dg[i].err || dg[i].wkc != 1)
 			continue;
 		/* its worker knows better */
-		if (ec_slave_busy(s) || READ_ONCE(s->al_reads) != r[i].reads)
+		if (ec_slave_busy(s) || READ_ONCE(s->al.reads) != r[i].reads)
 			continue;
 		note_change(s, status, code);
 		/* what was asked for comes late, or it has fallen back by itself: bring it up */
 		state = status & EC_AL_STATE_MASK;
-		if (READ_ONCE(s->error) ? state == READ_ONCE(s->awaited) :
-					  state != READ_ONCE(s->requested))
+		if (READ_ONCE(s->note.error) ? state == READ_ONCE(s->al.awaited) :
+					  state != READ_ONCE(s->al.requested))
 			ec_slave_kick(s);
 	}
 out:
@@ -403,7 +403,7 @@ static void note_held(struct watch *w)
 
 	if (held && !w->held)
 		ec_for_each_slave(s, &w->m->bus)
-			s->missed = 0;
+			s->reply.missed = 0;
 	w->held = held;
 }
 
@@ -466,14 +466,14 @@ static void monitor_try_again(struct watch *w)
 			break;
 		if (!ec_survey_is_due(s, now))
 			continue;
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent)) {
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED || READ_ONCE(s->reply.silent)) {
 			if (w->held)
 				continue;
 			dg[n] = EC_DG(EC_CMD_APRD, (u16)-s->position, EC_REG_STATION, 2, b[n]);
 			due[n++] = s;
 		} else if (!ec_slave_busy(s)) {
 			/* the worker plans the next one, if it has to */
-			ec_write64(&s->retry_ns, 0);
+			ec_write64(&s->reply.retry_ns, 0);
 			ec_slave_kick(s);
 		}
 	}
@@ -509,10 +509,10 @@ static void look_at_ports(struct watch *w)
 static void want_states(struct ec_master *m)
 {
 	ec_for_each_slave(s, &m->bus) {
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 			continue;
-		if (READ_ONCE(s->al_status) != READ_ONCE(s->requested) ||
-		    READ_ONCE(s->reconfigure) || !s->ours)
+		if (READ_ONCE(s->al.status) != READ_ONCE(s->al.requested) ||
+		    READ_ONCE(s->work.reconfigure) || !s->work.ours)
 			ec_slave_kick(s);
 	}
 }
@@ -596,7 +596,7 @@ static void read_pdos(struct watch *w)
 	ec_for_each_slave(s, &m->bus) {
 		if (!ec_slave_pdos_pending(s) || ec_slave_busy(s))
 			continue;
-		WRITE_ONCE(s->read_pdos, true);
+		WRITE_ONCE(s->pdos.wanted, true);
 		ec_slave_kick(s);
 	}
 }

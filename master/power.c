@@ -61,11 +61,11 @@ static unsigned int request_preop(struct ec_master *m)
 	WRITE_ONCE(m->bus.down, true);
 	down_read(&m->bus.topo);
 	ec_for_each_slave(s, &m->bus) {
-		bool beyond = READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP;
+		bool beyond = READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP;
 
 		n += beyond;
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED ||
-		    (!beyond && !(READ_ONCE(s->requested) & EC_AL_BEYOND_PREOP)))
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED ||
+		    (!beyond && !(READ_ONCE(s->al.requested) & EC_AL_BEYOND_PREOP)))
 			continue;
 		ec_slave_request_anew(s, EC_AL_PREOP, 0);
 	}
@@ -80,7 +80,8 @@ static unsigned int replying(struct ec_master *m, bool silent)
 
 	down_read(&m->bus.topo);
 	ec_for_each_slave(s, &m->bus)
-		n += silent ? READ_ONCE(s->silent) : READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+		n += silent ? READ_ONCE(s->reply.silent) :
+			      READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED;
 	up_read(&m->bus.topo);
 	return n;
 }
@@ -138,7 +139,7 @@ static void init_others(struct ec_master *m)
 	unsigned int i;
 
 	for (i = 0; ktime_get_ns() < end && (s = ec_bus_slave(&m->bus, i)); i++) {
-		if (READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP && !ec_foe_writes(&s->mbox))
+		if (READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && !ec_foe_writes(&s->mbox))
 			ec_xfer_fpwr(s->bus->links, s->station, EC_REG_AL_CONTROL, control,
 				     sizeof(control));
 		ec_slave_unref(s);
@@ -151,9 +152,9 @@ static u8 state_of(struct ec_slave *s)
 	u8 b[2];
 
 	/* its AL state is not known */
-	if (READ_ONCE(s->silent))
+	if (READ_ONCE(s->reply.silent))
 		return 0;
-	if (!(READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP))
+	if (!(READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP))
 		return EC_AL_PREOP;
 	if (ec_xfer_fprd(s->bus->links, s->station, EC_REG_AL_STATUS, b, sizeof(b)))
 		return 0;
@@ -329,7 +330,7 @@ static bool in_boot(struct ec_master *m)
 
 	down_read(&m->bus.topo);
 	ec_for_each_slave(s, &m->bus) {
-		found = READ_ONCE(s->requested) == EC_AL_BOOT;
+		found = READ_ONCE(s->al.requested) == EC_AL_BOOT;
 		position = s->position;
 		if (found)
 			break;

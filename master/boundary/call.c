@@ -203,7 +203,7 @@ static int refuse_lost(struct ec_call *call, const struct ec_ioctl *op, int ret)
 {
 	char why[EC_UAPI_REASON];
 
-	if (!(op->flags & F_WRITE) || !READ_ONCE(call->slave->silent))
+	if (!(op->flags & F_WRITE) || !READ_ONCE(call->slave->reply.silent))
 		return ret;
 	return ec_refuse(call, ret ?: -EIO, "slave %u: %.200s", call->slave->position,
 			 ec_slave_why(call->slave, why, sizeof(why)));

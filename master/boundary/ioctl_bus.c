@@ -111,7 +111,7 @@ int ec_ioc_state(struct ec_call *call)
 		return ec_refuse(call, -EINVAL,
 				 "a transition may take at most %u ms, not %u", EC_MAX_AL_MS,
 				 i->timeout_ms);
-	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+	if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 		return ec_refuse(call, -EIO, "slave %u could not be read: %.160s", s->position,
 				 ec_slave_why(s, why, sizeof(why)));
 	ec_slave_request_anew(s, i->state, i->timeout_ms);

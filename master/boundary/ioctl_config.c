@@ -31,7 +31,7 @@ int ec_ioc_config(struct ec_call *call)
 	i->product_code = c->product;
 	i->slave_position = c->slave ? c->slave->position : -1;
 	i->device = c->slave ? c->slave->device : 0;
-	i->al_status = c->slave ? READ_ONCE(c->slave->al_status) : 0;
+	i->al_status = c->slave ? READ_ONCE(c->slave->al.status) : 0;
 	i->watchdog_divider = reg(c, EC_REG_WD_DIVIDER);
 	i->watchdog_intervals = reg(c, EC_REG_WD_SM);
 	i->dc_assign_activate = c->sync.assign;

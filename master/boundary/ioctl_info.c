@@ -196,11 +196,11 @@ int ec_ioc_master(struct ec_call *call)
 /* Delay to the neighbor at a port, if both have a clock. */
 static u32 way(const struct ec_slave *s, unsigned int p)
 {
-	const struct ec_slave *next = s->at[p];
+	const struct ec_slave *next = s->graph.at[p];
 
 	if (!next || !(ec_slave_features(s) & ec_slave_features(next) & EC_FEAT_DC))
 		return 0;
-	return p == s->upstream ? ec_clock_of(s)->prev_delay : ec_clock_of(next)->prev_delay;
+	return p == s->graph.upstream ? ec_clock_of(s)->prev_delay : ec_clock_of(next)->prev_delay;
 }
 
 int ec_ioc_port(struct ec_call *call)
@@ -218,7 +218,7 @@ int ec_ioc_port(struct ec_call *call)
 	i->loop_closed = !!(s->dl_status & EC_DLS_LOOP(p));
 	i->signal = !!(s->dl_status & EC_DLS_COMM(p));
 	i->receive_time = s->recv[p];
-	i->next_slave = s->at[p] ? s->at[p]->position : EC_UAPI_NONE16;
+	i->next_slave = s->graph.at[p] ? s->graph.at[p]->position : EC_UAPI_NONE16;
 	i->delay_to_next_dc = way(s, p);
 	i->kept = ec_ports_kept(s, p, &i->wait_s);
 	if (i->kept >= EC_PORT_OTHER && ec_border_get(s->bus, s->device, p, &is)) {
@@ -339,10 +339,10 @@ int ec_ioc_slave(struct ec_call *call)
 	i->position = s->position;
 	i->station = s->station;
 	i->alias = s->alias;
-	i->al_status = READ_ONCE(s->al_status);
-	i->al_code = READ_ONCE(s->al_code);
-	i->al_requested = READ_ONCE(s->requested);
-	i->error = READ_ONCE(s->error);
+	i->al_status = READ_ONCE(s->al.status);
+	i->al_code = READ_ONCE(s->al.code);
+	i->al_requested = READ_ONCE(s->al.requested);
+	i->error = READ_ONCE(s->note.error);
 	i->vendor_id = s->info.vendor;
 	i->product_code = s->info.product;
 	i->revision_number = s->info.revision;
@@ -364,13 +364,13 @@ int ec_ioc_slave(struct ec_call *call)
 	i->dc_diff = READ_ONCE(c->diff);
 	i->dc_set = ec_clock_is_set(s);
 	i->dc_odd = i->dc_supported &&
-		    (READ_ONCE(c->delay_unreliable) || READ_ONCE(s->topology_inconsistent));
+		    (READ_ONCE(c->delay_unreliable) || READ_ONCE(s->graph.inconsistent));
 	i->features = feat;
 	i->identification = READ_ONCE(s->identification);
 	i->sm_count = s->n_sms;
 	i->fmmu_count = s->regs[EC_REG_FMMUS];
 	i->dl_status = s->dl_status;
-	i->sii_words = s->sii_bytes / 2;
+	i->sii_words = s->eeprom.bytes / 2;
 	i->has_general = s->has_general;
 	i->coe_details = s->general.coe;
 	i->general_flags = s->general.flags;
@@ -392,7 +392,7 @@ int ec_ioc_sm(struct ec_call *call)
 	i->control = s->sms[i->sm].control;
 	i->enable = s->sms[i->sm].enable;
 	i->type = s->sms[i->sm].type;
-	i->pdo_count = READ_ONCE(s->sm_pdos[i->sm].n);
+	i->pdo_count = READ_ONCE(s->pdos.sm[i->sm].n);
 	return 0;
 }
 
@@ -408,12 +408,12 @@ static int get_pdo(struct ec_call *call, u8 sm, u16 pos, const u16 *entry_pos, s
 
 	if (ret)
 		return ret;
-	if (sm >= s->n_sms || pos >= s->sm_pdos[sm].n) {
+	if (sm >= s->n_sms || pos >= s->pdos.sm[sm].n) {
 		ret = ec_refuse(call, -EINVAL, "slave %u has no PDO %u at SM%u", s->position, pos,
 				sm);
 		goto out;
 	}
-	*p = s->sm_pdos[sm].pdos[pos];
+	*p = s->pdos.sm[sm].pdos[pos];
 	if (entry_pos && *entry_pos >= p->n_entries) {
 		ret = ec_refuse(call, -EINVAL, "PDO 0x%04x has %u entries, not %u", p->index,
 				p->n_entries, *entry_pos + 1);
@@ -427,7 +427,7 @@ out:
 	ec_show_end(&call->master->base->show);
 	/* outside of the section, as an EEPROM may have many strings */
 	if (!ret && e->name &&
-	    ec_sii_string(s->sii, s->sii_bytes, e->name, name, EC_UAPI_STRING) < 0)
+	    ec_sii_string(s->eeprom.data, s->eeprom.bytes, e->name, name, EC_UAPI_STRING) < 0)
 		name[0] = '\0';
 	return ret;
 }
@@ -466,8 +466,8 @@ int ec_ioc_sii(struct ec_call *call)
 	struct ec_ioc_sii *i = call->arg;
 	struct ec_slave *s = call->slave;
 
-	i->size = i->offset < s->sii_bytes ? min(call->size, s->sii_bytes - i->offset) : 0;
-	memcpy(call->data, s->sii + i->offset, i->size);
+	i->size = i->offset < s->eeprom.bytes ? min(call->size, s->eeprom.bytes - i->offset) : 0;
+	memcpy(call->data, s->eeprom.data + i->offset, i->size);
 	return 0;
 }
 

@@ -64,7 +64,7 @@ static int read_present(struct device *dev, struct present *p)
 	if (s)
 		*p = (struct present){
 			.position = s->position, .alias = s->alias,
-			.al_status = READ_ONCE(s->al_status),
+			.al_status = READ_ONCE(s->al.status),
 		};
 	ec_show_end(show);
 	return s ? 0 : -ENODEV;
@@ -176,7 +176,7 @@ void ec_slave_device_locate(const struct ec_slave *s, struct ec_slave_at *at)
 	ec_bus_assert_stays(s->bus);
 	at->number = s->device;
 	at->up = up ? up->device : 0;
-	at->port = up ? s->parent_port : 0;
+	at->port = up ? s->graph.parent_port : 0;
 	at->id = (struct ec_slave_id){
 		.vendor = s->info.vendor, .product = s->info.product,
 		.revision = s->info.revision, .serial = s->info.serial,

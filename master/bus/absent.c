@@ -23,7 +23,7 @@ static u64 find_root(const struct ec_bus *bus, const struct ec_lost *l, unsigned
 		if (root == NOWHERE || (!root && n_slaves))
 			return NOWHERE;
 		/* another slave is connected there */
-		if (s && (*port >= EC_MAX_PORT || s->at[*port]))
+		if (s && (*port >= EC_MAX_PORT || s->graph.at[*port]))
 			return NOWHERE;
 		if (s || !root)
 			return root;

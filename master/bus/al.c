@@ -27,7 +27,7 @@ static void note_status(struct ec_slave *slave, const u8 *al)
 {
 	ec_slave_set_al(slave, get_unaligned_le16(al), get_unaligned_le16(al + 4),
 			EC_AL_BY_WORKER);
-	WRITE_ONCE(slave->al_reads, slave->al_reads + 1);
+	WRITE_ONCE(slave->al.reads, slave->al.reads + 1);
 }
 
 /**
@@ -78,7 +78,7 @@ static int al_take(struct ec_al_poll *p, const struct ec_dg *dg, const struct ec
 	if (dg->err || dg->wkc != 1)
 		return dg->err ?: -EIO;
 	note_status(p->slave, p->al);
-	status = READ_ONCE(p->slave->al_status);
+	status = READ_ONCE(p->slave->al.status);
 	if ((status & goal->mask) == goal->value)
 		return 0;
 	return goal->mask & EC_AL_STATE_MASK && status & EC_AL_ERROR ? -EPROTO : -EINPROGRESS;
@@ -171,7 +171,7 @@ static int poll_one(struct ec_slave *slave, u16 mask, u16 value, u64 until_ns)
 int ec_al_ack(struct ec_slave *slave)
 {
 	u64 until = ktime_get_ns() + 1000 * NSEC_PER_MSEC;
-	u16 state = READ_ONCE(slave->al_status) & EC_AL_STATE_MASK;
+	u16 state = READ_ONCE(slave->al.status) & EC_AL_STATE_MASK;
 	int ret;
 
 	/* device emulation copies AL control, so the acknowledge would show as an error */
@@ -182,7 +182,7 @@ int ec_al_ack(struct ec_slave *slave)
 /* The request of a tool comes first, then what the application allows. */
 static u32 limit_ms(const struct ec_slave *s, u8 from, u8 to, u32 configured_ms)
 {
-	return READ_ONCE(s->limit_ms) ?: configured_ms ?: READ_ONCE(ec_al_timeout) ?:
+	return READ_ONCE(s->al.limit_ms) ?: configured_ms ?: READ_ONCE(ec_al_timeout) ?:
 	       ec_al_timeout_ms(from, to);
 }
 
@@ -200,7 +200,7 @@ static u32 limit_ms(const struct ec_slave *s, u8 from, u8 to, u32 configured_ms)
  */
 int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 {
-	u8 from = READ_ONCE(slave->al_status) & EC_AL_STATE_MASK;
+	u8 from = READ_ONCE(slave->al.status) & EC_AL_STATE_MASK;
 	u16 code;
 	u64 until;
 	int ret;
@@ -209,8 +209,8 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	if (from < EC_AL_PREOP || from == EC_AL_BOOT || state < EC_AL_PREOP || state == EC_AL_BOOT)
 		ec_dict_forget(&slave->dict);
 	timeout_ms = limit_ms(slave, from, state, timeout_ms);
-	slave->awaited_ms = timeout_ms;
-	WRITE_ONCE(slave->awaited, state);
+	slave->al.awaited_ms = timeout_ms;
+	WRITE_ONCE(slave->al.awaited, state);
 	until = ktime_get_ns() + (u64)timeout_ms * NSEC_PER_MSEC;
 	ec_slave_dbg(slave, 1, "%s requested, is in %s, %u ms\n", ec_al_state_name(state),
 		     ec_al_state_name(from), timeout_ms);
@@ -218,13 +218,13 @@ int ec_al_set(struct ec_slave *slave, u8 state, u32 timeout_ms)
 	if (!ret)
 		ret = poll_one(slave, EC_AL_STATE_MASK | EC_AL_ERROR, state, until);
 	ec_slave_dbg_result(slave, ret, "AL status 0x%04x, code 0x%04x",
-			    READ_ONCE(slave->al_status), READ_ONCE(slave->al_code));
+			    READ_ONCE(slave->al.status), READ_ONCE(slave->al.code));
 	if (!ret || ret == -EPROTO)
-		WRITE_ONCE(slave->awaited, 0);
+		WRITE_ONCE(slave->al.awaited, 0);
 	if (ret == -EPROTO) {
-		code = READ_ONCE(slave->al_code);
+		code = READ_ONCE(slave->al.code);
 		ec_al_ack(slave);
-		WRITE_ONCE(slave->al_code, code);
+		WRITE_ONCE(slave->al.code, code);
 	}
 	return ret;
 }

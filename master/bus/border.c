@@ -126,7 +126,7 @@ static bool has_twin(const struct ec_bus *bus, const struct ec_border_sign *sign
 }
 
 /* Is it what is expected? EC_PORT_*: the more of it fits, the larger is the reason. */
-static u32 compare(const struct ec_border_sign *sign, const struct ec_behind *is)
+static u32 border_compare(const struct ec_border_sign *sign, const struct ec_behind *is)
 {
 	if ((sign->vendor || sign->product) &&
 	    (sign->vendor != is->vendor || sign->product != is->product))
@@ -152,7 +152,7 @@ static u32 nearest(struct ec_border *b, u64 device, unsigned int port,
 
 		if (!sign_counts(&b->signs[i], named, device, port))
 			continue;
-		why = compare(&b->signs[i], is);
+		why = border_compare(&b->signs[i], is);
 		if (!why) {
 			*sign = b->signs[i];
 			return EC_PORT_NOT_KEPT;

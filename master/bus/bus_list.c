@@ -27,7 +27,7 @@ struct ec_slave *ec_bus_slave(struct ec_bus *bus, unsigned int position)
 static bool slave_settled(struct ec_slave *s)
 {
 	return READ_ONCE(s->stop.gone) ||
-	       (!ec_slave_busy(s) && (READ_ONCE(s->pdos_known) || !ec_slave_pdos_pending(s)));
+	       (!ec_slave_busy(s) && (READ_ONCE(s->pdos.known) || !ec_slave_pdos_pending(s)));
 }
 
 static bool slaves_settled(struct ec_bus *bus)

@@ -80,13 +80,13 @@ static u8 entry_of(const struct ec_slave *s)
 /* the port a frame passes as number @step after its entry */
 static u8 port_at(const struct ec_slave *s, unsigned int step)
 {
-	return order[(place[s->upstream] + step) % EC_MAX_PORT];
+	return order[(place[s->graph.upstream] + step) % EC_MAX_PORT];
 }
 
 /* Number of port 0 likewise: behind it is the processing unit; 0: the entry is port 0. */
 static unsigned int unit_step(const struct ec_slave *s)
 {
-	return (EC_MAX_PORT - place[s->upstream]) % EC_MAX_PORT;
+	return (EC_MAX_PORT - place[s->graph.upstream]) % EC_MAX_PORT;
 }
 
 /* Next open port without a slave behind it, of those behind the processing unit, or -1. */
@@ -97,7 +97,7 @@ static int next_port(const struct ec_slave *s)
 	for (step = unit_step(s) + 1; step < EC_MAX_PORT; step++) {
 		u8 p = port_at(s, step);
 
-		if (ec_graph_is_open(s, p) && !s->at[p])
+		if (ec_graph_is_open(s, p) && !s->graph.at[p])
 			return p;
 	}
 	return -1;
@@ -106,7 +106,7 @@ static int next_port(const struct ec_slave *s)
 /* How long the frame was behind the port; with @all: behind all up to it. */
 static u32 away(const struct ec_slave *s, unsigned int step, bool all)
 {
-	u8 from = s->upstream, to = s->upstream;
+	u8 from = s->graph.upstream, to = s->graph.upstream;
 	unsigned int i;
 
 	for (i = 1; i <= step; i++) {
@@ -129,7 +129,7 @@ static u32 away(const struct ec_slave *s, unsigned int step, bool all)
  */
 struct ec_slave *ec_graph_parent(const struct ec_slave *s)
 {
-	return s->at[s->upstream];
+	return s->graph.at[s->graph.upstream];
 }
 
 /*
@@ -160,7 +160,7 @@ static struct ec_slave *first_of(struct ec_slave *x)
 	unsigned int step = 1;
 
 	while (step <= unit_step(x)) {
-		struct ec_slave *next = x->at[port_at(x, step)];
+		struct ec_slave *next = x->graph.at[port_at(x, step)];
 
 		step++;
 		if (next) {
@@ -177,7 +177,7 @@ static const struct ec_slave *last_of(const struct ec_slave *x)
 	unsigned int step = EC_MAX_PORT;
 
 	while (--step > unit_step(x)) {
-		const struct ec_slave *next = x->at[port_at(x, step)];
+		const struct ec_slave *next = x->graph.at[port_at(x, step)];
 
 		if (next) {
 			x = next;
@@ -204,13 +204,13 @@ unsigned int ec_graph_place(const struct ec_slave *s, unsigned int port)
 	if (step > unit) {
 		/* behind the slave, and what hangs at the ports in between */
 		while (--step > unit)
-			if (s->at[port_at(s, step)])
-				return last_of(s->at[port_at(s, step)])->position + 1;
+			if (s->graph.at[port_at(s, step)])
+				return last_of(s->graph.at[port_at(s, step)])->position + 1;
 		return s->position + 1;
 	}
 	for (k = step + 1; k <= unit; k++)
-		if (s->at[port_at(s, k)])
-			return first_of(s->at[port_at(s, k)])->position;
+		if (s->graph.at[port_at(s, k)])
+			return first_of(s->graph.at[port_at(s, k)])->position;
 	return s->position;
 }
 
@@ -221,29 +221,29 @@ static struct ec_slave *before(struct ec_slave **slaves, const struct ec_slave *
 
 static void join(struct ec_slave *parent, u8 port, struct ec_slave *child)
 {
-	parent->at[port] = child;
-	child->at[child->upstream] = parent;
-	child->parent_port = port;
-	child->hung = true;
+	parent->graph.at[port] = child;
+	child->graph.at[child->graph.upstream] = parent;
+	child->graph.parent_port = port;
+	child->graph.hung = true;
 }
 
 /* The neighbor at @port is none any more; what hung at @s is to be hung again. */
 static void part(struct ec_slave *s, unsigned int port)
 {
-	struct ec_slave *next = s->at[port];
+	struct ec_slave *next = s->graph.at[port];
 	unsigned int p;
 
 	if (!next)
 		return;
-	s->at[port] = NULL;
-	if (port == s->upstream)
-		s->hung = false;
+	s->graph.at[port] = NULL;
+	if (port == s->graph.upstream)
+		s->graph.hung = false;
 	for (p = 0; p < EC_MAX_PORT; p++) {
-		if (next->at[p] != s)
+		if (next->graph.at[p] != s)
 			continue;
-		next->at[p] = NULL;
-		if (p == next->upstream)
-			next->hung = false;
+		next->graph.at[p] = NULL;
+		if (p == next->graph.upstream)
+			next->graph.hung = false;
 	}
 }
 
@@ -261,7 +261,7 @@ void ec_graph_leave(struct ec_slave *s)
 
 	for (p = 0; p < EC_MAX_PORT; p++)
 		part(s, p);
-	s->hung = false;
+	s->graph.hung = false;
 }
 
 /**
@@ -277,9 +277,9 @@ void ec_graph_note_ports(struct ec_slave *s)
 	u8 entry = entry_of(s);
 	unsigned int p;
 
-	if (entry != s->upstream)
+	if (entry != s->graph.upstream)
 		ec_graph_leave(s);
-	s->upstream = entry;
+	s->graph.upstream = entry;
 	for (p = 0; p < EC_MAX_PORT; p++)
 		if (!ec_graph_is_open(s, p))
 			part(s, p);
@@ -293,14 +293,14 @@ static struct ec_slave *join_before(struct ec_slave **slaves, struct ec_slave *s
 
 	for (step = unit_step(s); step; step--) {
 		u8 p = port_at(s, step);
-		struct ec_slave *x = s->at[p];
+		struct ec_slave *x = s->graph.at[p];
 
 		if (!x && ec_graph_is_open(s, p))
 			x = branch_before(last, s, step);
 		if (!x)
 			continue;
-		if (x != s->at[p]) {
-			part(x, x->upstream);
+		if (x != s->graph.at[p]) {
+			part(x, x->graph.upstream);
 			join(s, p, x);
 		}
 		last = before(slaves, first_of(x));
@@ -311,7 +311,7 @@ static struct ec_slave *join_before(struct ec_slave **slaves, struct ec_slave *s
 /* Hang @s at the nearest slave up to @parent that has a free port, or at the main device. */
 static void hang(struct ec_slave **slaves, struct ec_slave *s, struct ec_slave *parent)
 {
-	s->hung = true;
+	s->graph.hung = true;
 	while (parent) {
 		struct ec_slave *up = ec_graph_parent(parent);
 		int port = next_port(parent);
@@ -342,8 +342,8 @@ void ec_graph_make_room(struct ec_slave *last, struct ec_slave *next)
 		if (last == top)
 			break;
 	}
-	part(next, next->upstream);
-	next->hung = false;
+	part(next, next->graph.upstream);
+	next->graph.hung = false;
 }
 
 /**
@@ -362,7 +362,7 @@ void ec_graph_fit(struct ec_slave **slaves, unsigned int n)
 	unsigned int i;
 
 	for (i = 0; i < n; i++)
-		if (!slaves[i]->hung)
+		if (!slaves[i]->graph.hung)
 			hang(slaves, slaves[i], join_before(slaves, slaves[i]));
 }
 
@@ -383,10 +383,10 @@ unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n)
 		struct ec_slave *s = slaves[i];
 		bool bad = !ec_graph_parent(s) && roots++;
 
-		if (READ_ONCE(s->silent) || !s->regs[EC_REG_TYPE])
+		if (READ_ONCE(s->reply.silent) || !s->regs[EC_REG_TYPE])
 			return n;
 		for (p = 0; p < EC_MAX_PORT; p++)
-			if (p != s->upstream && ec_graph_is_open(s, p) && !s->at[p]) {
+			if (p != s->graph.upstream && ec_graph_is_open(s, p) && !s->graph.at[p]) {
 				free++;
 				bad = true;
 			}

@@ -32,14 +32,15 @@ struct identify {
 
 static bool is_asked(const struct ec_slave *s)
 {
-	return !READ_ONCE(s->identified) && s->sii && s->has_general && !READ_ONCE(s->error) &&
+	return !READ_ONCE(s->identified) && s->eeprom.data && s->has_general &&
+	       !READ_ONCE(s->note.error) &&
 	       s->general.flags & (EC_SII_FLAG_ID_AL | EC_SII_FLAG_ID_MEM);
 }
 
 /* In PREOP, as the request names the state, and a slave with an error does not answer it. */
 static bool asks_by_al(const struct ec_slave *s)
 {
-	return s->general.flags & EC_SII_FLAG_ID_AL && READ_ONCE(s->al_status) == EC_AL_PREOP;
+	return s->general.flags & EC_SII_FLAG_ID_AL && READ_ONCE(s->al.status) == EC_AL_PREOP;
 }
 
 /* Registers are no memory: the read of some changes them. */

@@ -18,15 +18,15 @@ static struct ec_image *keep_image(const struct ec_slave *s)
 {
 	struct ec_image *image;
 
-	if (!s->sii || s->sii_bytes < EC_SII_FIXED_SIZE || s->sii_bytes > IMAGE_BYTES)
+	if (!s->eeprom.data || s->eeprom.bytes < EC_SII_FIXED_SIZE || s->eeprom.bytes > IMAGE_BYTES)
 		return NULL;
-	image = kvmalloc(sizeof(*image) + s->sii_bytes, GFP_KERNEL | __GFP_NOWARN);
+	image = kvmalloc(sizeof(*image) + s->eeprom.bytes, GFP_KERNEL | __GFP_NOWARN);
 	if (!image)
 		return NULL;
 	kref_init(&image->kref);
-	image->bytes = s->sii_bytes;
-	image->flaw = s->flaw;
-	memcpy(image->sii, s->sii, s->sii_bytes);
+	image->bytes = s->eeprom.bytes;
+	image->flaw = s->eeprom.flaw;
+	memcpy(image->sii, s->eeprom.data, s->eeprom.bytes);
 	return image;
 }
 
@@ -62,9 +62,9 @@ static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int
 	l->serial = s->info.serial;
 	l->station = s->station;
 	l->position = s->position;
-	l->up = s->lost_at.up < s->bus->n_slaves ? s->bus->slaves[s->lost_at.up]->device : 0;
-	l->up_port = s->lost_at.up_port;
-	l->seen_ns = s->seen_ns;
+	l->up = s->lost.at.up < s->bus->n_slaves ? s->bus->slaves[s->lost.at.up]->device : 0;
+	l->up_port = s->lost.at.up_port;
+	l->seen_ns = s->lost.seen_ns;
 	strscpy(l->label, ec_slave_label(s), sizeof(l->label));
 	l->image = keep_image(s);
 	hlist_add_head(&l->by_number, head_of(k->lost, l->number));

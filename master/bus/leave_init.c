@@ -98,10 +98,10 @@ static void request_all(struct job *j, struct ec_links *links, bool clean)
 	for (i = 0; i < j->n; i++) {
 		struct ec_slave *s = j->polls[i].slave;
 
-		s->clean = clean;
+		s->work.clean = clean;
 		/* it may come late, then its worker takes it */
 		if (all_taken(&j->dg[j->leavers[i].first], j->leavers[i].n))
-			WRITE_ONCE(s->awaited, EC_AL_PREOP);
+			WRITE_ONCE(s->al.awaited, EC_AL_PREOP);
 	}
 }
 
@@ -126,8 +126,8 @@ static void poll_all(struct job *j)
 		else if (j->polls[i].ret)
 			continue;
 		else
-			s->ours = true;
-		WRITE_ONCE(s->awaited, 0);
+			s->work.ours = true;
+		WRITE_ONCE(s->al.awaited, 0);
 	}
 }
 
@@ -152,8 +152,8 @@ void ec_leave_init_all(struct ec_bus *bus, struct ec_slave **slaves, unsigned in
 	if (!j.leavers || !j.polls || !j.dg)
 		goto out;
 	for (i = 0; i < n; i++)
-		if (slaves[i]->sii && !READ_ONCE(slaves[i]->error) &&
-		    READ_ONCE(slaves[i]->al_status) == EC_AL_INIT)
+		if (slaves[i]->eeprom.data && !READ_ONCE(slaves[i]->note.error) &&
+		    READ_ONCE(slaves[i]->al.status) == EC_AL_INIT)
 			j.polls[j.n++].slave = slaves[i];
 	if (j.n) {
 		request_all(&j, bus->links, clean);

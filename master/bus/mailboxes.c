@@ -34,8 +34,8 @@ bool ec_mailboxes_polled(const struct ec_slave *s)
 static bool is_candidate(struct ec_slave *s, bool all)
 {
 	return (all || ec_mailboxes_polled(s)) && ec_mbox_present(&s->mbox) &&
-	       READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) &&
-	       (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
+	       READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) &&
+	       (READ_ONCE(s->al.status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
 	       !ec_mbox_in_use(&s->mbox);
 }
 

@@ -37,7 +37,7 @@ static const char *names_find(const struct ec_names *l, u16 index, u16 sub)
 const char *ec_names_find(const struct ec_slave *s, u16 index, u16 sub)
 {
 	ec_bus_assert_stays(s->bus);
-	return names_find(&s->names, index, sub) ?: "";
+	return names_find(&s->pdos.names, index, sub) ?: "";
 }
 
 struct answer {
@@ -104,7 +104,7 @@ static bool next_unknown(const struct ec_slave *s, const struct ec_names *l, str
 			 u16 *index, u16 *sub)
 {
 	for (; at->sm < EC_MAX_SM; at->sm++, at->pdo = 0) {
-		const struct ec_pdo_list *pdos = &s->sm_pdos[at->sm];
+		const struct ec_pdo_list *pdos = &s->pdos.sm[at->sm];
 
 		for (; at->pdo < pdos->n; at->pdo++, at->entry = 0) {
 			const struct ec_pdo *p = &pdos->pdos[at->pdo];
@@ -138,11 +138,11 @@ bool ec_names_pending(const struct ec_slave *s)
 	u16 index, sub;
 
 	lockdep_assert_held(&s->lock);
-	return s->pdos_known && !s->names_done && !READ_ONCE(s->error) && s->has_general &&
-	       s->general.coe & EC_SII_COE_SDO_INFO &&
+	return s->pdos.known && !s->pdos.names_done && !READ_ONCE(s->note.error) &&
+	       s->has_general && s->general.coe & EC_SII_COE_SDO_INFO &&
 	       !ec_access_is_cyclic(&s->bus->links->access) &&
 	       !ec_mbox_check(&s->mbox, EC_SII_PROTO_COE, EC_SDOINFO_MIN) &&
-	       next_unknown(s, &s->names, &at, &index, &sub);
+	       next_unknown(s, &s->pdos.names, &at, &index, &sub);
 }
 
 /* @l takes the place of the slave's names. */
@@ -152,8 +152,8 @@ static void names_publish(struct ec_slave *s, struct ec_names *l)
 
 	down_write(&s->bus->topo);
 	ec_show_change_begin(&s->bus->base->show);
-	old = s->names;
-	s->names = *l;
+	old = s->pdos.names;
+	s->pdos.names = *l;
 	ec_show_change_end(&s->bus->base->show);
 	up_write(&s->bus->topo);
 	kvfree(old.v);
@@ -209,13 +209,13 @@ void ec_names_read(struct ec_slave *s)
 	int ret = -ENOMEM;
 
 	lockdep_assert_held(&s->lock);
-	if (a && b && !names_copy(&l, &s->names))
+	if (a && b && !names_copy(&l, &s->pdos.names))
 		ret = ec_mbox_claim(&s->mbox, &claim, BIT(EC_MBOX_COE), LIMIT_MS);
 	if (!ret) {
 		ret = names_read_all(s, &l, a, b);
 		ec_mbox_unclaim(&s->mbox, &claim);
 		names_publish(s, &l);
-		s->names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
+		s->pdos.names_done = ret != -ECANCELED && ret != -EAGAIN && ret != -ENOMEM;
 	} else {
 		kvfree(l.v);
 	}
@@ -231,6 +231,6 @@ void ec_names_read(struct ec_slave *s)
  */
 void ec_names_free(struct ec_slave *s)
 {
-	kvfree(s->names.v);
-	s->names = (struct ec_names){ 0 };
+	kvfree(s->pdos.names.v);
+	s->pdos.names = (struct ec_names){ 0 };
 }

@@ -107,7 +107,7 @@ static void keep_unassigned(struct ec_slave *s, struct ec_pdo_list *old)
 
 		if (ec_slave_find_pdo(s, old->pdos[i].index))
 			continue;
-		p = ec_pdo_add(&s->free_pdos, old->pdos[i].index, old->pdos[i].name);
+		p = ec_pdo_add(&s->pdos.free, old->pdos[i].index, old->pdos[i].name);
 		if (!p)
 			break;
 		p->entries = old->pdos[i].entries;
@@ -122,8 +122,8 @@ static void replace(struct ec_slave *s, unsigned int sm, struct ec_pdo_list *l)
 
 	down_write(&s->bus->topo);
 	ec_show_change_begin(&s->bus->base->show);
-	old = s->sm_pdos[sm];
-	s->sm_pdos[sm] = *l;
+	old = s->pdos.sm[sm];
+	s->pdos.sm[sm] = *l;
 	keep_unassigned(s, &old);
 	ec_slave_note_profile(s);
 	ec_show_change_end(&s->bus->base->show);
@@ -168,7 +168,7 @@ void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_p
 	struct ec_pdo_list copy = { 0 };
 
 	lockdep_assert_held(&s->lock);
-	if (l == &s->sm_pdos[sm])
+	if (l == &s->pdos.sm[sm])
 		return;
 	if (ec_pdo_list_copy(&copy, l)) {
 		ec_pdo_list_clear(&copy);
@@ -189,7 +189,7 @@ void ec_slave_set_sm_pdos(struct ec_slave *s, unsigned int sm, const struct ec_p
 void ec_slave_clear_warning(struct ec_slave *s)
 {
 	lockdep_assert_held(&s->lock);
-	ec_slave_set_warning(s, "%s", s->pdos_unread ?
+	ec_slave_set_warning(s, "%s", s->pdos.unread ?
 			     "PDOs could not be read over CoE; those of the EEPROM are used" : "");
 }
 
@@ -199,23 +199,23 @@ void ec_slave_clear_warning(struct ec_slave *s)
  */
 static void note_unread(struct ec_slave *s, int ret, u64 took_ns)
 {
-	bool before = s->pdos_unread;
+	bool before = s->pdos.unread;
 	u64 again = 0;
 	char why[96];
 
-	s->pdos_unread = ret && ret != -ENOENT;
+	s->pdos.unread = ret && ret != -ENOENT;
 	ec_slave_clear_warning(s);
-	if (s->pdos_unread && ret != -EBADMSG) {
-		s->pdos_again_ms = clamp_t(u32, before ? 2 * s->pdos_again_ms : 0, AGAIN_MIN_MS,
+	if (s->pdos.unread && ret != -EBADMSG) {
+		s->pdos.again_ms = clamp_t(u32, before ? 2 * s->pdos.again_ms : 0, AGAIN_MIN_MS,
 					   AGAIN_MAX_MS);
 		again = ktime_get_ns() +
-			max(s->pdos_again_ms * (u64)NSEC_PER_MSEC, 9 * took_ns);
+			max(s->pdos.again_ms * (u64)NSEC_PER_MSEC, 9 * took_ns);
 	}
-	ec_write64(&s->pdos_again_ns, again);
-	if (s->pdos_unread && !before)
-		ec_slave_warn(s, "%s (%s)\n", s->warning,
+	ec_write64(&s->pdos.again_ns, again);
+	if (s->pdos.unread && !before)
+		ec_slave_warn(s, "%s (%s)\n", s->note.warning,
 			      ec_mbox_fail_text(ret, "CoE", why, sizeof(why)));
-	else if (before && !s->pdos_unread)
+	else if (before && !s->pdos.unread)
 		ec_slave_info(s, "PDOs read over CoE\n");
 }
 
@@ -244,7 +244,7 @@ void ec_slave_read_coe_pdos(struct ec_slave *s)
 	if (ret == -ECANCELED || ret == -EINTR || ret == -ENOMEM)
 		return;
 	note_unread(s, ret, ktime_get_ns() - began);
-	if (!s->pdos_unread || !s->pdos_known)
-		WRITE_ONCE(s->names_done, false);
-	WRITE_ONCE(s->pdos_known, true);
+	if (!s->pdos.unread || !s->pdos.known)
+		WRITE_ONCE(s->pdos.names_done, false);
+	WRITE_ONCE(s->pdos.known, true);
 }

@@ -41,13 +41,13 @@ static void pending_put_back(const struct group *g)
  */
 void ec_pending_al(struct ec_slave *s, u8 before, u8 state)
 {
-	raw_spin_lock(&s->note_lock);
+	raw_spin_lock(&s->note.lock);
 	if (!s->pending.from) {
 		s->pending.from = before;
 		s->pending.lowest = before;
 	}
 	s->pending.lowest = min(s->pending.lowest, state);
-	raw_spin_unlock(&s->note_lock);
+	raw_spin_unlock(&s->note.lock);
 	/* after it: the monitor clears it first */
 	WRITE_ONCE(s->bus->pending, true);
 }
@@ -61,9 +61,9 @@ void ec_pending_al(struct ec_slave *s, u8 before, u8 state)
  */
 void ec_pending_back(struct ec_slave *s, u64 ms)
 {
-	raw_spin_lock(&s->note_lock);
+	raw_spin_lock(&s->note.lock);
 	s->pending.back_ms = clamp_t(u64, ms, 1, U32_MAX);
-	raw_spin_unlock(&s->note_lock);
+	raw_spin_unlock(&s->note.lock);
 	WRITE_ONCE(s->bus->pending, true);
 }
 
@@ -72,14 +72,14 @@ static struct group take_changes(struct ec_slave *s, bool al)
 {
 	struct group g = { .bus = s->bus, .first = s->position, .n = 1 };
 
-	raw_spin_lock(&s->note_lock);
+	raw_spin_lock(&s->note.lock);
 	g.pending = s->pending;
-	g.state = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
+	g.state = READ_ONCE(s->al.status) & EC_AL_STATE_MASK;
 	if (al)
 		s->pending.from = 0;
 	else
 		s->pending.back_ms = 0;
-	raw_spin_unlock(&s->note_lock);
+	raw_spin_unlock(&s->note.lock);
 	return g;
 }
 

@@ -94,10 +94,10 @@ static bool has_port(const struct ec_slave *s, unsigned int port)
 /* The value for a port of an ordinary slave while process data run. */
 static u8 wanted_loop(const struct ec_slave *s, unsigned int port)
 {
-	if (!port || port == s->upstream || !has_port(s, port))
+	if (!port || port == s->graph.upstream || !has_port(s, port))
 		return EC_LOOP_AUTO;
 	/* one that has closed itself would open by a frame from behind it, or by the next write */
-	if (s->at[port])
+	if (s->graph.at[port])
 		return is_open(s, port) ? EC_LOOP_AUTO_CLOSE : EC_LOOP_CLOSED;
 	/* frames leave there although no slave is known: closing it could cut some off */
 	return is_open(s, port) ? EC_LOOP_AUTO : EC_LOOP_CLOSED;
@@ -117,7 +117,7 @@ static u8 wanted_loops(const struct ec_slave *s)
 
 static bool may_write(const struct ec_slave *s)
 {
-	return !READ_ONCE(s->silent) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+	return !READ_ONCE(s->reply.silent) && READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED;
 }
 
 static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, const u8 *is)
@@ -207,7 +207,7 @@ static bool is_door(const struct ec_slave *s, unsigned int port)
 {
 	u16 dl = dl_of(s);
 
-	return port && port != s->upstream && !s->at[port] && has_port(s, port) &&
+	return port && port != s->graph.upstream && !s->graph.at[port] && has_port(s, port) &&
 	       dl & EC_DLS_LINK(port) && dl & EC_DLS_LOOP(port) &&
 	       (s->ports.loops >> 2 * port & 3) == EC_LOOP_CLOSED;
 }
@@ -257,7 +257,7 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 {
 	struct ec_door *d = &s->ports.door[port];
 
-	if (d->link_ns && !s->at[port])
+	if (d->link_ns && !s->graph.at[port])
 		ec_ports_note_loss(s, port, false);
 	if (d->kept)
 		ec_border_forget(s->bus, s->device, port);

@@ -119,7 +119,7 @@ static void take_regs(struct scan *sc)
 
 		if (!each_new(sc, i))
 			continue;
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED) {
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED) {
 			/* a guess: the next slave is behind it */
 			s->dl_status = EC_DLS_COMM(0) | (i + 1 < sc->n ? EC_DLS_COMM(1) : 0);
 			continue;
@@ -130,8 +130,8 @@ static void take_regs(struct scan *sc)
 		s->ports.control = r->control[0];
 		s->ports.loops = r->control[1];
 		s->dl_status = get_unaligned_le16(r->dl);
-		s->al_status = get_unaligned_le16(r->al);
-		s->al_code = get_unaligned_le16(r->al + 4);
+		s->al.status = get_unaligned_le16(r->al);
+		s->al.code = get_unaligned_le16(r->al + 4);
 		for (p = 0; p < EC_MAX_PORT; p++)
 			s->recv[p] = get_unaligned_le32(r->recv + 4 * p);
 	}
@@ -145,19 +145,19 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 	for (i = 0; i < sc->n; i++) {
 		struct ec_slave *s = sc->slaves[i];
 
-		if (READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED || READ_ONCE(s->silent))
+		if (READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED || READ_ONCE(s->reply.silent))
 			continue;
-		if (s->part)
-			s->retry_ms = 0;	/* the next part soon */
+		if (s->eeprom.part)
+			s->reply.retry_ms = 0;	/* the next part soon */
 		ec_slave_retry(s, EC_RETRY_MAX_MS);
 	}
 	for (i = 0; i < n; i++) {
-		if (READ_ONCE(fresh[i]->error))
+		if (READ_ONCE(fresh[i]->note.error))
 			continue;
 		/* left by the one that could not be read */
-		fresh[i]->why[0] = '\0';
-		fresh[i]->cause = *EC_CAUSE(NONE);
-		fresh[i]->retry_ms = 0;
+		fresh[i]->note.why[0] = '\0';
+		fresh[i]->note.cause = *EC_CAUSE(NONE);
+		fresh[i]->reply.retry_ms = 0;
 	}
 }
 
@@ -171,7 +171,7 @@ static int read_new(struct scan *sc)
 	if (!fresh)
 		return -ENOMEM;
 	for (i = 0; i < sc->n; i++)
-		if (each_new(sc, i) && !READ_ONCE(sc->slaves[i]->error))
+		if (each_new(sc, i) && !READ_ONCE(sc->slaves[i]->note.error))
 			fresh[n++] = sc->slaves[i];
 	WRITE_ONCE(sc->bus->scan_index, sc->n - n);
 	ec_scan_sii(sc->bus, fresh, n, sc->n, sc->fresh);
@@ -183,21 +183,21 @@ static int read_new(struct scan *sc)
 		struct ec_slave *s = fresh[i];
 
 		/* no contact, no memory, or the master is removed: not read, and no fault of it */
-		if (!s->sii && !READ_ONCE(s->error)) {
+		if (!s->eeprom.data && !READ_ONCE(s->note.error)) {
 			sc->regs[s->position].gone = true;
 			continue;
 		}
-		ret = s->sii ? ec_slave_parse_sii(s) : 0;
+		ret = s->eeprom.data ? ec_slave_parse_sii(s) : 0;
 		/* it is tried again; a large EEPROM of one slave must not hold up the others */
 		if (ret == -ENOMEM)
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED,
 				      EC_CAUSE(MEMORY, .state = EC_AL_PREOP),
 				      "no memory for the SII content (%zu bytes); free memory of this computer",
-				      s->sii_bytes);
+				      s->eeprom.bytes);
 		else if (ret)
 			ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
 				      "SII content invalid (%zu bytes); write a valid image",
-				      s->sii_bytes);
+				      s->eeprom.bytes);
 	}
 	ec_leave_init_all(sc->bus, fresh, n, sc->fresh);
 	ec_identify_all(sc->bus, fresh, n);

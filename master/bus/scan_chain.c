@@ -134,9 +134,9 @@ static void chain_begin(struct chain *c)
 		c->to = c->check;
 		c->limit = 1;
 	} else {
-		c->to = s->part + s->part_bytes;
-		c->limit = ec_scan_image_room(r) - s->part_bytes;
-		c->want = r->need - s->part_bytes;
+		c->to = s->eeprom.part + s->eeprom.part_bytes;
+		c->limit = ec_scan_image_room(r) - s->eeprom.part_bytes;
+		c->want = r->need - s->eeprom.part_bytes;
 	}
 	c->again = true;
 	c->starts = 0;
@@ -152,7 +152,7 @@ static void chain_want(struct chain *c, u32 got)
 
 	if (r->kept)
 		return;
-	r->slave->part_bytes = before + got;
+	r->slave->eeprom.part_bytes = before + got;
 	if (got < c->want)
 		return;
 	if (ec_scan_image_reads_on(r, before + got)) {

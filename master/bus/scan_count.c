@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* What the monitor asks before a scan: how many slaves there are, and whether ports have changed. */
+/* What the monitor asks before a scan: the number of slaves, and whether ports have changed. */
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "../base/limits.h"

@@ -37,8 +37,8 @@ static void image_finish(struct reader *r)
 	struct ec_slave *s = r->slave;
 
 	ec_scan_image_done(r);
-	swap(s->sii, s->part);
-	swap(s->sii_bytes, s->part_bytes);
+	swap(s->eeprom.data, s->eeprom.part);
+	swap(s->eeprom.bytes, s->eeprom.part_bytes);
 }
 
 /**
@@ -55,12 +55,13 @@ void ec_scan_image_fail(struct reader *r, const char *what, const char *remedy)
 
 	ec_scan_image_done(r);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(EEPROM),
-		      "SII read failed at word 0x%04zx: %s; %s", s->part_bytes / 2, what, remedy);
-	kvfree(s->part);
-	s->part = NULL;
-	s->part_bytes = 0;
-	atomic_long_sub(s->sii_counted, &s->bus->sii_bytes);
-	s->sii_counted = 0;
+		      "SII read failed at word 0x%04zx: %s; %s", s->eeprom.part_bytes / 2, what,
+		      remedy);
+	kvfree(s->eeprom.part);
+	s->eeprom.part = NULL;
+	s->eeprom.part_bytes = 0;
+	atomic_long_sub(s->eeprom.counted, &s->bus->sii_bytes);
+	s->eeprom.counted = 0;
 }
 
 /* The slave keeps what was read; the next scan continues from there. */
@@ -69,13 +70,13 @@ static void image_end_part(struct reader *r)
 	struct ec_slave *s = r->slave;
 
 	ec_scan_image_done(r);
-	s->error = EC_SLAVE_SCAN_FAILED;
-	s->cause = *EC_CAUSE(EEPROM_PART);
-	snprintf(s->why, sizeof(s->why),
+	s->note.error = EC_SLAVE_SCAN_FAILED;
+	s->note.cause = *EC_CAUSE(EEPROM_PART);
+	snprintf(s->note.why, sizeof(s->note.why),
 		 "large EEPROM, 0x%04zx words read up to now, the rest follows",
-		 s->part_bytes / 2);
+		 s->eeprom.part_bytes / 2);
 	if (!r->began)
-		ec_slave_info(s, "%s\n", s->why);
+		ec_slave_info(s, "%s\n", s->note.why);
 }
 
 static bool takes_long(const struct job *j, const struct reader *r)
@@ -83,7 +84,7 @@ static bool takes_long(const struct job *j, const struct reader *r)
 	u64 ns = ktime_get_ns() - j->began_ns;
 
 	return ns > PART_MAX_NS ||
-	       (ns > PART_NS && r->slave->part_bytes - r->began >= PART_BYTES);
+	       (ns > PART_NS && r->slave->eeprom.part_bytes - r->began >= PART_BYTES);
 }
 
 /**
@@ -99,7 +100,7 @@ void ec_scan_image_interrupt(struct job *j)
 	for (i = 0; i < j->n; i++) {
 		struct reader *r = &j->rd[i];
 
-		if (!r->done && r->slave->part_bytes > r->began && takes_long(j, r))
+		if (!r->done && r->slave->eeprom.part_bytes > r->began && takes_long(j, r))
 			image_end_part(r);
 	}
 }
@@ -130,7 +131,7 @@ static bool count_without_kept(struct ec_bus *bus, size_t bytes)
 void ec_scan_image_enlarge(struct reader *r, size_t bytes)
 {
 	struct ec_slave *s = r->slave;
-	size_t more = bytes - s->sii_counted;
+	size_t more = bytes - s->eeprom.counted;
 	u8 *p;
 
 	if (!image_count(s->bus, more) && !count_without_kept(s->bus, more)) {
@@ -144,11 +145,11 @@ void ec_scan_image_enlarge(struct reader *r, size_t bytes)
 		ec_scan_image_fail(r, "no memory", "free memory of this computer");
 		return;
 	}
-	if (s->part)
-		memcpy(p, s->part, s->part_bytes);
-	kvfree(s->part);
-	s->part = p;
-	s->sii_counted = bytes;
+	if (s->eeprom.part)
+		memcpy(p, s->eeprom.part, s->eeprom.part_bytes);
+	kvfree(s->eeprom.part);
+	s->eeprom.part = p;
+	s->eeprom.counted = bytes;
 }
 
 /**
@@ -162,20 +163,21 @@ void ec_scan_image_plan(struct reader *r)
 	struct ec_slave *s = r->slave;
 	int need;
 
-	if (s->part_bytes < r->need)
+	if (s->eeprom.part_bytes < r->need)
 		return;
-	need = ec_sii_needed(s->part, s->part_bytes);
-	if (need <= 0 || s->part_bytes >= EC_MAX_SII_BYTES) {
+	need = ec_sii_needed(s->eeprom.part, s->eeprom.part_bytes);
+	if (need <= 0 || s->eeprom.part_bytes >= EC_MAX_SII_BYTES) {
 		/* with the header of a category that is too large, which is cut off next */
-		ec_sii_check(s->part, s->part_bytes, &s->flaw);
+		ec_sii_check(s->eeprom.part, s->eeprom.part_bytes, &s->eeprom.flaw);
 		if (!need)
-			s->part_bytes = ec_sii_used(s->part, s->part_bytes) ?: s->part_bytes;
+			s->eeprom.part_bytes = ec_sii_used(s->eeprom.part, s->eeprom.part_bytes) ?:
+					       s->eeprom.part_bytes;
 		image_finish(r);
 		return;
 	}
 	r->need = min_t(size_t, need, EC_MAX_SII_BYTES);
-	if (r->need + 8 > s->sii_counted)
-		ec_scan_image_enlarge(r, max_t(size_t, r->need + 8, s->sii_counted * 2));
+	if (r->need + 8 > s->eeprom.counted)
+		ec_scan_image_enlarge(r, max_t(size_t, r->need + 8, s->eeprom.counted * 2));
 }
 
 /**
@@ -187,7 +189,7 @@ void ec_scan_image_plan(struct reader *r)
  */
 u32 ec_scan_image_word(const struct reader *r)
 {
-	return r->kept ? r->check : r->slave->part_bytes / 2;
+	return r->kept ? r->check : r->slave->eeprom.part_bytes / 2;
 }
 
 /* Has it read the head, after which it looks for a device that was connected before? */
@@ -205,7 +207,7 @@ static bool has_to_look(const struct reader *r)
  */
 u32 ec_scan_image_room(const struct reader *r)
 {
-	return has_to_look(r) ? EC_SII_HEAD : r->slave->sii_counted - 8;
+	return has_to_look(r) ? EC_SII_HEAD : r->slave->eeprom.counted - 8;
 }
 
 /**
@@ -218,9 +220,9 @@ u32 ec_scan_image_room(const struct reader *r)
  */
 bool ec_scan_image_reads_on(struct reader *r, size_t bytes)
 {
-	int need = ec_sii_needed(r->slave->part, bytes);
+	int need = ec_sii_needed(r->slave->eeprom.part, bytes);
 
-	if (need <= 0 || bytes >= EC_MAX_SII_BYTES || need + 8 > r->slave->sii_counted)
+	if (need <= 0 || bytes >= EC_MAX_SII_BYTES || need + 8 > r->slave->eeprom.counted)
 		return false;
 	r->need = need;
 	return true;
@@ -231,10 +233,10 @@ static void look_for_kept(struct reader *r)
 {
 	struct ec_slave *s = r->slave;
 
-	if (!has_to_look(r) || s->part_bytes < EC_SII_HEAD)
+	if (!has_to_look(r) || s->eeprom.part_bytes < EC_SII_HEAD)
 		return;
 	r->looked = true;
-	r->kept = ec_known_image(s->bus, s->kept_station, s->part);
+	r->kept = ec_known_image(s->bus, s->kept_station, s->eeprom.part);
 	r->check = SIZE_WORD;
 }
 
@@ -262,12 +264,12 @@ static void take_kept(struct reader *r)
 	const struct ec_image *kept = r->kept;
 	struct ec_slave *s = r->slave;
 
-	if (kept->bytes > s->sii_counted)
+	if (kept->bytes > s->eeprom.counted)
 		ec_scan_image_enlarge(r, kept->bytes);
 	if (!r->done) {
-		memcpy(s->part, kept->sii, kept->bytes);
-		s->part_bytes = kept->bytes;
-		s->flaw = kept->flaw;
+		memcpy(s->eeprom.part, kept->sii, kept->bytes);
+		s->eeprom.part_bytes = kept->bytes;
+		s->eeprom.flaw = kept->flaw;
 		image_finish(r);
 	}
 	ec_scan_image_drop(r);
@@ -293,7 +295,7 @@ static void compare_kept(struct reader *r, const u8 *data, size_t len)
  */
 void ec_scan_image_reached(struct reader *r, size_t bytes)
 {
-	r->slave->part_bytes = bytes;
+	r->slave->eeprom.part_bytes = bytes;
 	ec_scan_image_plan(r);
 	look_for_kept(r);
 }
@@ -314,8 +316,8 @@ void ec_scan_image_take(struct reader *r, const u8 *data, size_t len)
 		compare_kept(r, data, len);
 		return;
 	}
-	memcpy(s->part + s->part_bytes, data, len);
-	ec_scan_image_reached(r, s->part_bytes + len);
+	memcpy(s->eeprom.part + s->eeprom.part_bytes, data, len);
+	ec_scan_image_reached(r, s->eeprom.part_bytes + len);
 }
 
 /**
@@ -330,8 +332,8 @@ void ec_scan_image_begin(struct reader *r, struct ec_slave *s)
 	r->slave = s;
 	r->need = FIRST_BYTES;
 	r->len = sizeof(r->reg);
-	r->began = s->part_bytes;
-	if (s->part)
+	r->began = s->eeprom.part_bytes;
+	if (s->eeprom.part)
 		ec_scan_image_plan(r);
 	else
 		ec_scan_image_enlarge(r, FIRST_CAP);

@@ -21,7 +21,8 @@ static void place_text(const struct ec_slave *s, char *buf, size_t size)
 	const struct ec_slave *u = ec_graph_parent(s);
 
 	if (u)
-		snprintf(buf, size, "port %u of slave %u (%.24s)", s->parent_port, u->position,
+		snprintf(buf, size, "port %u of slave %u (%.24s)", s->graph.parent_port,
+			 u->position,
 			 ec_slave_label(u));
 	else
 		strscpy(buf, "the main device", size);
@@ -40,38 +41,39 @@ void ec_lost_note_place(struct ec_slave *s)
 	struct ec_slave *u = ec_graph_parent(s);
 
 	lockdep_assert_held_write(&s->bus->topo);
-	s->seen_ns = s->bus->complete_ns;
+	s->lost.seen_ns = s->bus->complete_ns;
 	if (u && u->position < s->position && !u->listing) {
-		s->lost_at = u->lost_at;
-		s->lost_at.up = u->position;
-		s->lost_at.up_port = s->parent_port;
-		strscpy(s->parent, u->parent, sizeof(s->parent));
-		if (u->first_lost[0])
-			strscpy(s->first_lost, u->first_lost, sizeof(s->first_lost));
+		s->lost.at = u->lost.at;
+		s->lost.at.up = u->position;
+		s->lost.at.up_port = s->graph.parent_port;
+		strscpy(s->lost.parent, u->lost.parent, sizeof(s->lost.parent));
+		if (u->lost.first[0])
+			strscpy(s->lost.first, u->lost.first, sizeof(s->lost.first));
 		else
-			snprintf(s->first_lost, sizeof(s->first_lost), "slave %u (%.24s)",
+			snprintf(s->lost.first, sizeof(s->lost.first), "slave %u (%.24s)",
 				 u->position, ec_slave_label(u));
 		return;
 	}
 	if (u)
-		ec_ports_note_loss(u, s->parent_port, true);
-	s->lost_at = (struct ec_break){
-		.station = u ? u->station : 0, .position = position_of(u), .port = s->parent_port,
-		.up = u ? u->position : EC_UAPI_NONE16, .up_port = s->parent_port,
+		ec_ports_note_loss(u, s->graph.parent_port, true);
+	s->lost.at = (struct ec_break){
+		.station = u ? u->station : 0, .position = position_of(u),
+		.port = s->graph.parent_port,
+		.up = u ? u->position : EC_UAPI_NONE16, .up_port = s->graph.parent_port,
 	};
-	place_text(s, s->parent, sizeof(s->parent));
+	place_text(s, s->lost.parent, sizeof(s->lost.parent));
 }
 
 /* Lost together? What hangs behind a cable is one range of the ring, and one event. */
 static bool same_break(const struct ec_slave *a, const struct ec_slave *b)
 {
-	return a->lost_at.station == b->lost_at.station && a->lost_at.port == b->lost_at.port;
+	return a->lost.at.station == b->lost.at.station && a->lost.at.port == b->lost.at.port;
 }
 
 /* No application could use a slave that was not read. */
 static bool counts(const struct ec_slave *s)
 {
-	return READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+	return READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED;
 }
 
 /* What was lost behind one port: @first and those after it up to @last. */
@@ -79,15 +81,15 @@ static void report_port(const struct ec_slave *first, const struct ec_slave *las
 {
 	struct ec_base *base = first->bus->base;
 	const struct ec_event_more more = {
-		.place = first->parent, .name = ec_slave_label(first),
+		.place = first->lost.parent, .name = ec_slave_label(first),
 		.last = ec_slave_label(last),
 	};
 	const struct ec_event e = {
 		.kind = EC_EVENT_SLAVE_LOST, .slave = first->position,
 		.arg = {
-			first->lost_at.position, first->lost_at.port, first->alias,
+			first->lost.at.position, first->lost.at.port, first->alias,
 			first->info.vendor, first->info.product,
-			div_u64(ktime_get_ns() - first->seen_ns, NSEC_PER_MSEC),
+			div_u64(ktime_get_ns() - first->lost.seen_ns, NSEC_PER_MSEC),
 			last->position - first->position + 1,
 		},
 	};
@@ -176,7 +178,7 @@ void ec_lost_report_found(struct scan *sc, unsigned int n_old)
 			.last = ec_slave_label(bus->slaves[i - 1]),
 		};
 		ec_report_more(bus->base, EC_EVENT_SLAVE_FOUND, s->position, &more,
-			       position_of(ec_graph_parent(s)), s->parent_port, s->alias,
+			       position_of(ec_graph_parent(s)), s->graph.parent_port, s->alias,
 			       s->info.vendor, s->info.product, i - first);
 	}
 }

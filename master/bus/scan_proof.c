@@ -72,7 +72,7 @@ static enum doubt proof_check(const struct proof *p, unsigned int i, unsigned in
 	if (known && !sc->regs[i].there)
 		return direct->wkc ? KNOWN : NONE;
 	/* unless it failed because it has lost its address: power was off for a moment */
-	if (!known && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+	if (!known && READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 		return p->dg[2 * at].wkc == 1 && !answers_as(p, at, s->station) ? NEW : NONE;
 	if (!answers_as(p, at, s->station) || direct->wkc != 1)
 		return known ? KNOWN : NEW;

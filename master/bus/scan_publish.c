@@ -102,7 +102,7 @@ static bool same_failures(const struct scan *sc, const struct stretch *t)
 
 	for (i = 0; i < t->n_old && t->n_old == t->n_new; i++)
 		if (!ec_scan_unreadable(sc->bus, t->old + i) ||
-		    READ_ONCE(sc->slaves[t->new + i]->error) != EC_SLAVE_SCAN_FAILED)
+		    READ_ONCE(sc->slaves[t->new + i]->note.error) != EC_SLAVE_SCAN_FAILED)
 			break;
 	return i == t->n_old && i == t->n_new;
 }
@@ -182,7 +182,7 @@ static void fit(const struct scan *sc, const struct list *l)
 		first = ec_graph_misfit(l->slaves, l->n);
 	}
 	for (i = 0; i < l->n; i++)
-		WRITE_ONCE(l->slaves[i]->topology_inconsistent, i >= first);
+		WRITE_ONCE(l->slaves[i]->graph.inconsistent, i >= first);
 	if (first < l->n)
 		ec_slave_warn(l->slaves[first],
 			      "open ports inconsistent with ring order from this slave on; delays unreliable: check cables, then rescan\n");
@@ -297,7 +297,7 @@ int ec_scan_publish(struct scan *sc)
 	up_write(&bus->topo);
 	ec_bus_need_workers(bus, l.n / 2);
 	ec_for_each_slave(s, bus)
-		if (!s->listed)
+		if (!s->note.listed)
 			ec_slave_list(s);
 	for (i = 0; i < l.n_lost; i++)
 		ec_stop_gone(&l.lost[i]->stop);

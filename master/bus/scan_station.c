@@ -121,7 +121,7 @@ static bool same_state(const struct scan *sc, unsigned int i, const struct ec_sl
 	struct ec_dg dg = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_AL_STATUS, 2, al);
 
 	return !ec_xfer(sc->bus->links, &dg, 1) && dg.wkc == 1 &&
-	       get_unaligned_le16(al) == READ_ONCE(s->al_status);
+	       get_unaligned_le16(al) == READ_ONCE(s->al.status);
 }
 
 /*
@@ -152,11 +152,11 @@ static bool owns_station(const struct scan *sc, unsigned int i, const struct ec_
 /* A slave that failed in a scan is read again, an attached one that refused a state is not. */
 static bool is_usable(const struct ec_slave *s)
 {
-	u8 error = READ_ONCE(s->error);
+	u8 error = READ_ONCE(s->note.error);
 
-	return s->sii && (!error || READ_ONCE(s->silent) ||
-			  (error == EC_SLAVE_CONFIG_FAILED && s->bus->ops &&
-			   s->bus->ops->attached && s->bus->ops->attached(s)));
+	return s->eeprom.data && (!error || READ_ONCE(s->reply.silent) ||
+				  (error == EC_SLAVE_CONFIG_FAILED && s->bus->ops &&
+				   s->bus->ops->attached && s->bus->ops->attached(s)));
 }
 
 /*
@@ -169,8 +169,8 @@ static struct ec_slave *fell_silent(const struct scan *sc, unsigned int i, bool 
 
 	if (!s || sc->regs[i].there || !same_before || sc->claims[s->station])
 		return NULL;
-	return READ_ONCE(s->silent) ||
-	       (s->sii && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED) ? s : NULL;
+	return READ_ONCE(s->reply.silent) ||
+	       (s->eeprom.data && READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED) ? s : NULL;
 }
 
 /**
@@ -185,16 +185,17 @@ const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int
 {
 	const struct ec_slave *s = i < bus->n_slaves ? bus->slaves[i] : NULL;
 
-	return s && READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED && !READ_ONCE(s->silent) ? s : NULL;
+	return s && READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED &&
+	       !READ_ONCE(s->reply.silent) ? s : NULL;
 }
 
 /* What was read of the EEPROM by the scan before. */
 static void scan_station_take_part(struct ec_slave *s, struct ec_slave *old)
 {
-	swap(s->part, old->part);
-	swap(s->part_bytes, old->part_bytes);
-	if (s->part)
-		swap(s->sii_counted, old->sii_counted);
+	swap(s->eeprom.part, old->eeprom.part);
+	swap(s->eeprom.part_bytes, old->eeprom.part_bytes);
+	if (s->eeprom.part)
+		swap(s->eeprom.counted, old->eeprom.counted);
 }
 
 /* If a slave could not be read here before, keep its cause, which is logged once, and its tries. */
@@ -204,10 +205,10 @@ static void take_failure(struct scan *sc, struct ec_slave *s)
 
 	if (!old)
 		return;
-	strscpy(s->why, old->why, sizeof(s->why));
-	s->cause = old->cause;
+	strscpy(s->note.why, old->note.why, sizeof(s->note.why));
+	s->note.cause = old->note.cause;
 	s->device = old->device;
-	s->retry_ms = old->retry_ms;
+	s->reply.retry_ms = old->reply.retry_ms;
 }
 
 /* Given by a scan that was thrown away. */
@@ -221,7 +222,7 @@ static bool was_tried(const struct ec_bus *bus, u16 station)
 static bool may_be(const struct scan *sc, unsigned int i, const struct ec_slave *s)
 {
 	return s && !sc->claims[s->station] && is_usable(s) &&
-	       READ_ONCE(s->al_status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s);
+	       READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s);
 }
 
 /*
@@ -295,7 +296,7 @@ static int scan_station_add(struct scan *sc, unsigned int i, struct ec_dg *dg, b
 	/* by its address it is the same */
 	if (known && sc->regs[i].there && sc->claims[old] == 1) {
 		scan_station_take_part(s, known);
-		s->found = known->sii ? known->found : 0;
+		s->found = known->eeprom.data ? known->found : 0;
 	}
 	put_unaligned_le16(station, sc->regs[i].station);
 	if (addressed)

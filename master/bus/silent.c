@@ -14,11 +14,11 @@
  */
 bool ec_slave_set_silent(struct ec_slave *s, const char *why)
 {
-	if (READ_ONCE(s->silent))
+	if (READ_ONCE(s->reply.silent))
 		return false;
-	WRITE_ONCE(s->silent, true);
-	s->seen_ns = s->bus->complete_ns;
-	WRITE_ONCE(s->al_status, 0);
+	WRITE_ONCE(s->reply.silent, true);
+	s->lost.seen_ns = s->bus->complete_ns;
+	WRITE_ONCE(s->al.status, 0);
 	ec_slave_event(s, EC_EVENT_SLAVE_SILENT);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(SILENT), "%s", why);
 	ec_slave_retry(s, EC_PROBE_MAX_MS);
@@ -34,12 +34,12 @@ bool ec_slave_set_silent(struct ec_slave *s, const char *why)
  */
 bool ec_slave_set_replies(struct ec_slave *s)
 {
-	if (!READ_ONCE(s->silent))
+	if (!READ_ONCE(s->reply.silent))
 		return false;
-	WRITE_ONCE(s->silent, false);
+	WRITE_ONCE(s->reply.silent, false);
 	ec_slave_set_ok(s, true);
-	s->retry_ms = 0;
-	ec_write64(&s->retry_ns, 0);
+	s->reply.retry_ms = 0;
+	ec_write64(&s->reply.retry_ns, 0);
 	ec_slave_report(s, EC_EVENT_SLAVE_REPLIES);
 	return true;
 }

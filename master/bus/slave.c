@@ -14,7 +14,7 @@
 
 static void run_job(struct ec_job *job)
 {
-	struct ec_slave *s = container_of(job, struct ec_slave, job);
+	struct ec_slave *s = container_of(job, struct ec_slave, work.job);
 
 	if (s->bus->ops && s->bus->ops->configure)
 		s->bus->ops->configure(s);
@@ -22,9 +22,9 @@ static void run_job(struct ec_job *job)
 
 static void end_job(struct ec_job *job)
 {
-	struct ec_slave *s = container_of(job, struct ec_slave, job);
+	struct ec_slave *s = container_of(job, struct ec_slave, work.job);
 
-	atomic_dec_return_release(&s->works);
+	atomic_dec_return_release(&s->work.runs);
 	ec_slave_changed(s);
 	ec_bus_settled(s->bus);
 	ec_slave_unref(s);
@@ -58,17 +58,17 @@ struct ec_slave *ec_slave_alloc(struct ec_bus *bus, u16 station)
 	kref_init(&s->kref);
 	s->bus = bus;
 	s->station = station;
-	s->requested = EC_AL_PREOP;
-	s->job.run = run_job;
-	s->job.end = end_job;
+	s->al.requested = EC_AL_PREOP;
+	s->work.job.run = run_job;
+	s->work.job.end = end_job;
 	mutex_init(&s->lock);
-	raw_spin_lock_init(&s->note_lock);
+	raw_spin_lock_init(&s->note.lock);
 	ec_stop_init(&s->stop, bus->base);
 	s->mbox.base = bus->base;
 	s->mbox.box.links = bus->links;
 	s->mbox.stop = &s->stop;
 	s->mbox.box.sii = &s->info;
-	s->mbox.box.al_status = &s->al_status;
+	s->mbox.box.al_status = &s->al.status;
 	s->mbox.changes = &bus->changes;
 	s->mbox.position = &s->position;
 	s->mbox.box.station = station;
@@ -83,14 +83,14 @@ static void slave_release(struct kref *kref)
 	unsigned int i;
 
 	for (i = 0; i < EC_MAX_SM; i++)
-		ec_pdo_list_clear(&s->sm_pdos[i]);
-	ec_pdo_list_clear(&s->free_pdos);
+		ec_pdo_list_clear(&s->pdos.sm[i]);
+	ec_pdo_list_clear(&s->pdos.free);
 	ec_names_free(s);
 	ec_dict_forget(&s->dict);
 	ec_mbox_exit(&s->mbox);
-	atomic_long_sub(s->sii_counted, &s->bus->sii_bytes);
-	kvfree(s->sii);
-	kvfree(s->part);
+	atomic_long_sub(s->eeprom.counted, &s->bus->sii_bytes);
+	kvfree(s->eeprom.data);
+	kvfree(s->eeprom.part);
 	kfree(s);
 }
 
@@ -109,27 +109,28 @@ void ec_slave_unref(struct ec_slave *slave)
 
 static void string(struct ec_slave *s, u8 index, char *buf)
 {
-	if (!index || ec_sii_string(s->sii, s->sii_bytes, index, buf, EC_UAPI_STRING) < 0)
+	if (!index ||
+	    ec_sii_string(s->eeprom.data, s->eeprom.bytes, index, buf, EC_UAPI_STRING) < 0)
 		buf[0] = '\0';
 }
 
 /* What is wrong with the EEPROM; the slave is used as far as it goes. */
 static void check_sii(struct ec_slave *s)
 {
-	size_t size = sizeof(s->sii_flaw);
-	const struct ec_sii_flaw *f = &s->flaw;
+	size_t size = sizeof(s->note.sii_flaw);
+	const struct ec_sii_flaw *f = &s->eeprom.flaw;
 
-	s->sii_flaw[0] = '\0';
+	s->note.sii_flaw[0] = '\0';
 	switch (f->kind) {
 	case EC_SII_FLAW_NONE:
 		if (s->info.checksum_ok)
 			return;
-		scnprintf(s->sii_flaw, size,
+		scnprintf(s->note.sii_flaw, size,
 			  "EEPROM checksum 0x%02x, expected 0x%02x; content used anyway",
 			  s->info.checksum, s->info.checksum_calc);
 		break;
 	case EC_SII_FLAW_BLANK:
-		scnprintf(s->sii_flaw, size,
+		scnprintf(s->note.sii_flaw, size,
 			  "EEPROM is blank (only 0x%02x): no identity, no mailbox; write an image",
 			  f->type);
 		/* all ones are no mailbox either */
@@ -138,22 +139,22 @@ static void check_sii(struct ec_slave *s)
 		s->emulation = false;
 		break;
 	case EC_SII_FLAW_LARGE:
-		scnprintf(s->sii_flaw, size,
+		scnprintf(s->note.sii_flaw, size,
 			  "EEPROM: category 0x%04x at word 0x%04zx has %zu bytes, the EEPROM has %zu; data from there on are not used",
 			  f->type, f->offset / 2, f->bytes, f->declared);
 		break;
 	case EC_SII_FLAW_NO_END:
-		scnprintf(s->sii_flaw, size,
+		scnprintf(s->note.sii_flaw, size,
 			  "EEPROM: no end marker up to word 0x%04zx; data from there on are not used",
 			  f->end / 2);
 		break;
 	case EC_SII_FLAW_BEYOND:
-		scnprintf(s->sii_flaw, size,
+		scnprintf(s->note.sii_flaw, size,
 			  "EEPROM: categories end at byte %zu, beyond the declared size of %zu (word 0x003e); all are used",
 			  f->end, f->declared);
 		break;
 	case EC_SII_FLAW_ENTRY:
-		scnprintf(s->sii_flaw, size,
+		scnprintf(s->note.sii_flaw, size,
 			  "EEPROM: an entry of category 0x%04x at word 0x%04zx is longer than the category",
 			  f->type, f->offset / 2);
 		break;
@@ -169,22 +170,24 @@ static void check_sii(struct ec_slave *s)
  */
 int ec_slave_parse_sii(struct ec_slave *slave)
 {
-	int ret = ec_sii_decode_info(slave->sii, slave->sii_bytes, &slave->info);
+	int ret = ec_sii_decode_info(slave->eeprom.data, slave->eeprom.bytes, &slave->info);
 
 	if (ret)
 		return ret;
 	slave->emulation = slave->info.pdi_control & EC_SII_PDI_EMULATION;
 	slave->alias = slave->info.alias;
 	check_sii(slave);
-	slave->has_general = !ec_sii_decode_general(slave->sii, slave->sii_bytes, &slave->general);
+	slave->has_general = !ec_sii_decode_general(slave->eeprom.data, slave->eeprom.bytes,
+						    &slave->general);
 	if (slave->has_general) {
 		string(slave, slave->general.group, slave->group);
 		string(slave, slave->general.image, slave->image);
 		string(slave, slave->general.order, slave->order);
 		string(slave, slave->general.name, slave->name);
 	}
-	slave->mbox.box.can_repeat = slave->has_general && slave->general.flags & EC_SII_FLAG_MBOX_DLL;
-	ret = ec_sii_decode_sms(slave->sii, slave->sii_bytes, slave->sms, EC_MAX_SM);
+	slave->mbox.box.can_repeat = slave->has_general &&
+				     slave->general.flags & EC_SII_FLAG_MBOX_DLL;
+	ret = ec_sii_decode_sms(slave->eeprom.data, slave->eeprom.bytes, slave->sms, EC_MAX_SM);
 	slave->n_sms = ret > 0 ? min_t(unsigned int, ret, EC_MAX_SM) : 0;
 	ec_slave_settle_mbox(slave);
 	return ec_slave_read_pdos(slave);
@@ -197,7 +200,7 @@ static void report_failure(struct ec_slave *slave, const char *text, u8 error,
 
 	ec_pending_before(slave);
 	ec_report_more(slave->bus->base, EC_EVENT_SLAVE_FAILED, slave->position, &more, error,
-		       READ_ONCE(slave->al_code), cause->kind, cause->code, cause->object,
+		       READ_ONCE(slave->al.code), cause->kind, cause->code, cause->object,
 		       cause->subindex, cause->sm, cause->state);
 }
 
@@ -223,18 +226,18 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 	va_start(args, fmt);
 	vscnprintf(text, sizeof(text), fmt, args);
 	va_end(args);
-	raw_spin_lock(&slave->note_lock);
+	raw_spin_lock(&slave->note.lock);
 	/* a worker that has not ended yet: what it meets is no cause of its own */
-	if (slave->error != EC_SLAVE_SCAN_FAILED || error != EC_SLAVE_CONFIG_FAILED) {
-		WRITE_ONCE(slave->error, error);
-		other = strcmp(slave->why, text);
-		slave->cause = *cause;
+	if (slave->note.error != EC_SLAVE_SCAN_FAILED || error != EC_SLAVE_CONFIG_FAILED) {
+		WRITE_ONCE(slave->note.error, error);
+		other = strcmp(slave->note.why, text);
+		slave->note.cause = *cause;
 		if (other)
-			strscpy(slave->why, text, sizeof(slave->why));
+			strscpy(slave->note.why, text, sizeof(slave->note.why));
 	}
-	slave->unreported |= other && !slave->listed;
-	other = other && slave->listed;
-	raw_spin_unlock(&slave->note_lock);
+	slave->note.unreported |= other && !slave->note.listed;
+	other = other && slave->note.listed;
+	raw_spin_unlock(&slave->note.lock);
 	ec_slave_changed(slave);
 	if (other)
 		report_failure(slave, text, error, cause);
@@ -244,7 +247,7 @@ void ec_slave_fail(struct ec_slave *slave, u8 error, const struct ec_cause *caus
 static void trace_al(const struct ec_slave *s, u16 before)
 {
 	trace_ec_al_state(s->bus->base->index, s->station, s->position, before,
-			  READ_ONCE(s->al_status), READ_ONCE(s->al_code));
+			  READ_ONCE(s->al.status), READ_ONCE(s->al.code));
 }
 
 /**
@@ -257,21 +260,22 @@ void ec_slave_list(struct ec_slave *slave)
 {
 	bool unreported;
 
-	raw_spin_lock(&slave->note_lock);
-	unreported = slave->unreported;
-	slave->unreported = false;
-	slave->listed = true;
-	raw_spin_unlock(&slave->note_lock);
+	raw_spin_lock(&slave->note.lock);
+	unreported = slave->note.unreported;
+	slave->note.unreported = false;
+	slave->note.listed = true;
+	raw_spin_unlock(&slave->note.lock);
 	trace_al(slave, 0);
-	if (slave->sii_flaw[0]) {
-		const struct ec_event_more more = { .detail = slave->sii_flaw };
+	if (slave->note.sii_flaw[0]) {
+		const struct ec_event_more more = { .detail = slave->note.sii_flaw };
 
 		ec_report_more(slave->bus->base, EC_EVENT_EEPROM, slave->position, &more,
-			       slave->flaw.kind, slave->info.checksum, slave->info.checksum_calc);
+			       slave->eeprom.flaw.kind, slave->info.checksum,
+			       slave->info.checksum_calc);
 	}
 	/* no other thread has failed with it so far */
 	if (unreported)
-		report_failure(slave, slave->why, slave->error, &slave->cause);
+		report_failure(slave, slave->note.why, slave->note.error, &slave->note.cause);
 }
 
 /**
@@ -286,21 +290,21 @@ void ec_slave_list(struct ec_slave *slave)
  */
 void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, enum ec_al_by by)
 {
-	u16 before = READ_ONCE(slave->al_status);
+	u16 before = READ_ONCE(slave->al.status);
 	u8 state = status & EC_AL_STATE_MASK, was = before & EC_AL_STATE_MASK;
 	bool error = status & EC_AL_ERROR && !(before & EC_AL_ERROR);
 	/* 0: not known before */
 	bool moved = state != was && was;
 
-	if (status == before && code == READ_ONCE(slave->al_code))
+	if (status == before && code == READ_ONCE(slave->al.code))
 		return;
 	if (moved && by == EC_AL_BY_ITSELF)
 		ec_pending_before(slave);
-	WRITE_ONCE(slave->al_status, status);
-	WRITE_ONCE(slave->al_code, code);
+	WRITE_ONCE(slave->al.status, status);
+	WRITE_ONCE(slave->al.code, code);
 	trace_al(slave, before);
 	ec_slave_changed(slave);
-	if (!slave->listed)
+	if (!slave->note.listed)
 		return;
 	if (moved && by != EC_AL_BY_ITSELF)
 		ec_pending_al(slave, was, state);
@@ -330,14 +334,14 @@ bool ec_slave_set_ok(struct ec_slave *slave, bool replies)
 {
 	bool ok;
 
-	raw_spin_lock(&slave->note_lock);
-	ok = replies || slave->error != EC_SLAVE_SCAN_FAILED;
+	raw_spin_lock(&slave->note.lock);
+	ok = replies || slave->note.error != EC_SLAVE_SCAN_FAILED;
 	if (ok) {
-		WRITE_ONCE(slave->error, EC_SLAVE_OK);
-		slave->why[0] = '\0';
-		slave->cause = (struct ec_cause){ .kind = EC_CAUSE_NONE };
+		WRITE_ONCE(slave->note.error, EC_SLAVE_OK);
+		slave->note.why[0] = '\0';
+		slave->note.cause = (struct ec_cause){ .kind = EC_CAUSE_NONE };
 	}
-	raw_spin_unlock(&slave->note_lock);
+	raw_spin_unlock(&slave->note.lock);
 	ec_slave_changed(slave);
 	return ok;
 }
@@ -355,11 +359,11 @@ bool ec_slave_forgive(struct ec_slave *slave)
 {
 	bool failed;
 
-	raw_spin_lock(&slave->note_lock);
-	failed = slave->error == EC_SLAVE_CONFIG_FAILED;
+	raw_spin_lock(&slave->note.lock);
+	failed = slave->note.error == EC_SLAVE_CONFIG_FAILED;
 	if (failed)
-		WRITE_ONCE(slave->error, EC_SLAVE_OK);
-	raw_spin_unlock(&slave->note_lock);
+		WRITE_ONCE(slave->note.error, EC_SLAVE_OK);
+	raw_spin_unlock(&slave->note.lock);
 	ec_slave_changed(slave);
 	return failed;
 }
@@ -375,9 +379,9 @@ bool ec_slave_forgive(struct ec_slave *slave)
  */
 const char *ec_slave_why(struct ec_slave *slave, char *buf, size_t size)
 {
-	raw_spin_lock(&slave->note_lock);
-	strscpy(buf, slave->why, size);
-	raw_spin_unlock(&slave->note_lock);
+	raw_spin_lock(&slave->note.lock);
+	strscpy(buf, slave->note.why, size);
+	raw_spin_unlock(&slave->note.lock);
 	return buf;
 }
 
@@ -392,17 +396,17 @@ void ec_slave_cause(struct ec_slave *slave, struct ec_cause *cause)
 {
 	unsigned int first = READ_ONCE(slave->alias_first);
 
-	raw_spin_lock(&slave->note_lock);
-	*cause = slave->cause;
-	if (cause->kind || slave->warning[0])
+	raw_spin_lock(&slave->note.lock);
+	*cause = slave->note.cause;
+	if (cause->kind || slave->note.warning[0])
 		;
-	else if (slave->sii_flaw[0])
+	else if (slave->note.sii_flaw[0])
 		cause->kind = EC_CAUSE_EEPROM;
 	else if (first)
 		*cause = *EC_CAUSE(ALIAS_TWICE, .position = first - 1);
 	else
 		cause->kind = slave->mbox_doubt ? EC_CAUSE_MAILBOX : EC_CAUSE_NONE;
-	raw_spin_unlock(&slave->note_lock);
+	raw_spin_unlock(&slave->note.lock);
 }
 
 /**
@@ -417,9 +421,9 @@ void ec_slave_warning(struct ec_slave *slave, char *buf, size_t size)
 {
 	unsigned int first = READ_ONCE(slave->alias_first);
 
-	raw_spin_lock(&slave->note_lock);
-	strscpy(buf, slave->warning[0] ? slave->warning : slave->sii_flaw, size);
-	raw_spin_unlock(&slave->note_lock);
+	raw_spin_lock(&slave->note.lock);
+	strscpy(buf, slave->note.warning[0] ? slave->note.warning : slave->note.sii_flaw, size);
+	raw_spin_unlock(&slave->note.lock);
 	if (!buf[0] && first)
 		scnprintf(buf, size,
 			  "alias %u is not unique; configurations use slave %u, the first one",
@@ -444,9 +448,9 @@ void ec_slave_set_warning(struct ec_slave *slave, const char *fmt, ...)
 	va_start(args, fmt);
 	vscnprintf(text, sizeof(text), fmt, args);
 	va_end(args);
-	raw_spin_lock(&slave->note_lock);
-	strscpy(slave->warning, text, sizeof(slave->warning));
-	raw_spin_unlock(&slave->note_lock);
+	raw_spin_lock(&slave->note.lock);
+	strscpy(slave->note.warning, text, sizeof(slave->note.warning));
+	raw_spin_unlock(&slave->note.lock);
 }
 
 /**
@@ -460,8 +464,9 @@ void ec_slave_retry(struct ec_slave *slave, u32 max_ms)
 {
 	lockdep_assert(lockdep_is_held(&slave->lock) ||
 		       current == READ_ONCE(slave->bus->links->carry->monitor));
-	slave->retry_ms = clamp_t(u32, 2 * slave->retry_ms, EC_RETRY_MIN_MS, max_ms);
-	ec_write64(&slave->retry_ns, ktime_get_ns() + slave->retry_ms * (u64)NSEC_PER_MSEC);
+	slave->reply.retry_ms = clamp_t(u32, 2 * slave->reply.retry_ms, EC_RETRY_MIN_MS, max_ms);
+	ec_write64(&slave->reply.retry_ns,
+		   ktime_get_ns() + slave->reply.retry_ms * (u64)NSEC_PER_MSEC);
 }
 
 /**
@@ -481,7 +486,8 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
 		snprintf(alias, sizeof(alias), "alias %u, ", slave->alias);
 	return scnprintf(buf, size, "slave %u (%s%.40s) disconnected%s%s from %s",
 			 slave->position, alias, ec_slave_label(slave),
-			 slave->first_lost[0] ? " with " : "", slave->first_lost, slave->parent);
+			 slave->lost.first[0] ? " with " : "", slave->lost.first,
+			 slave->lost.parent);
 }
 
 /**
@@ -496,12 +502,12 @@ size_t ec_slave_lost_text(const struct ec_slave *slave, char *buf, size_t size)
 void ec_slave_kick(struct ec_slave *slave)
 {
 	ec_slave_ref(slave);
-	atomic_inc(&slave->works);
+	atomic_inc(&slave->work.runs);
 	ec_slave_changed(slave);
-	if (ec_workers_queue(&slave->bus->workers, &slave->job))
+	if (ec_workers_queue(&slave->bus->workers, &slave->work.job))
 		return;
 	/* the run that waits in the queue does it */
-	atomic_dec(&slave->works);
+	atomic_dec(&slave->work.runs);
 	ec_slave_unref(slave);
 }
 
@@ -520,13 +526,13 @@ static u8 allowed(const struct ec_slave *slave, u8 state)
  */
 u8 ec_slave_wanted(const struct ec_slave *slave)
 {
-	return allowed(slave, READ_ONCE(slave->requested));
+	return allowed(slave, READ_ONCE(slave->al.requested));
 }
 
 static void want(struct ec_slave *slave, u8 state, u32 limit_ms)
 {
-	WRITE_ONCE(slave->limit_ms, limit_ms);
-	WRITE_ONCE(slave->requested, allowed(slave, state));
+	WRITE_ONCE(slave->al.limit_ms, limit_ms);
+	WRITE_ONCE(slave->al.requested, allowed(slave, state));
 	wake_up_all(&slave->stop.wake);
 }
 

@@ -40,195 +40,236 @@ struct ec_break {
 	u8 up_port;
 };
 
-/**
- * struct ec_slave - one slave
- *
- * Fixed after the scan:
- * @kref: reference count; the master's table holds one
- * @bus: bus
- * @ext: parts of higher layers in the memory of the slave, initially zeroed
- * @stop: ends what callers and its worker wait for
- * @mbox: its mailbox
- * @station: station address
- * @sii: EEPROM image as read
- * @sii_bytes: bytes at @sii
- * @flaw: of @sii, found when it was read
- * @sii_counted: what it, or @part, counts in the master's @sii_bytes
- * @part: first bytes of a large EEPROM that is still being read, or NULL
- * @part_bytes: bytes there
- * @info: fixed area of the EEPROM
- * @general: general category
- * @has_general: it has one
- * @sms: SyncManagers of the EEPROM
- * @n_sms: entries in @sms
- * @emulation: AL status follows AL control
- * @group: group name of the EEPROM
- * @image: name of the picture
- * @order: order number
- * @name: name
- *
- * Of the last scan, changed under bus->topo:
- * @device: device number
- * @by_device: in bus->known.present while it is in the list
- * @kept_station: station address with which it was found, 0: it had none of its own
- * @position: ring position
- * @regs: registers 0x0000-0x0009
- * @dl_status: register 0x0110
- * @dl_seen: the same, read later than @dl_status because of an event; the monitor's
- * @ports: loop control; the monitor's
- * @alias: effective alias
- * @identification: explicit device identification as read when it was found, 0: none
- * @alias_first: another slave has @alias: ring position + 1 of the first one; 0: none has
- * @recv: receive times at the ports
- * @identified: it was asked for @identification, or has none
- * @delay_only: it has receive times, but no other register of a clock (0x0928)
- * @at: neighbors at the ports, NULL none; what graph.c finds
- * @upstream: port towards the main device
- * @hung: its neighbor there is known, or it hangs at the main device
- * @parent: where the first slave hung that was lost with it, in words
- * @first_lost: the first slave that was lost with it, in words; empty: itself
- * @lost_at: where the way to it broke then
- * @parent_port: port of the slave it hangs at
- * @topology_inconsistent: open ports contradict the ring order, here or upstream
- *
- * Of the EEPROM, then of the object dictionary, changed under bus->topo:
- * @sm_pdos: PDOs by SyncManager
- * @free_pdos: PDOs without SyncManager
- * @pdos_known: the object dictionary was read, or there is none
- * @pdos_unread: @pdos_known, but they could not be read
- * @pdos_again_ns: when they are read again then (ktime), 0: not
- * @pdos_again_ms: after that time since the last try
- * @names: from the object dictionary
- * @names_done: the slave was asked for those its EEPROM does not have
- *
- * Changing:
- * @mbox_doubt: in what its EEPROM is inconsistent about the mailbox, enum ec_sii_mbox_doubt
- * @dict: answers about its object dictionary
- * @al_status: last AL status seen
- * @al_code: AL status code that belongs to it
- * @al_reads: how often a worker has read the two: what was asked for before
- *	is older
- * @requested: AL state that its worker brings it to
- * @limit_ms: time limit of each transition to it, 0: the usual ones
- * @awaited: AL state that was asked for and is not reached so far, 0: none. It is taken when it
- *	comes after its time limit
- * @awaited_ms: that limit
- * @pending: changes that have no event so far
- * @note_lock: protects @pending, @why, @cause and @warning, and @error where it changes; without
- *	@lock a caller copies the texts by ec_slave_why() and ec_slave_warning()
- * @error: EC_SLAVE_OK...
- * @why: cause of @error
- * @cause: the same for programs
- * @warning: what is not certain of its process data, empty: nothing
- * @found: the list that it was in first, counted by bus->lists
- * @listing: it is in the list that is being made; the monitor's
- * @listed: it is in the list of the bus; what fails before is reported when it comes there
- * @unreported: @why is to be reported then
- * @sii_flaw: what is wrong with its EEPROM, empty: nothing
- * @silent: @error because it does not answer any more; it is in its place until it does
- * @missed: polls in a row without its reply, while the list is held; the monitor's
- * @retry_ns: when to try again what failed (ktime), 0: never
- * @retry_ms: distance between the last two tries
- * @seen_ns: when all slaves replied last before it was lost or silent (ktime); 0: it was not,
- *	or is in its state again
- * @job: brings it to @requested
- * @works: runs of @job that are queued or in progress
- * @unshown: messages that did not show in the IRQ field; the monitor's
- * @lock: one worker or caller at a time changes its state
- * @read_pdos: read the PDOs when it is in @requested
- * @reconfigure: go through INIT and configure again
- * @clean: nothing of a configuration is left in its registers
- * @ours: this master has brought it from INIT to PREOP or BOOT, not an earlier one
- */
-struct ec_slave {
-	struct kref kref;
-	struct ec_bus *bus;
-	void *ext[EC_N_EXT];
-	struct ec_stop stop;
-	struct ec_mbox mbox;
-	u16 station;
-	u8 *sii;
-	size_t sii_bytes;
-	size_t sii_counted;
+/** struct ec_slave_eeprom - the EEPROM of a slave as read: scan_sii.c */
+struct ec_slave_eeprom {
+	/** @data: image */
+	u8 *data;
+	/** @bytes: at @data */
+	size_t bytes;
+	/** @counted: what it, or @part, counts in @sii_bytes of the bus */
+	size_t counted;
+	/** @part: first bytes of a large one that is still being read, or NULL */
 	u8 *part;
+	/** @part_bytes: at @part */
 	size_t part_bytes;
+	/** @flaw: found when it was read */
 	struct ec_sii_flaw flaw;
+};
+
+/** struct ec_slave_graph - the neighbors of a slave: graph.c, under bus->topo */
+struct ec_slave_graph {
+	/** @at: by port, NULL none */
+	struct ec_slave *at[EC_MAX_PORT];
+	/** @upstream: port towards the main device */
+	u8 upstream;
+	/** @parent_port: port of the slave it hangs at */
+	u8 parent_port;
+	/** @hung: its neighbor at @upstream is known, or it hangs at the main device */
+	bool hung;
+	/** @inconsistent: open ports contradict the ring order, here or upstream */
+	bool inconsistent;
+};
+
+/** struct ec_slave_lost - a slave that was lost: scan_lost.c, under bus->topo */
+struct ec_slave_lost {
+	/** @parent: where the first slave hung that was lost with it, in words */
+	char parent[EC_UAPI_STRING];
+	/** @first: that one, in words; empty: itself */
+	char first[40];
+	/** @at: where the way to it broke then */
+	struct ec_break at;
+	/**
+	 * @seen_ns: when all slaves replied last before it was lost or silent (ktime); 0: it was
+	 * not, or is in its state again
+	 */
+	u64 seen_ns;
+};
+
+/** struct ec_slave_pdos - of the EEPROM, then of the dictionary: pdo_coe.c, under bus->topo */
+struct ec_slave_pdos {
+	/** @sm: by SyncManager */
+	struct ec_pdo_list sm[EC_MAX_SM];
+	/** @free: without SyncManager */
+	struct ec_pdo_list free;
+	/** @known: the object dictionary was read, or there is none */
+	bool known;
+	/** @unread: @known, but they could not be read */
+	bool unread;
+	/** @wanted: read them when the slave is in its requested state */
+	bool wanted;
+	/** @names_done: the slave was asked for names that its EEPROM does not have */
+	bool names_done;
+	/** @again_ms: they are read again after that time since the last try */
+	u32 again_ms;
+	/** @again_ns: when that is (ktime), 0: not */
+	aligned_u64 again_ns;
+	/** @names: from the object dictionary */
+	struct ec_names names;
+};
+
+/** struct ec_slave_al - AL state: al.c, and slave.c for what is requested */
+struct ec_slave_al {
+	/** @status: AL status seen last */
+	u16 status;
+	/** @code: AL status code that belongs to it */
+	u16 code;
+	/** @reads: how often a worker has read the two: what was asked for before is older */
+	u32 reads;
+	/** @limit_ms: time limit of each transition to @requested, 0: the usual ones */
+	u32 limit_ms;
+	/** @awaited_ms: that of @awaited */
+	u32 awaited_ms;
+	/**
+	 * @awaited: state that was asked for and is not reached so far, 0: none. It is taken when
+	 * it comes after its time limit
+	 */
+	u8 awaited;
+	/** @requested: state that its worker brings it to */
+	u8 requested;
+};
+
+/** struct ec_slave_note - what is wrong with a slave: slave.c. ec_slave_why() copies texts */
+struct ec_slave_note {
+	/** @lock: protects the texts, @cause, ec_slave.pending, and @error where it changes */
+	raw_spinlock_t lock;
+	/** @error: EC_SLAVE_OK... */
+	u8 error;
+	/** @listed: in the list of the bus; what fails before is reported when it comes there */
+	bool listed;
+	/** @unreported: @why is to be reported then */
+	bool unreported;
+	/** @why: cause of @error */
+	char why[EC_UAPI_REASON];
+	/** @cause: the same for programs */
+	struct ec_cause cause;
+	/** @warning: what is not certain of its process data, empty: nothing */
+	char warning[EC_UAPI_WARNING];
+	/** @sii_flaw: what is wrong with its EEPROM, empty: nothing */
+	char sii_flaw[EC_UAPI_WARNING];
+};
+
+/** struct ec_slave_reply - does a slave reply, and when it is tried again: silent.c, the monitor */
+struct ec_slave_reply {
+	/** @silent: its error is that it does not; it is in its place until it does */
+	bool silent;
+	/** @missed: polls in a row without its reply, while the list is held */
+	u8 missed;
+	/** @retry_ms: distance between the last two tries of what failed */
+	u32 retry_ms;
+	/** @retry_ns: when to try again (ktime), 0: never */
+	aligned_u64 retry_ns;
+};
+
+/** struct ec_slave_work - how the worker brings a slave to its requested state: config/apply.c */
+struct ec_slave_work {
+	/** @job: does it */
+	struct ec_job job;
+	/** @runs: of @job that are queued or in progress */
+	atomic_t runs;
+	/** @reconfigure: go through INIT and configure again */
+	bool reconfigure;
+	/** @clean: nothing of a configuration is left in its registers */
+	bool clean;
+	/** @ours: this master has brought it from INIT to PREOP or BOOT, not an earlier one */
+	bool ours;
+};
+
+/** struct ec_slave - one slave. What is not a part with an owner is fixed after the scan */
+struct ec_slave {
+	/** @kref: reference count; the master's table holds one */
+	struct kref kref;
+	/** @bus: bus */
+	struct ec_bus *bus;
+	/** @ext: parts of higher layers in the memory of the slave, initially zeroed */
+	void *ext[EC_N_EXT];
+	/** @stop: ends what callers and its worker wait for */
+	struct ec_stop stop;
+	/** @mbox: its mailbox */
+	struct ec_mbox mbox;
+	/** @station: station address */
+	u16 station;
+	/** @eeprom: as read */
+	struct ec_slave_eeprom eeprom;
+	/** @info: fixed area of the EEPROM */
 	struct ec_sii_info info;
+	/** @mbox_doubt: in what it is inconsistent about the mailbox, enum ec_sii_mbox_doubt */
 	u8 mbox_doubt;
+	/** @general: general category */
 	struct ec_sii_general general;
+	/** @has_general: it has one */
 	bool has_general;
+	/** @sms: SyncManagers of the EEPROM */
 	struct ec_sii_sm sms[EC_MAX_SM];
+	/** @n_sms: entries in @sms */
 	unsigned int n_sms;
+	/** @emulation: AL status follows AL control */
 	bool emulation;
+	/** @group: group name of the EEPROM */
 	char group[EC_UAPI_STRING];
+	/** @image: name of the picture */
 	char image[EC_UAPI_STRING];
+	/** @order: order number */
 	char order[EC_UAPI_STRING];
+	/** @name: name */
 	char name[EC_UAPI_STRING];
 
+	/* of the last scan: scan_*.c and known.c, under bus->topo */
+	/** @device: device number */
 	u64 device;
+	/** @by_device: in bus->known.present while it is in the list */
 	struct hlist_node by_device;
+	/** @kept_station: station address with which it was found, 0: none of its own */
 	u16 kept_station;
+	/** @position: ring position */
 	u16 position;
+	/** @regs: registers 0x0000-0x0009 */
 	u8 regs[EC_INFO_SIZE];
+	/** @dl_status: register 0x0110 */
 	u16 dl_status;
+	/** @dl_seen: the same, read later because of an event; the monitor's */
 	u16 dl_seen;
-	struct ec_ports ports;
+	/** @alias: effective alias */
 	u16 alias;
+	/** @identification: explicit device identification read when it was found, 0: none */
 	u16 identification;
+	/** @alias_first: ring position + 1 of the first one with this alias; 0: it is this one */
 	u16 alias_first;
+	/** @recv: receive times at the ports */
 	u32 recv[EC_MAX_PORT];
+	/** @delay_only: it has receive times, but no other register of a clock (0x0928) */
 	bool delay_only;
+	/** @identified: it was asked for @identification, or has none */
 	bool identified;
-	struct ec_slave *at[EC_MAX_PORT];
-	u8 upstream;
-	bool hung;
-	u8 parent_port;
-	char parent[EC_UAPI_STRING];
-	char first_lost[40];
-	struct ec_break lost_at;
-	bool topology_inconsistent;
-
-	struct ec_pdo_list sm_pdos[EC_MAX_SM];
-	struct ec_pdo_list free_pdos;
-	bool pdos_known;
-	bool pdos_unread;
-	u32 pdos_again_ms;
-	aligned_u64 pdos_again_ns;
-	struct ec_names names;
-	bool names_done;
-
-	struct ec_dict dict;
-	u16 al_status;
-	u16 al_code;
-	u32 al_reads;
-	u8 requested;
-	u32 limit_ms;
-	u8 awaited;
-	u32 awaited_ms;
-	struct ec_pending pending;
-	raw_spinlock_t note_lock;
-	u8 error;
-	char why[EC_UAPI_REASON];
-	struct ec_cause cause;
-	char warning[EC_UAPI_WARNING];
-	u32 found;
+	/** @listing: it is in the list that is being made; the monitor's */
 	bool listing;
-	bool listed;
-	bool unreported;
-	char sii_flaw[EC_UAPI_WARNING];
-	bool silent;
-	u8 missed;
-	aligned_u64 retry_ns;
-	u32 retry_ms;
-	u64 seen_ns;
-	struct ec_job job;
-	atomic_t works;
+	/** @unshown: messages that did not show in the IRQ field: mailboxes.c */
 	u8 unshown;
+	/** @found: the list that it was in first, counted by bus->lists */
+	u32 found;
+
+	/* parts with an owner */
+	/** @ports: loop control: ports.c, the monitor's */
+	struct ec_ports ports;
+	/** @graph: its neighbors */
+	struct ec_slave_graph graph;
+	/** @lost: if it was lost */
+	struct ec_slave_lost lost;
+	/** @pdos: its PDOs */
+	struct ec_slave_pdos pdos;
+	/** @dict: answers about its object dictionary: dict.c */
+	struct ec_dict dict;
+	/** @al: its AL state */
+	struct ec_slave_al al;
+	/** @pending: changes that have no event so far: pending.c */
+	struct ec_pending pending;
+	/** @note: what is wrong with it */
+	struct ec_slave_note note;
+	/** @reply: does it reply */
+	struct ec_slave_reply reply;
+	/** @work: its worker */
+	struct ec_slave_work work;
+	/** @lock: one worker or caller at a time changes its state */
 	struct mutex lock;
-	bool read_pdos;
-	bool reconfigure;
-	bool clean;
-	bool ours;
 };
 
 /* @fmt is a constant: it identifies what may repeat, see ec_log_event() */
@@ -302,7 +343,7 @@ static inline void ec_slave_changed(struct ec_slave *slave)
  */
 static inline bool ec_slave_busy(const struct ec_slave *slave)
 {
-	return atomic_read_acquire(&slave->works) > 0;
+	return atomic_read_acquire(&slave->work.runs) > 0;
 }
 
 /**
@@ -314,12 +355,12 @@ static inline bool ec_slave_busy(const struct ec_slave *slave)
  */
 static inline bool ec_slave_pdos_pending(const struct ec_slave *s)
 {
-	u16 al = READ_ONCE(s->al_status);
-	u64 again = ec_read64(&s->pdos_again_ns);
+	u16 al = READ_ONCE(s->al.status);
+	u64 again = ec_read64(&s->pdos.again_ns);
 
-	if (READ_ONCE(s->pdos_known) && (!again || ktime_get_ns() < again))
+	if (READ_ONCE(s->pdos.known) && (!again || ktime_get_ns() < again))
 		return false;
-	return READ_ONCE(s->error) == EC_SLAVE_OK && s->sii &&
+	return READ_ONCE(s->note.error) == EC_SLAVE_OK && s->eeprom.data &&
 	       ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_COE &&
 	       (al == EC_AL_PREOP || al == EC_AL_SAFEOP || al == EC_AL_OP);
 }

@@ -33,11 +33,11 @@ static bool has_object(const struct ec_pdo_list *l, u16 index)
  */
 void ec_slave_note_profile(struct ec_slave *slave)
 {
-	bool drive = has_object(&slave->free_pdos, STATUSWORD);
+	bool drive = has_object(&slave->pdos.free, STATUSWORD);
 	unsigned int sm;
 
-	for (sm = 0; sm < ARRAY_SIZE(slave->sm_pdos); sm++)
-		drive |= has_object(&slave->sm_pdos[sm], STATUSWORD);
+	for (sm = 0; sm < ARRAY_SIZE(slave->pdos.sm); sm++)
+		drive |= has_object(&slave->pdos.sm[sm], STATUSWORD);
 	WRITE_ONCE(slave->mbox.profile, drive ? EC_PROFILE_DRIVE : 0);
 }
 
@@ -57,10 +57,10 @@ int ec_slave_read_pdos(struct ec_slave *slave)
 		struct ec_sii_pdo_iter it;
 		struct ec_sii_pdo pdo;
 
-		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		ec_sii_pdo_iter_init(&it, slave->eeprom.data, slave->eeprom.bytes, types[t]);
 		while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
 			struct ec_pdo_list *l = pdo.sm < EC_MAX_SM ?
-				&slave->sm_pdos[pdo.sm] : &slave->free_pdos;
+				&slave->pdos.sm[pdo.sm] : &slave->pdos.free;
 			struct ec_pdo *p = ec_pdo_add(l, pdo.index, pdo.name);
 
 			if (!p)
@@ -113,7 +113,7 @@ static unsigned int slave_pdo_collect(const struct ec_slave *slave, u64 *v, unsi
 	unsigned int t, i, n = 0;
 
 	for (t = 0; t < ARRAY_SIZE(types); t++) {
-		ec_sii_pdo_iter_init(&it, slave->sii, slave->sii_bytes, types[t]);
+		ec_sii_pdo_iter_init(&it, slave->eeprom.data, slave->eeprom.bytes, types[t]);
 		while (ec_sii_pdo_iter_next(&it, &pdo) == 1) {
 			if (!v)
 				n += 1 + pdo.entries;
@@ -208,9 +208,9 @@ const struct ec_pdo *ec_slave_find_pdo(const struct ec_slave *slave, u16 index)
 
 	ec_bus_assert_stays(slave->bus);
 	for (i = 0; i < EC_MAX_SM; i++) {
-		p = ec_pdo_find(&slave->sm_pdos[i], index);
+		p = ec_pdo_find(&slave->pdos.sm[i], index);
 		if (p)
 			return p;
 	}
-	return ec_pdo_find(&slave->free_pdos, index);
+	return ec_pdo_find(&slave->pdos.free, index);
 }

@@ -17,9 +17,9 @@ bool ec_survey_is_due(const struct ec_slave *s, u64 now)
 {
 	u64 at;
 
-	if (!READ_ONCE(s->error) && !READ_ONCE(s->silent))
+	if (!READ_ONCE(s->note.error) && !READ_ONCE(s->reply.silent))
 		return false;
-	at = ec_read64(&s->retry_ns);
+	at = ec_read64(&s->reply.retry_ns);
 	return at && now >= at;
 }
 
@@ -50,18 +50,18 @@ void ec_survey(const struct ec_bus *bus, struct ec_survey *survey)
 
 	*survey = (struct ec_survey){ .chores = READ_ONCE(bus->pending) };
 	ec_for_each_slave(s, bus) {
-		u8 want = READ_ONCE(s->requested);
+		u8 want = READ_ONCE(s->al.requested);
 
 		survey->chores |= ec_slave_busy(s) || ec_survey_is_due(s, now) ||
 				  ec_slave_pdos_pending(s);
 		survey->exchange |= ec_mbox_in_use(&s->mbox);
-		survey->silent |= READ_ONCE(s->silent);
+		survey->silent |= READ_ONCE(s->reply.silent);
 		survey->polled |= ec_mailboxes_polled(s);
-		survey->failed |= READ_ONCE(s->error) || READ_ONCE(s->silent);
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+		survey->failed |= READ_ONCE(s->note.error) || READ_ONCE(s->reply.silent);
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		survey->state = survey->state ?: want;
-		survey->differ |= want != survey->state || READ_ONCE(s->al_status) != want;
+		survey->differ |= want != survey->state || READ_ONCE(s->al.status) != want;
 		survey->replying++;
 	}
 }

@@ -35,7 +35,7 @@ static bool is_closable(const struct ec_slave *s)
 {
 	const struct ec_slave *up = ec_graph_parent(s);
 
-	return up && s->parent_port && !up->ports.fixed;
+	return up && s->graph.parent_port && !up->ports.fixed;
 }
 
 static unsigned int weigh(struct search *f)
@@ -74,7 +74,7 @@ static struct ec_slave *middle(struct search *f)
 static bool returns_without(struct search *f, const struct ec_slave *s)
 {
 	const struct ec_slave *up = ec_graph_parent(s);
-	u8 closed = ec_loops_with(up->ports.loops, s->parent_port, EC_LOOP_CLOSED);
+	u8 closed = ec_loops_with(up->ports.loops, s->graph.parent_port, EC_LOOP_CLOSED);
 	u8 open = up->ports.loops, any;
 	struct ec_dg dg[] = {
 		EC_FPWR(up->station, EC_REG_DL_LOOPS, 1, &closed),
@@ -119,7 +119,7 @@ static void find_top(struct search *f)
 static bool close_top(const struct search *f)
 {
 	struct ec_slave *up = ec_graph_parent(f->top);
-	u8 closed = ec_loops_with(up->ports.loops, f->top->parent_port, EC_LOOP_CLOSED);
+	u8 closed = ec_loops_with(up->ports.loops, f->top->graph.parent_port, EC_LOOP_CLOSED);
 	unsigned int i;
 	int ret = -EIO;
 
@@ -128,8 +128,8 @@ static bool close_top(const struct search *f)
 	if (ret)
 		return false;
 	up->ports.loops = closed;
-	WRITE_ONCE(up->ports.door[f->top->parent_port].kept, EC_PORT_SWALLOWS);
-	ec_slave_report(up, EC_EVENT_PORT_KEPT, f->top->parent_port, EC_PORT_SWALLOWS);
+	WRITE_ONCE(up->ports.door[f->top->graph.parent_port].kept, EC_PORT_SWALLOWS);
+	ec_slave_report(up, EC_EVENT_PORT_KEPT, f->top->graph.parent_port, EC_PORT_SWALLOWS);
 	return true;
 }
 

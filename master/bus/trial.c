@@ -53,7 +53,7 @@ static bool has_lost_address(const struct ec_slave *s, const struct ec_dg *own,
 		return false;
 	return !ec_graph_parent(s) ||
 	       (!up->err && up->wkc == 1 &&
-		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->parent_port));
+		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->graph.parent_port));
 }
 
 /* The only slave of the list that has lost its address; 0: there is none, or more */

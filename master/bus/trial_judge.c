@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Which device is behind a port at which not every one is let in? Each access to its EEPROM is a trial:
- * one reads the result of the access before, and begins the next one. The device is in INIT.
+ * Which device is behind a port at which not every one is let in? Each access to its EEPROM is a
+ * trial: one reads the result of the access before, and begins the next one. The device is in INIT.
  */
 #include <linux/ctype.h>
 #include <linux/delay.h>
@@ -209,7 +209,7 @@ static void take_string(const u8 *data, size_t len, unsigned int index, char *na
 }
 
 /* For users only: without it there are the numbers. */
-static int read_name(struct eeprom *e, const struct places *p, struct ec_behind *is)
+static int judge_read_name(struct eeprom *e, const struct places *p, struct ec_behind *is)
 {
 	u8 strings[STRINGS], index[4];
 	size_t len = min_t(size_t, p->string_bytes, sizeof(strings));
@@ -243,7 +243,7 @@ static int read_identity(struct eeprom *e, struct places *p, unsigned int asks,
 }
 
 /* Open the ports of a device that stays outside, for the count of the next trial. */
-static void leave(struct ec_trials *t, const struct ec_guest *g)
+static void judge_leave(struct ec_trials *t, const struct ec_guest *g)
 {
 	static const u8 open[1];
 
@@ -252,7 +252,7 @@ static void leave(struct ec_trials *t, const struct ec_guest *g)
 	judge_run(t, g);
 }
 
-static bool is_new(struct ec_trials *t, const struct ec_behind *is)
+static bool is_unlisted(struct ec_trials *t, const struct ec_behind *is)
 {
 	struct ec_behind was;
 
@@ -317,9 +317,9 @@ int ec_trial_judge(struct ec_trials *t, struct ec_guest *g)
 	if (!kept)
 		return 0;
 	t->is.kept = kept;
-	if (kept != EC_PORT_UNREADABLE && is_new(t, &t->is) &&
+	if (kept != EC_PORT_UNREADABLE && is_unlisted(t, &t->is) &&
 	    ((asks & EC_BORDER_ID) || !find_places(&e, &p)))
-		read_name(&e, &p, &t->is);
-	leave(t, g);
+		judge_read_name(&e, &p, &t->is);
+	judge_leave(t, g);
 	return -EPERM;
 }

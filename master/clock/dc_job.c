@@ -39,7 +39,8 @@ void ec_dc_job_free(struct ec_dc_job *j)
 
 static bool dc_job_has_times(const struct ec_slave *s)
 {
-	return ec_slave_features(s) & EC_FEAT_DC && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+	return ec_slave_features(s) & EC_FEAT_DC &&
+	       READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED;
 }
 
 static bool is_clock(const struct ec_dc_job *j, unsigned int i)
@@ -54,9 +55,9 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 
 	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = up ? up->position : EC_DC_NONE;
-	n->entry = s->upstream;
+	n->entry = s->graph.upstream;
 	n->dc = dc_job_has_times(s);
-	n->parent_port = up ? s->parent_port : 0;
+	n->parent_port = up ? s->graph.parent_port : 0;
 	n->open = ec_graph_open_ports(s->dl_status);
 }
 

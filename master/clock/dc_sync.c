@@ -34,7 +34,7 @@ static bool dc_sync_settled(const struct ec_dc *dc)
 /* The step to @state is obsolete. The code that changed the request has queued the worker. */
 static bool dc_sync_canceled(const struct ec_slave *s, u8 state)
 {
-	return READ_ONCE(s->requested) < state || ec_stop_worker(&s->stop);
+	return READ_ONCE(s->al.requested) < state || ec_stop_worker(&s->stop);
 }
 
 /**
@@ -97,11 +97,11 @@ int ec_dc_sync_stop(struct ec_slave *s)
 void ec_dc_sync_again(struct ec_slave *s)
 {
 	if (!READ_ONCE(ec_clock_of(s)->sync_unsynchronized) ||
-	    READ_ONCE(s->requested) <= EC_AL_PREOP || READ_ONCE(s->stop.gone))
+	    READ_ONCE(s->al.requested) <= EC_AL_PREOP || READ_ONCE(s->stop.gone))
 		return;
 	ec_slave_warn(s,
 		      "clock synchronized only after SYNC was started; going through INIT to restart SYNC\n");
-	WRITE_ONCE(s->reconfigure, true);
+	WRITE_ONCE(s->work.reconfigure, true);
 	ec_slave_kick(s);
 }
 
@@ -227,7 +227,7 @@ void ec_dc_sync_compare(struct ec_slave *s, const struct ec_dc_sync *c)
 			      c->assign);
 		return;
 	}
-	n = s->sii ? ec_sii_decode_dcs(s->sii, s->sii_bytes, dc, MODES) : 0;
+	n = s->eeprom.data ? ec_sii_decode_dcs(s->eeprom.data, s->eeprom.bytes, dc, MODES) : 0;
 	for (i = 0; i < min(n, MODES); i++) {
 		if (dc[i].assign == c->assign)
 			return;
@@ -359,7 +359,7 @@ struct ec_result ec_dc_sync_check(struct ec_slave *s, const struct ec_dc_sync *c
 		r = ec_dc_sync_start(s, c);
 		if (r.err) {
 			/* SYNC may be off now; the configuration starts it again */
-			WRITE_ONCE(s->reconfigure, true);
+			WRITE_ONCE(s->work.reconfigure, true);
 			return r;
 		}
 	}

@@ -23,7 +23,8 @@
  */
 static void hold_mailbox(struct ec_slave *s)
 {
-	if (ec_setup_of(s)->mailbox.state == EC_CLAIM_HELD || READ_ONCE(s->requested) < EC_AL_PREOP)
+	if (ec_setup_of(s)->mailbox.state == EC_CLAIM_HELD ||
+	    READ_ONCE(s->al.requested) < EC_AL_PREOP)
 		return;
 	ec_mbox_claim(&s->mbox, &ec_setup_of(s)->mailbox, EC_MBOX_ALL, HOLD_MS);
 }
@@ -46,9 +47,9 @@ static void in_init(struct ec_slave *s)
 		ret = ec_dc_sync_stop(s) ?: ret;
 	ec_mbox_reset(&s->mbox);
 	ec_setup_of(s)->op_only = 0;
-	WRITE_ONCE(s->reconfigure, false);
-	s->ours = false;
-	s->clean = !ret;
+	WRITE_ONCE(s->work.reconfigure, false);
+	s->work.ours = false;
+	s->work.clean = !ret;
 }
 
 /* Any state to INIT (ETG.1000.6 clause 6.4.1). */
@@ -67,8 +68,8 @@ static struct ec_result to_init(struct ec_slave *s)
 /* An error that stays in spite of acknowledges: INIT ends it, as a slave obeys that always. */
 static struct ec_result acknowledge(struct ec_slave *s)
 {
-	u8 state = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
-	u16 code = READ_ONCE(s->al_code);
+	u8 state = READ_ONCE(s->al.status) & EC_AL_STATE_MASK;
+	u16 code = READ_ONCE(s->al.code);
 	unsigned int i;
 	int ret;
 
@@ -89,7 +90,7 @@ static struct ec_result acknowledge(struct ec_slave *s)
 /* The master has brought it from INIT to @state. */
 static void has_left_init(struct ec_slave *s, u8 state)
 {
-	s->ours = true;
+	s->work.ours = true;
 	if (state == EC_AL_PREOP)
 		release_mailbox(s);
 }
@@ -103,7 +104,7 @@ static struct ec_result leave_init(struct ec_slave *s, u8 state)
 	if (boot && !(s->info.boot.rx_size && s->info.boot.tx_size))
 		return ec_result_fail(s, -EOPNOTSUPP, EC_CAUSE(REFUSED, .state = EC_AL_BOOT),
 				      "BOOT not possible: no bootstrap mailbox in the SII");
-	s->ours = false;
+	s->work.ours = false;
 	ec_replay_forget(s);
 	ret = ec_apply_set_by(s, state, ec_leave_init);
 	/* any AL status code may be due to the event of SM1: try again without */
@@ -126,7 +127,7 @@ static void back_in_preop(struct ec_slave *s)
 {
 	int ret = ec_slave_has_clock(s) ? ec_dc_sync_stop(s) : 0;
 
-	s->clean = !ec_apply_clear_pdos(s) && !ret;
+	s->work.clean = !ec_apply_clear_pdos(s) && !ret;
 }
 
 static struct ec_result step_down(struct ec_slave *s, u8 want)
@@ -134,13 +135,13 @@ static struct ec_result step_down(struct ec_slave *s, u8 want)
 	int ret = ec_apply_op_only_off(s) ?: ec_apply_set(s, want);
 
 	/* process data have ended before a slow slave was down: it did not refuse anything */
-	if (ret == -EPROTO && READ_ONCE(s->al_code) == EC_AL_CODE_SM_WATCHDOG)
+	if (ret == -EPROTO && READ_ONCE(s->al.code) == EC_AL_CODE_SM_WATCHDOG)
 		ret = ec_apply_set(s, want);
 	if (ret == -EPROTO) {
 		/* the stronger step; the way up from there leads to @want */
 		ec_slave_warn(s, "%s refused: AL status code 0x%04x (%s); INIT follows\n",
-			      ec_al_state_name(want), READ_ONCE(s->al_code),
-			      ec_al_code_text(READ_ONCE(s->al_code)));
+			      ec_al_state_name(want), READ_ONCE(s->al.code),
+			      ec_al_code_text(READ_ONCE(s->al.code)));
 		return to_init(s);
 	}
 	if (!ret && want == EC_AL_PREOP)
@@ -151,10 +152,10 @@ static struct ec_result step_down(struct ec_slave *s, u8 want)
 /* What was asked for has come after its time limit: the rest of that step. */
 static void arrived(struct ec_slave *s, u8 state)
 {
-	WRITE_ONCE(s->awaited, 0);
+	WRITE_ONCE(s->al.awaited, 0);
 	if (state == EC_AL_INIT)
 		in_init(s);
-	else if (!s->ours)
+	else if (!s->work.ours)
 		has_left_init(s, state);
 	else if (state == EC_AL_PREOP)
 		back_in_preop(s);
@@ -171,7 +172,7 @@ static void take_plan(struct ec_slave *s)
 	if (!c || !smp_load_acquire(&c->wanted->active) || setup->active_config == c)
 		return;
 	setup->active_config = c;
-	WRITE_ONCE(s->reconfigure, true);
+	WRITE_ONCE(s->work.reconfigure, true);
 }
 
 /*
@@ -185,9 +186,9 @@ static int start_clean(struct ec_slave *s)
 	if (ret == -ECANCELED)
 		return ret;
 	if (ret)
-		s->clean = false;
+		s->work.clean = false;
 	else
-		WRITE_ONCE(s->reconfigure, false);
+		WRITE_ONCE(s->work.reconfigure, false);
 	return 0;
 }
 
@@ -201,19 +202,19 @@ static struct ec_result apply_step(struct ec_slave *s, bool *there)
 
 	lockdep_assert_held(&s->lock);
 	setup->heading = want;
-	if (!r.err && READ_ONCE(s->al_status) & EC_AL_ERROR && !s->emulation)
+	if (!r.err && READ_ONCE(s->al.status) & EC_AL_ERROR && !s->emulation)
 		r = acknowledge(s);
 	if (r.err)
 		return r;
-	cur = READ_ONCE(s->al_status) & EC_AL_STATE_MASK;
-	if (cur == READ_ONCE(s->awaited)) {
+	cur = READ_ONCE(s->al.status) & EC_AL_STATE_MASK;
+	if (cur == READ_ONCE(s->al.awaited)) {
 		arrived(s, cur);
 		return r;
 	}
-	anew = READ_ONCE(s->reconfigure) && want > EC_AL_PREOP;
-	if (cur == EC_AL_PREOP && s->clean && s->ours && anew)
+	anew = READ_ONCE(s->work.reconfigure) && want > EC_AL_PREOP;
+	if (cur == EC_AL_PREOP && s->work.clean && s->work.ours && anew)
 		return EC_RESULT(start_clean(s));
-	if (cur != EC_AL_INIT && (!s->ours || anew))
+	if (cur != EC_AL_INIT && (!s->work.ours || anew))
 		return to_init(s);
 	if (setup->mapped && cur <= EC_AL_PREOP && want <= EC_AL_PREOP)
 		return EC_RESULT(ec_apply_clear_fmmus(s));
@@ -246,12 +247,12 @@ static struct ec_result apply_step(struct ec_slave *s, bool *there)
 static void log_return(struct ec_slave *s)
 {
 	const struct ec_config *c = ec_setup_of(s)->active_config;
-	u64 ms = div_u64(ktime_get_ns() - s->seen_ns, NSEC_PER_MSEC);
+	u64 ms = div_u64(ktime_get_ns() - s->lost.seen_ns, NSEC_PER_MSEC);
 
-	if (s->seen_ns && c && READ_ONCE(s->al_status) == EC_AL_OP)
+	if (s->lost.seen_ns && c && READ_ONCE(s->al.status) == EC_AL_OP)
 		ec_pending_back(s, ms);
-	if (!c || READ_ONCE(s->al_status) == EC_AL_OP)
-		s->seen_ns = 0;
+	if (!c || READ_ONCE(s->al.status) == EC_AL_OP)
+		s->lost.seen_ns = 0;
 }
 
 /**
@@ -273,19 +274,19 @@ void ec_apply(struct ec_slave *s)
 		r = apply_step(s, &there);
 	}
 	release_mailbox(s);
-	if (there && ec_setup_of(s)->active_config && READ_ONCE(s->al_status) == EC_AL_OP)
+	if (there && ec_setup_of(s)->active_config && READ_ONCE(s->al.status) == EC_AL_OP)
 		ec_replay_reached_op(s);
 	if (there && ec_slave_set_ok(s, false)) {
-		s->retry_ms = 0;
+		s->reply.retry_ms = 0;
 		log_return(s);
 	}
 	if (!there)
 		ec_apply_plan(s, r.err);
 	if (there && ec_identify_is_due(s))
 		ec_identify(s);
-	if (there && READ_ONCE(s->read_pdos) && ec_slave_pdos_pending(s))
+	if (there && READ_ONCE(s->pdos.wanted) && ec_slave_pdos_pending(s))
 		ec_slave_read_coe_pdos(s);
-	if (there && READ_ONCE(s->read_pdos) && ec_names_pending(s))
+	if (there && READ_ONCE(s->pdos.wanted) && ec_names_pending(s))
 		ec_names_read(s);
 	WRITE_ONCE(s->stop.worker, NULL);
 	mutex_unlock(&s->lock);

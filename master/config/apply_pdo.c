@@ -200,7 +200,7 @@ static const struct ec_pdo_entry *first_wrong(const struct ec_pdo_list *want,
 static struct ec_result apply_pdo_compare(struct ec_slave *s, const struct ec_config *c,
 					  unsigned int sm, const char *cause)
 {
-	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->sm_pdos[sm];
+	const struct ec_pdo_list *want = ec_apply_pdos_of(s, c, sm), *have = &s->pdos.sm[sm];
 	const struct ec_pdo_entry *e, *h;
 	const struct ec_setup *setup = ec_setup_of(s);
 	bool refused = cause == setup->pdo_refusal;
@@ -220,12 +220,14 @@ static struct ec_result apply_pdo_compare(struct ec_slave *s, const struct ec_co
 	ec_slave_set_warning(s, "SM%u bit %u: registered 0x%04x:%02x, %u bit; slave has %s; %.110s",
 			     sm, bit, e->index, e->sub, e->bits, has, cause);
 	if (ec_config_flag(c, EC_FLAG_ANY_PDOS)) {
-		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->warning, EC_FLAG_ANY_PDOS);
+		ec_slave_warn(s, "%s; flag %s set, continuing\n", s->note.warning,
+			      EC_FLAG_ANY_PDOS);
 		return EC_RESULT(0);
 	}
 	r = ec_result_fail(s, -EOPNOTSUPP,
 			   EC_CAUSE(PDO, .sm = sm, .object = refused ? setup->pdo_cause.object : 0,
-				    .code = refused ? setup->pdo_cause.code : 0), "%s", s->warning);
+				    .code = refused ? setup->pdo_cause.code : 0), "%s",
+			   s->note.warning);
 	ec_slave_set_warning(s, "%s", "");
 	return r;
 }
@@ -234,7 +236,7 @@ static void not_certain(struct ec_slave *s, unsigned int sm, const char *why)
 {
 	ec_slave_set_warning(s, "process data of SM%u may belong to other objects: %.130s", sm,
 			     why);
-	ec_slave_warn(s, "%s\n", s->warning);
+	ec_slave_warn(s, "%s\n", s->note.warning);
 }
 
 /* The slave refused: what does it have instead? */
@@ -259,7 +261,7 @@ static struct ec_result apply_pdo_check(struct ec_slave *s, const struct ec_conf
 static struct ec_result check_made(struct ec_slave *s, const struct ec_config *c, unsigned int sm,
 				   const struct ec_startup *u)
 {
-	u32 bytes = ec_pdo_list_bytes(&s->sm_pdos[sm]);
+	u32 bytes = ec_pdo_list_bytes(&s->pdos.sm[sm]);
 	struct ec_result r;
 	char sdo[80];
 	unsigned int i;
@@ -353,11 +355,11 @@ static void note_names(struct ec_slave *s, unsigned int sm, const struct ec_pdo_
 	lockdep_assert_held(&s->lock);
 	e = first_wrong(want, have, &bit);
 	h = e ? ec_pdo_list_at(have, bit) : NULL;
-	if (!h || s->warning[0])
+	if (!h || s->note.warning[0])
 		return;
 	ec_slave_set_warning(s, "SM%u bit %u: registered as 0x%04x:%02x, named 0x%04x:%02x in the EEPROM; same layout, and without CoE only the name differs",
 			     sm, bit, e->index, e->sub, h->index, h->sub);
-	ec_slave_warn(s, "%s\n", s->warning);
+	ec_slave_warn(s, "%s\n", s->note.warning);
 }
 
 /* Without CoE the PDOs cannot be changed, and the EEPROM has what they are. */
@@ -371,10 +373,10 @@ static struct ec_result check_fixed(struct ec_slave *s, const struct ec_config *
 	for (sm = 0; sm < s->n_sms && !r.err; sm++) {
 		if (!c->sm[sm].explicit || !first_wrong(&c->sm[sm].pdos, &nothing, &bit))
 			continue;
-		if (s->sm_pdos[sm].n && same_direction(s, c, sm) &&
-		    names_differ(&c->sm[sm].pdos, &s->sm_pdos[sm]))
-			note_names(s, sm, &c->sm[sm].pdos, &s->sm_pdos[sm]);
-		else if (s->sm_pdos[sm].n)
+		if (s->pdos.sm[sm].n && same_direction(s, c, sm) &&
+		    names_differ(&c->sm[sm].pdos, &s->pdos.sm[sm]))
+			note_names(s, sm, &c->sm[sm].pdos, &s->pdos.sm[sm]);
+		else if (s->pdos.sm[sm].n)
 			r = apply_pdo_compare(s, c, sm, "without CoE its PDOs cannot be changed");
 		else
 			not_certain(s, sm, "the slave has no CoE, and its EEPROM lists no PDOs");
@@ -397,8 +399,8 @@ const struct ec_pdo_list *ec_apply_pdos_of(const struct ec_slave *s, const struc
 {
 	lockdep_assert_held(&s->lock);
 	if (!c || ec_setup_of(s)->made & BIT(sm))
-		return &s->sm_pdos[sm];
-	return c->sm[sm].explicit || c->sm[sm].pdos.n ? &c->sm[sm].pdos : &s->sm_pdos[sm];
+		return &s->pdos.sm[sm];
+	return c->sm[sm].explicit || c->sm[sm].pdos.n ? &c->sm[sm].pdos : &s->pdos.sm[sm];
 }
 
 /**
@@ -433,7 +435,7 @@ struct ec_result ec_apply_pdos(struct ec_slave *s, const struct ec_config *c)
 			r = take_made(s, c, sm, u);
 			continue;
 		}
-		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->sm_pdos[sm]))
+		if (!c->sm[sm].explicit && ec_pdo_list_same(l, &s->pdos.sm[sm]))
 			continue;
 		ret = write_sm_pdos(s, sm, l);
 		if (!ret)

@@ -15,16 +15,16 @@ static void note_cause(struct ec_slave *s, u8 state, int err)
 {
 	const struct ec_setup *setup = ec_setup_of(s);
 	const char *refusal = setup->pdo_refusal;
-	u16 code = READ_ONCE(s->al_code);
+	u16 code = READ_ONCE(s->al.code);
 
 	if (err == -EPROTO && state == EC_AL_SAFEOP && refusal[0])
 		/* the first cause, not only what follows from it */
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, &setup->pdo_cause,
 			      "%.160s; then SAFEOP refused: AL status code 0x%04x (%s)", refusal,
 			      code, ec_al_code_text(code));
-	else if (state == EC_AL_PREOP && s->sii_flaw[0] && (err == -EPROTO || err == -ETIME))
+	else if (state == EC_AL_PREOP && s->note.sii_flaw[0] && (err == -EPROTO || err == -ETIME))
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(EEPROM, .state = state),
-			      "%.170s; then PREOP %s", s->sii_flaw,
+			      "%.170s; then PREOP %s", s->note.sii_flaw,
 			      err == -ETIME ? "not reached in time" : "refused");
 	else if (err == -EPROTO)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED,
@@ -34,7 +34,7 @@ static void note_cause(struct ec_slave *s, u8 state, int err)
 	else if (err == -ETIME)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(SLOW, .state = state),
 			      "%s not reached in time, AL state %s", ec_al_state_name(state),
-			      ec_al_state_name(READ_ONCE(s->al_status) & EC_AL_STATE_MASK));
+			      ec_al_state_name(READ_ONCE(s->al.status) & EC_AL_STATE_MASK));
 	else if (err == -ENOMEM)
 		ec_slave_fail(s, EC_SLAVE_CONFIG_FAILED, EC_CAUSE(MEMORY, .state = state),
 			      "no memory before %s, the master tries again; free memory of this computer",
@@ -80,7 +80,7 @@ struct ec_result ec_apply_report(struct ec_slave *s, u8 state, struct ec_result 
  */
 static bool is_transient(const struct ec_slave *s, int err)
 {
-	u16 code = READ_ONCE(s->al_code);
+	u16 code = READ_ONCE(s->al.code);
 
 	if (err == -EPROTO)
 		return code == EC_AL_CODE_NO_OUTPUTS || code == EC_AL_CODE_SM_WATCHDOG;
@@ -94,7 +94,7 @@ static bool is_transient(const struct ec_slave *s, int err)
  */
 static bool is_undecided(const struct ec_slave *s, int err)
 {
-	return s->retry_ms && (!err || is_aborted(err));
+	return s->reply.retry_ms && (!err || is_aborted(err));
 }
 
 /**
@@ -107,12 +107,12 @@ static bool is_undecided(const struct ec_slave *s, int err)
 void ec_apply_plan(struct ec_slave *s, int err)
 {
 	lockdep_assert_held(&s->lock);
-	if (READ_ONCE(s->error) != EC_SLAVE_CONFIG_FAILED ||
+	if (READ_ONCE(s->note.error) != EC_SLAVE_CONFIG_FAILED ||
 	    !(is_transient(s, err) || is_undecided(s, err)))
 		return;
 	/* wait that limit once more: another request may restart the transition */
-	if (err == -ETIME && READ_ONCE(s->awaited))
-		s->retry_ms = max(s->retry_ms, s->awaited_ms / 2);
+	if (err == -ETIME && READ_ONCE(s->al.awaited))
+		s->reply.retry_ms = max(s->reply.retry_ms, s->al.awaited_ms / 2);
 	ec_slave_retry(s, EC_RETRY_MAX_MS);
 }
 
@@ -156,7 +156,7 @@ int ec_apply_set_by(struct ec_slave *s, u8 state,
 	ec_apply_waits_for(s, state == EC_AL_OP ? "the slave to reach OP" :
 			      state == EC_AL_SAFEOP ? "the slave to reach SAFEOP" :
 						      "the slave to change its state");
-	ret = set(s, state, apply_limit(s, READ_ONCE(s->al_status) & EC_AL_STATE_MASK, state));
+	ret = set(s, state, apply_limit(s, READ_ONCE(s->al.status) & EC_AL_STATE_MASK, state));
 	ec_apply_waits_for(s, NULL);
 	return ret;
 }

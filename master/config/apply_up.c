@@ -82,7 +82,7 @@ struct ec_result ec_apply_to_safeop(struct ec_slave *s, const struct ec_config *
 
 	if (r.err)
 		return r;
-	s->clean = false;
+	s->work.clean = false;
 	ec_setup_of(s)->pdo_refusal[0] = '\0';
 	ec_slave_clear_warning(s);
 	if (uses_found_pdos(s, c) && ec_slave_pdos_pending(s))

@@ -27,7 +27,7 @@ static int slave_defaults(struct ec_config *c, const struct ec_slave *slave)
 			continue;
 		c->sm[sm].dir = slave->sms[sm].control & EC_SM_DIR_WRITE ?
 				EC_CFG_DIR_OUTPUT : EC_CFG_DIR_INPUT;
-		ret = ec_pdo_list_copy(&c->sm[sm].pdos, &slave->sm_pdos[sm]);
+		ret = ec_pdo_list_copy(&c->sm[sm].pdos, &slave->pdos.sm[sm]);
 	}
 	up_read(&slave->bus->topo);
 	return ret;
@@ -200,7 +200,7 @@ static void found_assignment(const struct ec_config *c, unsigned int sm, struct 
 	if (before && !before->sm[sm].explicit)
 		l = &before->sm[sm].pdos;
 	else if (!before && c->slave)
-		l = &c->slave->sm_pdos[sm];
+		l = &c->slave->pdos.sm[sm];
 	if (!l)
 		return;
 	x->n = min_t(unsigned int, l->n, ARRAY_SIZE(x->v));

@@ -59,7 +59,7 @@ static bool is_head(const struct ec_group *g, const struct ec_slave *s)
 	case EC_GROUP_BY_ID:
 		return s->identification == g->value;
 	default:
-		return g->host && g->host->at[g->port] == s;
+		return g->host && g->host->graph.at[g->port] == s;
 	}
 }
 
@@ -217,13 +217,13 @@ static bool check_place(struct ec_group *g, const struct ec_slave *head)
 	if (g->at && !g->at->slave)
 		return no(g, head->position, "slave %s is absent, at whose port %u it has to be",
 			  g->at->name, g->port);
-	if (g->at && g->at->slave->at[g->port] != head)
+	if (g->at && g->at->slave->graph.at[g->port] != head)
 		return no(g, head->position, "slave %u is not at port %u of slave %u: connect it there",
 			  head->position, g->port, g->at->slave->position);
-	if (head->upstream)
+	if (head->graph.upstream)
 		return no(g, head->position,
 			  "slave %u is connected by its port %u: connect port 0 (IN) towards the main device",
-			  head->position, head->upstream);
+			  head->position, head->graph.upstream);
 	return true;
 }
 
@@ -232,7 +232,7 @@ static bool check_member(struct ec_group *g, const struct ec_config *c, struct e
 	u32 serial = ec_config_flag(c, EC_FLAG_SERIAL), pos = s->position;
 	const struct ec_config *has = ec_config_of(s);
 
-	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+	if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 		return no(g, pos, "slave %u could not be read: see 'ethercat why'", pos);
 	if (!is_what_it_expects(c, s))
 		return no(g, pos, "slave %u is 0x%08x/0x%08x, member %u is 0x%08x/0x%08x", pos,
@@ -240,7 +240,7 @@ static bool check_member(struct ec_group *g, const struct ec_config *c, struct e
 	if (serial && serial != s->info.serial)
 		return no(g, pos, "slave %u has serial number 0x%08x, member %u has 0x%08x", pos,
 			  s->info.serial, c->position, serial);
-	if ((READ_ONCE(s->al_status) & EC_AL_STATE_MASK) == EC_AL_BOOT)
+	if ((READ_ONCE(s->al.status) & EC_AL_STATE_MASK) == EC_AL_BOOT)
 		return no(g, pos, "slave %u is in BOOT: 'ethercat states -p %u PREOP' ends that",
 			  pos, pos);
 	if (has && has->wanted == g->wanted && has != c)

@@ -130,7 +130,7 @@ static void note_rest(struct ec_slave *s, const struct ec_config *c, u32 n)
 	}
 	ec_slave_set_warning(s, "returned, %u write(s) of the application not replayed: %s%s", n,
 			     text, shown < n ? "; see config -v" : "");
-	ec_slave_info(s, "%s\n", s->warning);
+	ec_slave_info(s, "%s\n", s->note.warning);
 }
 
 static bool changes_pdos(const struct ec_startup *u)
@@ -167,7 +167,7 @@ struct ec_result ec_replay_run(struct ec_slave *s, const struct ec_config *c)
 		if (r.err)
 			return r;
 		if (changes_pdos(u))
-			WRITE_ONCE(s->pdos_known, false);
+			WRITE_ONCE(s->pdos.known, false);
 	}
 	ec_setup_of(s)->replayed = true;
 	if (rest)
@@ -261,7 +261,7 @@ int ec_replay_hold(struct ec_slave *s)
 int ec_replay_held(const struct ec_config *c)
 {
 	lockdep_assert_held(c->wanted->lock);
-	if (!c->slave || READ_ONCE(c->slave->silent) || READ_ONCE(c->slave->stop.gone))
+	if (!c->slave || READ_ONCE(c->slave->reply.silent) || READ_ONCE(c->slave->stop.gone))
 		return 0;
 	return READ_ONCE(c->replay.hold) == EC_HOLD_HELD ? c->replay.holds : 0;
 }

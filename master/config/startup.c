@@ -118,7 +118,7 @@ const struct ec_startup *ec_startup_changes(const struct ec_config *c, const str
 	lockdep_assert_held(&s->lock);
 	list_for_each_entry(u, &c->startup, list)
 		if (u->type == EC_STARTUP_SDO &&
-		    changes(u->index, sm, &c->sm[sm].pdos, &s->sm_pdos[sm]))
+		    changes(u->index, sm, &c->sm[sm].pdos, &s->pdos.sm[sm]))
 			last = u;
 	return last;
 }

@@ -143,7 +143,7 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 	s = bus->slaves[pos];
 	ec_slave_cause(s, cause);
 	cause->position = pos;
-	if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED)
+	if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos,
 				 ec_slave_why(s, why, sizeof(why)));
 	*cause = *EC_CAUSE(DIFFERENT, .position = pos);
@@ -167,14 +167,14 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 
 static size_t present(struct ec_slave *s, char *buf, size_t size, struct ec_cause *cause)
 {
-	u16 status = READ_ONCE(s->al_status), code = READ_ONCE(s->al_code);
+	u16 status = READ_ONCE(s->al.status), code = READ_ONCE(s->al.code);
 	const char *state = ec_al_state_name(status & EC_AL_STATE_MASK);
-	u8 want = READ_ONCE(s->requested);
+	u8 want = READ_ONCE(s->al.requested);
 	const char *doing = READ_ONCE(ec_setup_of(s)->waits_for);
 	bool cyclic = ec_access_runs(&s->bus->links->access);
 
 	ec_slave_cause(s, cause);
-	if (READ_ONCE(s->error) != EC_SLAVE_OK)
+	if (READ_ONCE(s->note.error) != EC_SLAVE_OK)
 		return strlen(ec_slave_why(s, buf, size));
 	*cause = *EC_CAUSE(AL_ERROR, .state = status & EC_AL_STATE_MASK, .code = code);
 	/* without a cycle an expired watchdog is what follows from it */
@@ -350,13 +350,13 @@ u8 ec_config_status(const struct ec_config *c)
 	u8 v;
 
 	ec_wanted_assert_stays(c->wanted);
-	if (!slave || READ_ONCE(slave->stop.gone) || READ_ONCE(slave->silent))
+	if (!slave || READ_ONCE(slave->stop.gone) || READ_ONCE(slave->reply.silent))
 		return 0;
 	/* the monitor and the worker of the slave change them at any time */
-	status = READ_ONCE(slave->al_status);
+	status = READ_ONCE(slave->al.status);
 	v = (status & EC_STATUS_SC_AL) | EC_STATUS_SC_ONLINE;
 	if ((status & (EC_AL_STATE_MASK | EC_AL_ERROR)) == EC_AL_OP &&
-	    !READ_ONCE(slave->reconfigure))
+	    !READ_ONCE(slave->work.reconfigure))
 		v |= EC_STATUS_SC_OP;
 	return v;
 }
@@ -385,5 +385,5 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size, struct e
 		return present(c->slave, buf, size, cause);
 	*cause = *EC_CAUSE(INACTIVE);
 	return scnprintf(buf, size, "AL state %s; the master is not active",
-			 ec_al_state_name(READ_ONCE(c->slave->al_status) & EC_AL_STATE_MASK));
+			 ec_al_state_name(READ_ONCE(c->slave->al.status) & EC_AL_STATE_MASK));
 }

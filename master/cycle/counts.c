@@ -21,7 +21,7 @@ struct sums {
 static bool is_coming(const struct ec_config *c)
 {
 	return !(ec_config_status(c) & EC_STATUS_SC_OP) && ec_slave_busy(c->slave) &&
-	       READ_ONCE(c->slave->error) == EC_SLAVE_OK;
+	       READ_ONCE(c->slave->note.error) == EC_SLAVE_OK;
 }
 
 /* What the shares of datagram @n add up to: of slaves that count, and of those that will */

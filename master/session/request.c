@@ -191,12 +191,12 @@ static void watch_work(struct work_struct *work)
  */
 static bool ready(const struct ec_slave *s, const struct ec_request *r)
 {
-	if (r->kind == EC_REQUEST_REG || READ_ONCE(s->error) != EC_SLAVE_OK)
+	if (r->kind == EC_REQUEST_REG || READ_ONCE(s->note.error) != EC_SLAVE_OK)
 		return true;
-	if (READ_ONCE(s->requested) > EC_AL_PREOP && READ_ONCE(s->reconfigure))
+	if (READ_ONCE(s->al.requested) > EC_AL_PREOP && READ_ONCE(s->work.reconfigure))
 		return false;
-	return (READ_ONCE(s->al_status) & EC_AL_STATE_MASK) >= EC_AL_PREOP ||
-	       READ_ONCE(s->requested) == EC_AL_INIT;
+	return (READ_ONCE(s->al.status) & EC_AL_STATE_MASK) >= EC_AL_PREOP ||
+	       READ_ONCE(s->al.requested) == EC_AL_INIT;
 }
 
 /* The oldest request that can begin, and its slave with a reference. */

@@ -29,9 +29,9 @@ static void to_preop(struct ec_sessions *ss)
 {
 	down_read(&ss->bus->topo);
 	ec_for_each_slave(s, ss->bus) {
-		if (READ_ONCE(s->error) == EC_SLAVE_SCAN_FAILED ||
-		    (READ_ONCE(s->requested) == EC_AL_PREOP &&
-		     (READ_ONCE(s->error) || READ_ONCE(s->al_status) == EC_AL_PREOP)))
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED ||
+		    (READ_ONCE(s->al.requested) == EC_AL_PREOP &&
+		     (READ_ONCE(s->note.error) || READ_ONCE(s->al.status) == EC_AL_PREOP)))
 			continue;
 		ec_slave_request_anew(s, EC_AL_PREOP, 0);
 	}

@@ -44,8 +44,8 @@ struct ec_slave *ec_session_find(struct ec_session *s, const struct ec_ioc_slave
 static void note_loss(struct ec_config *c)
 {
 	ec_slave_lost_text(c->slave, c->lost.text, sizeof(c->lost.text));
-	c->lost.seen_ns = c->slave->seen_ns;
-	c->lost.at = c->slave->lost_at;
+	c->lost.seen_ns = c->slave->lost.seen_ns;
+	c->lost.at = c->slave->lost.at;
 	c->lost.station = c->slave->station;
 	c->lost.serial = c->slave->info.serial;
 	c->lost.list = READ_ONCE(c->wanted->bus->lists);
@@ -312,11 +312,11 @@ static bool wanted_in_op(const struct ec_session *session, const struct ec_slave
 
 static void session_attach_try_again(const struct ec_session *session, struct ec_slave *s)
 {
-	bool op = wanted_in_op(session, s) && READ_ONCE(s->error) != EC_SLAVE_SCAN_FAILED;
+	bool op = wanted_in_op(session, s) && READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED;
 
 	if (ec_slave_forgive(s))
-		WRITE_ONCE(s->reconfigure, true);
-	else if (!op || READ_ONCE(s->requested) == EC_AL_OP)
+		WRITE_ONCE(s->work.reconfigure, true);
+	else if (!op || READ_ONCE(s->al.requested) == EC_AL_OP)
 		return;
 	if (op)
 		ec_slave_request(s, EC_AL_OP);

@@ -54,14 +54,14 @@ void ec_session_detach(struct ec_config *c)
 	for (sm = 0; sm < EC_MAX_SM; sm++)
 		/* the slave keeps what was written */
 		if (c->sm[sm].explicit ||
-		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->sm_pdos[sm]))
-			WRITE_ONCE(slave->pdos_known, false);
+		    !ec_pdo_list_same(&c->sm[sm].pdos, &slave->pdos.sm[sm]))
+			WRITE_ONCE(slave->pdos.known, false);
 	ec_replay_forget(slave);
 	WRITE_ONCE(setup->config, NULL);
 	setup->active_config = NULL;
 	ec_slave_clear_warning(slave);
 	setup->pdo_refusal[0] = '\0';
-	WRITE_ONCE(slave->reconfigure, true);
+	WRITE_ONCE(slave->work.reconfigure, true);
 	ec_stop_interrupt(&slave->stop, false);
 	mutex_unlock(&slave->lock);
 	if (!READ_ONCE(slave->stop.gone) && !READ_ONCE(c->wanted->base->stopping))
@@ -108,8 +108,8 @@ bool ec_session_give(struct ec_session *s, struct ec_config *c, struct ec_slave 
 		return false;
 	}
 	WRITE_ONCE(ec_setup_of(slave)->config, c);
-	WRITE_ONCE(slave->reconfigure, true);
-	slave->seen_ns = c->lost.seen_ns;
+	WRITE_ONCE(slave->work.reconfigure, true);
+	slave->lost.seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
 	WRITE_ONCE(slave->mbox.reply_ms, c->reply_ms);

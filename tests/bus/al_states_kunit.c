@@ -42,7 +42,7 @@ static void al_boot(struct kunit *test)
 
 	bus_request(b, AXIS, EC_AL_BOOT);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AXIS, EC_AL_BOOT, 500), ~0ull);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AXIS)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AXIS)->note.error, EC_SLAVE_OK);
 	bus_request(b, AXIS, EC_AL_PREOP);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AXIS, EC_AL_PREOP, 500), ~0ull);
 }
@@ -62,18 +62,18 @@ static void al_boot_stays(struct kunit *test)
 		bus_request(b, AXIS, EC_AL_BOOT);
 		KUNIT_ASSERT_NE(test, bus_wait_al(b, AXIS, EC_AL_BOOT, 500), ~0ull);
 		usleep_range(10000, 10001);
-		reads = s->al_reads;
+		reads = s->al.reads;
 		for (k = 0; k < 500; k++) {
 			usleep_range(1000, 1001);
 			left += ec_app_state(bus_app(b, "axis")) != EC_AL_BOOT;
 		}
 		KUNIT_EXPECT_EQ_MSG(test, left, 0u, "from %s", ec_al_state_name(from[i]));
-		KUNIT_EXPECT_EQ(test, s->al_reads, reads);
-		KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, s->al.reads, reads);
+		KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 		/* a scan leaves it there, too */
 		bus_fault(b, EC_SIM_FAULT_POWER_OFF, OUT, 0, 0, 0);
 		msleep(500);
-		KUNIT_EXPECT_EQ(test, s->al_reads, reads);
+		KUNIT_EXPECT_EQ(test, s->al.reads, reads);
 		bus_fault(b, EC_SIM_FAULT_POWER_ON, OUT, 0, 0, 0);
 		msleep(500);
 		KUNIT_EXPECT_EQ(test, ec_app_state(bus_app(b, "axis")), EC_AL_BOOT);
@@ -87,9 +87,9 @@ static void al_no_boot(struct kunit *test)
 
 	bus_request(b, OUT, EC_AL_BOOT);
 	msleep(300);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, OUT)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, OUT)->why, "bootstrap mailbox"),
-				  "why: %s", bus_slave(b, OUT)->why);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, OUT)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, OUT)->note.why, "bootstrap mailbox"),
+				  "why: %s", bus_slave(b, OUT)->note.why);
 	bus_request(b, OUT, EC_AL_PREOP);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, OUT, EC_AL_PREOP, 500), ~0ull);
 }
@@ -125,7 +125,7 @@ static u32 failed_after(struct bus *b, u32 position)
 	u64 t0 = ktime_get_ns();
 	u32 i;
 
-	for (i = 0; i < 20000 && bus_slave(b, position)->error == EC_SLAVE_OK; i++)
+	for (i = 0; i < 20000 && bus_slave(b, position)->note.error == EC_SLAVE_OK; i++)
 		usleep_range(1000, 1001);
 	return div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 }
@@ -172,17 +172,17 @@ static void al_late_states_taken(struct kunit *test)
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 4100), ~0ull);
 	msleep(100);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_OK);
 	for (i = 0; i < ARRAY_SIZE(way); i++) {
 		struct ec_ioc_state req = { .state = way[i], .timeout_ms = 500 };
 
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &req), 0);
 		msleep(1500);
-		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
-		for (k = 0; k < 40000 && bus_slave(b, 0)->error; k++)
+		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_CONFIG_FAILED);
+		for (k = 0; k < 40000 && bus_slave(b, 0)->note.error; k++)
 			usleep_range(1000, 1001);
 		KUNIT_EXPECT_LT_MSG(test, k, 20000u, "step %u", i);
-		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, way[i]);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, way[i]);
 		KUNIT_EXPECT_EQ(test, ec_app_state(bus_app(b, "a")), way[i]);
 	}
 	KUNIT_EXPECT_EQ(test, bus_log_lines("left without request"), lines);
@@ -208,21 +208,22 @@ static void al_refused(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, AI, 0, r->to, r->code);
 	bus_request(b, AI, r->to);
 	msleep(200);
-	KUNIT_EXPECT_EQ(test, s->al_status, r->from);
+	KUNIT_EXPECT_EQ(test, s->al.status, r->from);
 	KUNIT_EXPECT_FALSE(test, bus_app(b, "ai")->error);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_CONFIG_FAILED);
 	snprintf(code, sizeof(code), "0x%04x", r->code);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, code), "why: %s", s->why);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, ec_al_state_name(r->to)), "why: %s", s->why);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, ec_al_code_text(r->code)), "why: %s",
-				  s->why);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->note.why, code), "why: %s", s->note.why);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->note.why, ec_al_state_name(r->to)), "why: %s",
+				  s->note.why);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->note.why, ec_al_code_text(r->code)), "why: %s",
+				  s->note.why);
 
 	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, AI, 0, 0, 0);
 	bus_request(b, AI, r->to);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, r->to, 500), ~0ull);
 	msleep(20);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
-	KUNIT_EXPECT_STREQ(test, s->why, "");
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
+	KUNIT_EXPECT_STREQ(test, s->note.why, "");
 }
 
 /* An error of the slave's own: seen, acknowledged, brought back. */
@@ -237,7 +238,7 @@ static void al_falls_back(struct kunit *test)
 	ec_app_al_fail(bus_app(b, "ai"), EC_AL_SAFEOP, 0x001b, ktime_get_ns());
 	us = bus_wait_al(b, AI, EC_AL_SAFEOP | EC_AL_ERROR, 1000);
 	KUNIT_EXPECT_LT(test, us, 100000ull);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_code, 0x001b);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al.code, 0x001b);
 	bus_figure("a slave that falls back is noticed after %llu us", us);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_OP, 500), ~0ull);
 }
@@ -252,9 +253,9 @@ static void al_kicked(struct kunit *test)
 	ec_slave_kick(s);
 	bus_request(b, AI, EC_AL_SAFEOP);
 	ec_slave_kick(s);
-	KUNIT_EXPECT_EQ(test, s->requested, EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, s->al.requested, EC_AL_SAFEOP);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_SAFEOP, 500), ~0ull);
-	WRITE_ONCE(s->requested, EC_AL_PREOP);
+	WRITE_ONCE(s->al.requested, EC_AL_PREOP);
 	ec_slave_kick(s);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, AI, EC_AL_PREOP, 500), ~0ull);
 }

@@ -68,12 +68,12 @@ static void apply_unknown_sm(struct kunit *test)
 	cyc_run(c, 500);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, 0)->mem + EC_REG_STATION),
 			bus_slave(b, 0)->station);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	KUNIT_EXPECT_NOT_NULL_MSG(test,
-				  strstr(bus_slave(b, 0)->why,
+				  strstr(bus_slave(b, 0)->note.why,
 					 "SM7 is not a process data SyncManager"), "%s",
-				  bus_slave(b, 0)->why);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
+				  bus_slave(b, 0)->note.why);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_OP);
 }
 
 /* A SyncManager that its EEPROM wants on in OP only; the slave wants outputs before OP. */
@@ -88,16 +88,16 @@ static void apply_op_only(struct kunit *test)
 	bus_app(b, "a")->model->dev.sms[0].enable |= EC_SII_SM_OP_ONLY;
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	while (bus_slave(b, 0)->al_status != EC_AL_SAFEOP && c->cycles < 2000)
+	while (bus_slave(b, 0)->al.status != EC_AL_SAFEOP && c->cycles < 2000)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
-	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	cyc_run(c, 20);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_STATE, &safeop), 0);
 	cyc_run(c, 300);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_SAFEOP);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), 0);
 }
 
@@ -115,9 +115,9 @@ static void apply_op_only_pause(struct kunit *test)
 		cyc_run(c, 1);
 	KUNIT_ASSERT_LT(test, c->cycles, 2000ull);
 	msleep(10000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_SAFEOP);
 	c->next = ktime_get();
-	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	KUNIT_EXPECT_EQ(test, sm_active(b, 0, 0), EC_SM_ACT_ENABLE);
 }
 
@@ -205,10 +205,10 @@ static void apply_late_states_taken(struct kunit *test)
 	c->ctx = &begun;
 	us = cyc_wait_op(c, 60000);
 	bus_figure("transitions of %u ms, limit %u ms: OP after %llu us", l->ms, l->limit_ms, us);
-	KUNIT_EXPECT_LE_MSG(test, us, l->op_ms * 1000ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_LE_MSG(test, us, l->op_ms * 1000ull, "%s", bus_slave(b, 0)->note.why);
 	KUNIT_EXPECT_LE(test, begun.to[EC_AL_INIT], 0u);
 	cyc_run(c, 100);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_OK);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 
@@ -228,7 +228,7 @@ static void apply_slow_end(struct kunit *test)
 	cyc_release(c);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, 0, EC_AL_PREOP, 10000), ~0ull);
 	msleep(1000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("refused"), lines);
 }
 
@@ -243,13 +243,13 @@ static void apply_other_request_meanwhile(struct kunit *test)
 	bus_idle(b);
 	bus_request(b, 0, EC_AL_OP);
 	msleep(100);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	bus_request(b, 0, EC_AL_INIT);
 	for (ms = 0; ms < 3000; ms++) {
-		KUNIT_ASSERT_EQ(test, READ_ONCE(bus_slave(b, 0)->error), EC_SLAVE_OK);
+		KUNIT_ASSERT_EQ(test, READ_ONCE(bus_slave(b, 0)->note.error), EC_SLAVE_OK);
 		usleep_range(1000, 1001);
 	}
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_INIT);
 }
 
 /* The mapping that was found is not the slave's any more after its power was off. */
@@ -259,7 +259,7 @@ static void apply_found_pdos(struct kunit *test)
 	struct bus *b = c->b;
 
 	map_two_bytes(b);
-	WRITE_ONCE(bus_slave(b, 0)->pdos_known, false);
+	WRITE_ONCE(bus_slave(b, 0)->pdos.known, false);
 	bus_request(b, 0, EC_AL_PREOP);
 	cyc_map_all(c, 0, 1, 0);
 	KUNIT_ASSERT_EQ(test, bus_config(b, 0)->fmmus[0].size, 2u);
@@ -294,7 +294,7 @@ static void apply_second_round(struct kunit *test)
 		}
 		cyc_activate(c);
 		KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 5000), ~0ull, "round %u: %s", i,
-				    bus_slave(b, 0)->why);
+				    bus_slave(b, 0)->note.why);
 		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 		cyc_domain(c);
 	}
@@ -310,7 +310,7 @@ static void apply_changes_meanwhile(struct kunit *test)
 
 	for (i = 0; i < 300; i++) {
 		if (i % 30 == 10) {
-			WRITE_ONCE(bus_slave(b, 0)->reconfigure, i % 60 == 10);
+			WRITE_ONCE(bus_slave(b, 0)->work.reconfigure, i % 60 == 10);
 			bus_request(b, 0, i % 60 == 10 ? EC_AL_SAFEOP : EC_AL_PREOP);
 		}
 		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, 2, 0, 0);
@@ -323,12 +323,12 @@ static void apply_changes_meanwhile(struct kunit *test)
 			kfree(other[k]);
 		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, 2, 0x1600, 0);
 		usleep_range(2300, 2310);
-		ups += bus_slave(b, 0)->al_status == EC_AL_SAFEOP;
+		ups += bus_slave(b, 0)->al.status == EC_AL_SAFEOP;
 	}
 	KUNIT_EXPECT_GT(test, ups, 0u);
 	/* nothing of that has reached the slave */
-	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[2]), 22u);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->pdos.sm[2]), 22u);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_OK);
 }
 
 struct reader {
@@ -437,7 +437,7 @@ static void apply_endless_mailbox(struct kunit *test)
 	struct cyc *c = reserve(test, drive, 1);
 	struct ec_app *app = bus_app(c->b, "a");
 
-	KUNIT_ASSERT_TRUE(test, bus_slave(c->b, 0)->clean);
+	KUNIT_ASSERT_TRUE(test, bus_slave(c->b, 0)->work.clean);
 	bus_fault(c->b, EC_SIM_FAULT_MAILBOX, 0, 0, e->kind, 0);
 	msleep(30);
 	ec_app_emergency(app, 0x1000, 0, (u8[5]){ 0 }, ktime_get_ns());
@@ -445,7 +445,7 @@ static void apply_endless_mailbox(struct kunit *test)
 	bus_fault(c->b, EC_SIM_FAULT_MAILBOX, 0, 0, EC_SIM_MAILBOX_BABBLE, 0);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(c->b, 0)->why);
+	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(c->b, 0)->note.why);
 	KUNIT_EXPECT_EQ(test, app->mbox.out_len, 0);
 }
 

@@ -67,13 +67,13 @@ static void attach_one_pulled(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
 	for (i = 0; i < 1000; i++) {
 		cyc_run(c, 1);
-		not_op += (READ_ONCE(s1->al_status) & 0xf) != EC_AL_OP;
+		not_op += (READ_ONCE(s1->al.status) & 0xf) != EC_AL_OP;
 	}
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N - 1);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 1), s1);
 	KUNIT_EXPECT_EQ(test, not_op, 0u);
 	for (i = 1; i < N - 1; i++)
-		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->al_status, EC_AL_OP);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->al.status, EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, output(c, "s1"), 20ll);
 	KUNIT_EXPECT_EQ(test, output(c, "s2"), 30ll);
 	KUNIT_EXPECT_EQ(test, output(c, "s3"), 40ll);
@@ -101,7 +101,7 @@ static void attach_failed_one(struct kunit *test)
 	cyc_activate(c);
 	*cyc_pd(c, LEAF, 0) = 10;
 	cyc_run(c, 2000);
-	KUNIT_ASSERT_EQ(test, (u32)s1->error, (u32)EC_SLAVE_CONFIG_FAILED);
+	KUNIT_ASSERT_EQ(test, (u32) s1->note.error, (u32)EC_SLAVE_CONFIG_FAILED);
 	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, 2, 0, 0, 0);
 	bus_fault(b, EC_SIM_FAULT_POWER_OFF, LEAF, 0, 0, 0);
 	cyc_run(c, 1000);
@@ -210,7 +210,7 @@ static void attach_same_device_elsewhere(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 2, 0, 0);
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_EQ(test, output(c, "b"), 20ll);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_OP);
 	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 1, 0, 0);
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));

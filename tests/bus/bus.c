@@ -212,7 +212,7 @@ static bool all_in(const struct bus *b, u32 slaves, u8 state)
 	if (bus_n_slaves(b) != slaves || bus_scan_busy(b))
 		return false;
 	for (i = 0; i < slaves; i++)
-		if (bus_slave_at(b, i)->al_status != state)
+		if (bus_slave_at(b, i)->al.status != state)
 			return false;
 	return true;
 }
@@ -251,7 +251,7 @@ u64 bus_wait_al(struct bus *b, u32 position, u16 al_status, u32 limit_ms)
 {
 	u64 t0 = ktime_get_ns(), end = t0 + (u64)limit_ms * NSEC_PER_MSEC;
 
-	while (READ_ONCE(bus_slave(b, position)->al_status) != al_status) {
+	while (READ_ONCE(bus_slave(b, position)->al.status) != al_status) {
 		if (ktime_get_ns() > end)
 			return ~0ull;
 		usleep_range(20, 21);
@@ -335,7 +335,7 @@ void bus_expect_graph(struct bus *b, const char *after)
 		KUNIT_EXPECT_EQ_MSG(b->test, s->station,
 				    get_unaligned_le16(esc->mem + EC_REG_STATION),
 				    "slave %u after %s", i, after);
-		KUNIT_EXPECT_FALSE_MSG(b->test, s->topology_inconsistent, "slave %u after %s", i,
+		KUNIT_EXPECT_FALSE_MSG(b->test, s->graph.inconsistent, "slave %u after %s", i,
 				       after);
 		for (p = 0; p < EC_MAX_PORT; p++) {
 			s32 peer = esc->port[p].open ? esc->port[p].peer : -1;

@@ -60,7 +60,7 @@ struct ec_slave *bus_slave(struct bus *b, u32 position);
 /* Ring position of the neighbor at a port, EC_UAPI_NONE16: there is none. */
 static inline u16 bus_next(const struct ec_slave *s, u32 port)
 {
-	return s->at[port] ? s->at[port]->position : EC_UAPI_NONE16;
+	return s->graph.at[port] ? s->graph.at[port]->position : EC_UAPI_NONE16;
 }
 struct ec_esc *bus_esc(struct bus *b, u32 index);
 struct ec_app *bus_app(struct bus *b, const char *name);

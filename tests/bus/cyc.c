@@ -110,7 +110,7 @@ void cyc_map_all(struct cyc *c, u32 first, u32 n, u32 domain)
 		u32 config = cyc_config(c, i);
 
 		for (sm = 0; sm < s->n_sms; sm++)
-			if (ec_pdo_list_bytes(&s->sm_pdos[sm]))
+			if (ec_pdo_list_bytes(&s->pdos.sm[sm]))
 				cyc_map(c, config, sm, domain);
 	}
 }
@@ -309,7 +309,7 @@ bool cyc_all_op(struct cyc *c)
 	for (i = 0; i < bus_wanted(c->b)->n_configs; i++) {
 		const struct ec_slave *s = bus_config(c->b, i)->slave;
 
-		if (!s || s->al_status != EC_AL_OP || s->reconfigure)
+		if (!s || s->al.status != EC_AL_OP || s->work.reconfigure)
 			return false;
 	}
 	return true;

@@ -159,7 +159,7 @@ static void map(struct run *r, u32 n)
 
 		KUNIT_ASSERT_EQ(r->b->test, ec_ioc(&r->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
 		for (sm = 0; sm < s->n_sms; sm++)
-			if (ec_pdo_list_bytes(&s->sm_pdos[sm]))
+			if (ec_pdo_list_bytes(&s->pdos.sm[sm]))
 				cyc_map(r->c, sc.index, sm, 0);
 	}
 }

@@ -136,7 +136,7 @@ static void dc_start_hundred_drives_reach_op(struct kunit *test)
 	for (i = 0; i < SLAVES; i++) {
 		far += ec_clock_of(bus_slave(b, i))->outside_window;
 		KUNIT_EXPECT_TRUE(test, bus_esc(b, i)->dc.running);
-		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->note.error, EC_SLAVE_OK);
 	}
 	bus_figure("100 drives with SYNC0, cycle of %u us: OP %llu us after activation, clocks within %llu ns from then on for 20 s, within %u ns %llu us later; in a send at most %u acyclic frames, %u of them of clocks (%llu in all)",
 		   us, op, l.worst_ns, EXACT_NS, l.exact_us, l.most, l.clocks, l.all_clocks);

@@ -95,8 +95,8 @@ static u32 until_op(struct cyc *c, u32 mask, u32 limit_ms)
 	for (ms = 0; ms < limit_ms; ms++) {
 		for (i = 0; mask >> i; i++)
 			if (mask & BIT(i) &&
-			    (bus_n_slaves(b) <= i || bus_slave_at(b, i)->reconfigure ||
-					      bus_slave_at(b, i)->al_status != EC_AL_OP))
+			    (bus_n_slaves(b) <= i || bus_slave_at(b, i)->work.reconfigure ||
+					      bus_slave_at(b, i)->al.status != EC_AL_OP))
 				break;
 		if (!(mask >> i))
 			break;
@@ -271,11 +271,11 @@ static void sync_waits_for_its_clock(struct kunit *test)
 	/* as the scan leaves it */
 	WRITE_ONCE(ec_clock_of(s)->state, EC_CLOCK_UNSET);
 	WRITE_ONCE(bus_dc(b)->changed, true);
-	WRITE_ONCE(s->reconfigure, true);
+	WRITE_ONCE(s->work.reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
 	cyc_run(c, 2000);
 	KUNIT_EXPECT_TRUE(test, READ_ONCE(bus_dc(b)->changed));
-	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, s->al.status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 1)->mem[EC_REG_DC_ACTIVATION], 0);
 	mutex_unlock(bus_mutex(b));
 	ms = until_op(c, 15, 5000);
@@ -306,10 +306,10 @@ static void sync_from_preop(struct kunit *test)
 
 static void expect_reason(struct bus *b, u32 i, const char *what)
 {
-	KUNIT_EXPECT_NE(b->test, bus_slave_at(b, i)->al_status, EC_AL_OP);
-	KUNIT_EXPECT_EQ(b->test, bus_slave_at(b, i)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(bus_slave_at(b, i)->why, what), "%s",
-				  bus_slave_at(b, i)->why);
+	KUNIT_EXPECT_NE(b->test, bus_slave_at(b, i)->al.status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(b->test, bus_slave_at(b, i)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(bus_slave_at(b, i)->note.why, what), "%s",
+				  bus_slave_at(b, i)->note.why);
 }
 
 /* Without any cycle time there is nothing to start. */
@@ -396,7 +396,7 @@ static void sync1_is_slower(struct kunit *test)
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 8000), ~0ull);
 	expect_in_step(b, 15);
 	for (i = 0; i < 4; i++)
-		KUNIT_EXPECT_EQ(test, bus_slave_at(b, i)->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave_at(b, i)->note.error, EC_SLAVE_OK);
 }
 
 /* What a controller without register 0x0984 answers there means nothing: OP is tried. */
@@ -423,7 +423,7 @@ static void sync_without_status(struct kunit *test)
 	until_op(c, 15, 5000);
 	expect_in_step(b, 15);
 	for (i = 0; i < 4; i++)
-		KUNIT_EXPECT_EQ(test, bus_slave_at(b, i)->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave_at(b, i)->note.error, EC_SLAVE_OK);
 }
 
 static void not_started_again(struct cyc *c)
@@ -467,13 +467,13 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	sync0(c, 1, PERIOD_NS, 2000 * PERIOD_NS);
 	cyc_activate(c);
 	s = bus_slave(b, 1);
-	for (i = 0; i < 3000 && s->al_status != EC_AL_SAFEOP; i++)
+	for (i = 0; i < 3000 && s->al.status != EC_AL_SAFEOP; i++)
 		cyc_run(c, 1);
 	cyc_run(c, 100);
-	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, s->al.status, EC_AL_SAFEOP);
 	bus_request(b, 1, EC_AL_PREOP);
 	cyc_run(c, 50);
-	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, s->al.status, EC_AL_PREOP);
 	bus_request(b, 1, EC_AL_OP);
 	until_op(c, 15, 5000);
 
@@ -481,17 +481,17 @@ static void sync_wait_aborted_by_preop_request(struct kunit *test)
 	/* as the scan leaves it */
 	WRITE_ONCE(ec_clock_of(s)->state, EC_CLOCK_UNSET);
 	WRITE_ONCE(bus_dc(b)->changed, true);
-	WRITE_ONCE(s->reconfigure, true);
+	WRITE_ONCE(s->work.reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, s->al.status, EC_AL_PREOP);
 	bus_request(b, 1, EC_AL_PREOP);
 	cyc_run(c, 150);
 	KUNIT_EXPECT_NULL(test, READ_ONCE(s->stop.worker));
 	mutex_unlock(bus_mutex(b));
 	cyc_run(c, 2000);
-	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, s->al.status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 	bus_request(b, 1, EC_AL_OP);
 	until_op(c, 15, 5000);
 	cyc_run(c, 500);
@@ -645,11 +645,11 @@ static void sync_waits_for_attempt_that_is_due(struct kunit *test)
 	lines = bus_log_lines("SYNC signals started, but");
 	mutex_lock(bus_mutex(b));
 	ec_dc_set_state(bus_dc(b), EC_DC_RETRY_DUE);
-	WRITE_ONCE(bus_slave(b, 1)->reconfigure, true);
+	WRITE_ONCE(bus_slave(b, 1)->work.reconfigure, true);
 	bus_request(b, 1, EC_AL_OP);
 	cyc_run(c, 1000);
 	KUNIT_EXPECT_EQ(test, bus_dc_state(b), (int)EC_DC_RETRY_DUE);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_PREOP);
 	mutex_unlock(bus_mutex(b));
 	until_op(c, 15, 5000);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("SYNC signals started, but"), lines);

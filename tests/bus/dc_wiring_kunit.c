@@ -31,9 +31,9 @@ static u32 expect_wiring(struct bus *b, const char *text)
 					    (u16)b->sim->esc[peer]->route_pos[0],
 					    "slave %u port %u of\n%s", i, p, text);
 			if (peer == -2)
-				KUNIT_EXPECT_EQ(b->test, s->upstream, p);
+				KUNIT_EXPECT_EQ(b->test, s->graph.upstream, p);
 		}
-		KUNIT_EXPECT_FALSE(b->test, s->topology_inconsistent);
+		KUNIT_EXPECT_FALSE(b->test, s->graph.inconsistent);
 		if (!(ec_slave_features(s) & EC_FEAT_DC))
 			continue;
 		KUNIT_EXPECT_FALSE(b->test, ec_clock_of(s)->delay_unreliable);
@@ -314,14 +314,14 @@ static void wiring_that_does_not_fit(struct kunit *test)
 		   "slave c drive in=8 out=8\n"
 		   "wire a.1 -> b.1\nwire b.0 -> c.0\n", 3);
 	bus_idle(b);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->topology_inconsistent);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->graph.inconsistent);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->graph.inconsistent);
 	/* an EEPROM that cannot be read changes nothing of that */
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 0, 0, ~0u, 0);
 	bus_rescan(b);
 	KUNIT_ASSERT_EQ(test, ec_bus_wait_scan(bus_table(b)), 0);
-	KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_SCAN_FAILED);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->topology_inconsistent);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->graph.inconsistent);
 }
 
 /*

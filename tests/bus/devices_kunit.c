@@ -179,7 +179,7 @@ static void devices_made_by_scan_have_attributes(struct kunit *test)
 	bus_request(b, A, EC_AL_SAFEOP);
 	bus_wait_al(b, A, EC_AL_SAFEOP, 1000);
 	attribute_is(b, A, "al_state", "SAFEOP\n");
-	WRITE_ONCE(bus_slave(b, A)->al_status, EC_AL_INIT | EC_AL_ERROR);
+	WRITE_ONCE(bus_slave(b, A)->al.status, EC_AL_INIT | EC_AL_ERROR);
 	attribute_is(b, A, "al_state", "INIT error\n");
 }
 

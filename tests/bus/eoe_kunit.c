@@ -82,10 +82,10 @@ static void refused(struct kunit *test, const char *text, const char *why)
 	config_ip(c, cyc_config(c, 1), &net);
 	cyc_activate(c);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_OP);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, 1)->why, why);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 1)->note.why, why);
 }
 
 static void eoe_refused(struct kunit *test)

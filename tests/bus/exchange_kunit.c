@@ -384,7 +384,7 @@ static void exchange_end_in_flight(struct kunit *test)
 	bus_idle(b);
 	KUNIT_EXPECT_TRUE(test, slots_free(b));
 	for (i = 0; i < N; i++)
-		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->note.error, EC_SLAVE_OK);
 }
 
 /* Who looks at working counters only sees that the device is gone. */

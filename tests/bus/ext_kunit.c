@@ -185,7 +185,7 @@ static void ext_slaves_down(struct kunit *test)
 			KUNIT_EXPECT_EQ(test, get_unaligned_le16(mem + EC_REG_AL_CODE), 0);
 			KUNIT_EXPECT_EQ(test, mem[EC_REG_AL_STATUS], EC_AL_PREOP);
 			KUNIT_EXPECT_EQ(test, mem[EC_REG_DC_ACTIVATION], 0);
-			KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
+			KUNIT_EXPECT_EQ(test, bus_slave(b, i)->note.error, EC_SLAVE_OK);
 		}
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SLAVES_DOWN, NULL), -EINVAL);

@@ -213,7 +213,7 @@ static struct bus *nameless(struct kunit *test)
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 10000), ~0ull);
 	bus_idle(b);
-	KUNIT_ASSERT_GT(test, bus_slave(b, BAD)->names.n, 0u);
+	KUNIT_ASSERT_GT(test, bus_slave(b, BAD)->pdos.names.n, 0u);
 	return b;
 }
 
@@ -223,7 +223,7 @@ static void read_names(struct bus *b, u32 kind)
 	struct ec_slave *s = bus_slave(b, BAD);
 
 	ec_names_free(s);
-	s->names_done = false;
+	s->pdos.names_done = false;
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, kind, 0);
 	ec_slave_kick(s);
 	msleep(5);
@@ -263,7 +263,7 @@ static void mbox_endless_fragments(struct kunit *test)
 		usleep_range(1000, 1001);
 	bus_figure("slave with names in endless fragments: settled after %u ms", ms);
 	KUNIT_EXPECT_LT(test, ms, 1000u);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, BAD)->names_done);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, BAD)->pdos.names_done);
 	KUNIT_EXPECT_EQ(test, serial(b, GOOD), 6);
 }
 

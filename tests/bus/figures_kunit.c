@@ -29,7 +29,7 @@ static struct bus *scan(struct kunit *test, u32 n, size_t bytes, bool eight)
 	bus_figure("scan to PREOP, %u slaves, %zu bytes of EEPROM, %u-byte ESCs: %llu us of bus time; the scan itself %u us, %llu frames",
 		   n, bytes, eight ? 8 : 4, us, bus_table(b)->scan_us, bus_scan_frames(b));
 	for (i = 0; i < n; i++)
-		KUNIT_ASSERT_EQ(test, bus_slave(b, i)->sii_bytes, bytes);
+		KUNIT_ASSERT_EQ(test, bus_slave(b, i)->eeprom.bytes, bytes);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
 	return b;
 }
@@ -156,7 +156,7 @@ static u64 activate(struct kunit *test, u32 drives, u32 period_us)
 	bus_figure("activate to OP, %u drives, PDO mapping rewritten over CoE, cycle of %u us: %llu us of bus time, of which the slaves take some %llu us; %llu frames",
 		   drives, period_us, us, own, bus_frames(b) - frames);
 	for (i = 0; i < drives; i++)
-		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->note.error, EC_SLAVE_OK);
 	cyc_run(c, 5);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);

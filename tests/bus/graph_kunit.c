@@ -88,7 +88,7 @@ static void graph_moved_slave_is_not_read_again(struct kunit *test)
 static void graph_eeprom_of_known_device(struct kunit *test)
 {
 	struct bus *b = bus_up(test, text, N);
-	size_t bytes = bus_slave(b, N - 1)->sii_bytes;
+	size_t bytes = bus_slave(b, N - 1)->eeprom.bytes;
 	u32 i;
 
 	bus_idle(b);
@@ -102,8 +102,8 @@ static void graph_eeprom_of_known_device(struct kunit *test)
 			bus_esc(b, C2)->eep.data[bytes - 3] ^= 1;
 		bus_command(b, "on c2");
 		settle(b, 300);
-		KUNIT_EXPECT_EQ(test, bus_slave(b, N - 1)->sii_bytes, bytes);
-		KUNIT_EXPECT_EQ(test, memcmp(bus_slave(b, N - 1)->sii,
+		KUNIT_EXPECT_EQ(test, bus_slave(b, N - 1)->eeprom.bytes, bytes);
+		KUNIT_EXPECT_EQ(test, memcmp(bus_slave(b, N - 1)->eeprom.data,
 					     bus_esc(b, C2)->eep.data, bytes), 0);
 		frames = bus_table(b)->scan_frames;
 		bus_figure("device back, EEPROM %s: %llu frames",
@@ -164,10 +164,10 @@ static void graph_found_beside_bouncing_contact(struct kunit *test)
 	bus_command(b, "plug a2.1 x1.0");
 	t0 = ktime_get_ns();
 	for (i = 0; i < 900; i++) {
-		if (bus_n_slaves(b) > 4 && bus_slave(b, 3)->sii &&
+		if (bus_n_slaves(b) > 4 && bus_slave(b, 3)->eeprom.data &&
 		    bus_slave(b, 3)->station ==
 		    get_unaligned_le16(bus_esc(b, X1)->mem + EC_REG_STATION) &&
-		    READ_ONCE(bus_slave(b, 3)->al_status) == EC_AL_PREOP)
+		    READ_ONCE(bus_slave(b, 3)->al.status) == EC_AL_PREOP)
 			break;
 		msleep(1);
 	}
@@ -205,9 +205,9 @@ static void look(struct cyc *c)
 
 	for (i = 0; i < ARRAY_SIZE(w->slave); i++)
 		w->offline += READ_ONCE(w->slave[i]->stop.gone) ||
-			      READ_ONCE(w->slave[i]->silent) ||
-			      READ_ONCE(w->slave[i]->reconfigure) ||
-			      READ_ONCE(w->slave[i]->al_status) != EC_AL_OP;
+			      READ_ONCE(w->slave[i]->reply.silent) ||
+			      READ_ONCE(w->slave[i]->work.reconfigure) ||
+			      READ_ONCE(w->slave[i]->al.status) != EC_AL_OP;
 	w->incomplete += cyc_state(c, 0)->wc_state != 2;
 }
 

@@ -311,7 +311,7 @@ static void groups_twin_of_running(struct kunit *test)
 	wait_slaves(t, N + 4);
 	KUNIT_EXPECT_TRUE(test, in_op(t, t->head));
 	KUNIT_EXPECT_EQ(test, bus_config(b, t->head)->slave->device, device);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(bus_slave(b, 5)->al_status), EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(bus_slave(b, 5)->al.status), EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, t->incomplete, 0u);
 	/* the other one is used once it is the only one */
 	bus_command(b, "unplug hub.1");
@@ -432,7 +432,7 @@ static void groups_member_in_boot(struct kunit *test)
 	expect_why(t, t->head, EC_CAUSE_GROUP, "member 1 (");
 	bus_request(b, 1, EC_AL_BOOT);
 	cyc_run(t->c, 100);
-	KUNIT_EXPECT_EQ(test, READ_ONCE(bus_slave(b, 1)->al_status), EC_AL_BOOT);
+	KUNIT_EXPECT_EQ(test, READ_ONCE(bus_slave(b, 1)->al.status), EC_AL_BOOT);
 	bus_command(b, "plug x1.1 x2.0");
 	wait_slaves(t, N + 2);
 	expect_why(t, t->head, EC_CAUSE_GROUP, "slave 1 is in BOOT");

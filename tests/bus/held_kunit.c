@@ -91,7 +91,7 @@ static void expect_found(struct bus *b)
 	KUNIT_EXPECT_EQ(b->test, state(b)->held, 0u);
 	bus_idle(b);
 	KUNIT_ASSERT_EQ(b->test, state(b)->slave_count, N + 1u);
-	KUNIT_EXPECT_EQ(b->test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(b->test, bus_slave(b, 1)->al.status, EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(b->test, serial(b, 1), 21);
 	KUNIT_EXPECT_EQ(b->test, serial(b, 2), 11);
 	KUNIT_EXPECT_EQ(b->test, serial(b, 3), 12);
@@ -234,7 +234,7 @@ static void held_lost_slaves(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, state(b)->slave_count, (u32)N);
 	expect_lost(b, 1);
 	expect_lost(b, 2);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	/* for longer than a retry by position takes */
 	msleep(3000);
 	expect_lost(b, 1);
@@ -244,8 +244,8 @@ static void held_lost_slaves(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 2, 0, 0);
 	msleep(300);
 	expect_held(b, N + 1);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_OK);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->note.error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_PREOP);
 	bus_end(b);
 	expect_found(b);
 }
@@ -316,15 +316,15 @@ static void held_slave_is_tried_again(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	bus_fault(b, EC_SIM_FAULT_MUTE, A, 0, 1, 0);
 	bus_request(b, 1, EC_AL_INIT);
-	for (i = 0; i < 20000 && !READ_ONCE(bus_slave(b, 1)->error); i++)
+	for (i = 0; i < 20000 && !READ_ONCE(bus_slave(b, 1)->note.error); i++)
 		usleep_range(1000, 1001);
-	KUNIT_ASSERT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, 1)->note.error, EC_SLAVE_CONFIG_FAILED);
 	bus_fault(b, EC_SIM_FAULT_MUTE, A, 0, 0, 0);
 	/* the request has got lost: the state does not come late */
 	bus_esc(b, A)->mem[EC_REG_AL_CONTROL] = EC_AL_PREOP;
 	msleep(20000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->error, EC_SLAVE_OK);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->note.error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_INIT);
 }
 
 /* No reply at all, as the cable of the master is cut: all are lost, and all return. */
@@ -338,8 +338,8 @@ static void held_without_link(struct kunit *test)
 	msleep(500);
 	KUNIT_EXPECT_EQ(test, state(b)->slave_count, (u32)N);
 	KUNIT_EXPECT_EQ(test, state(b)->slaves_responding, 0u);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 0)->silent);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 1)->silent);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 0)->reply.silent);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 1)->reply.silent);
 	bus_fault(b, EC_SIM_FAULT_HEAL, HUB, 0, 0, 0);
 	msleep(500);
 	expect_held(b, N);

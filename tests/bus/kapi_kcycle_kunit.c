@@ -247,9 +247,9 @@ static void kcycle_slaves_down(struct kunit *test)
 		kapp_op(k);
 		k->incomplete = 0;
 		ecrt_master_deactivate_slaves(k->m);
-		for (i = 0; i < 1000 && bus_slave(k->b, 0)->al_status != EC_AL_PREOP; i++)
+		for (i = 0; i < 1000 && bus_slave(k->b, 0)->al.status != EC_AL_PREOP; i++)
 			kapp_run(k, 1);
-		KUNIT_EXPECT_EQ(test, bus_slave(k->b, 0)->al_status, EC_AL_PREOP);
+		KUNIT_EXPECT_EQ(test, bus_slave(k->b, 0)->al.status, EC_AL_PREOP);
 		KUNIT_EXPECT_EQ(test, ecrt_master_deactivate(k->m), 0);
 		ecrt_master_deactivate_slaves(k->m);
 		ecrt_release_master(k->m);

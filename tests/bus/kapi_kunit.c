@@ -148,11 +148,11 @@ static void kapi_described(struct kunit *test)
 	ec_pdo_info_t pdo;
 
 	KUNIT_ASSERT_NOT_NULL(test, m);
-	known = &s->sm_pdos[2].pdos[0];
+	known = &s->pdos.sm[2].pdos[0];
 	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 0, 2, &sync), 0);
 	KUNIT_EXPECT_EQ(test, sync.index, 2);
 	KUNIT_EXPECT_EQ(test, sync.dir, EC_DIR_OUTPUT);
-	KUNIT_EXPECT_EQ(test, sync.n_pdos, s->sm_pdos[2].n);
+	KUNIT_EXPECT_EQ(test, sync.n_pdos, s->pdos.sm[2].n);
 	KUNIT_EXPECT_NULL(test, sync.pdos);
 	KUNIT_EXPECT_EQ(test, ecrt_master_get_sync_manager(m, 0, 3, &sync), 0);
 	KUNIT_EXPECT_EQ(test, sync.dir, EC_DIR_INPUT);

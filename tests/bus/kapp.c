@@ -55,7 +55,7 @@ void kapp_map(struct kapp *k, u32 position)
 		u32 *offset = s->sms[sm].control & EC_SM_DIR_WRITE ? k->out : k->in;
 		int ret;
 
-		if (!ec_pdo_list_bytes(&s->sm_pdos[sm]))
+		if (!ec_pdo_list_bytes(&s->pdos.sm[sm]))
 			continue;
 		ret = ecrt_slave_config_reg_pdo_entry_pos(sc, sm, 0, 0, k->d, NULL);
 		KUNIT_ASSERT_GE(k->b->test, ret, 0);

@@ -157,10 +157,10 @@ static void late_reply_to_startup_sdo_is_taken(struct kunit *test)
 	reply_after(b, 2000);
 	cyc_activate(c);
 	us = cyc_wait_op(c, 60000);
-	KUNIT_EXPECT_NE_MSG(test, us, ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_NE_MSG(test, us, ~0ull, "%s", bus_slave(b, 0)->note.why);
 	bus_figure("startup SDO answered after 2000 ms, limit 500 ms: OP after %llu ms",
 		   div_u64(us, 1000));
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_OK);
 	reply_after(b, 0);
 	cyc_release(c);
 	bus_idle(b);

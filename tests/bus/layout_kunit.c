@@ -264,9 +264,9 @@ static void layout_not_running(struct kunit *test)
 	write_outputs(c, 1);
 	cyc_run(c, 4);
 	bus_request(c->b, 2, EC_AL_INIT);
-	for (i = 0; i < 100 && bus_slave(c->b, 2)->al_status != EC_AL_INIT; i++)
+	for (i = 0; i < 100 && bus_slave(c->b, 2)->al.status != EC_AL_INIT; i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_EQ(test, bus_slave(c->b, 2)->al_status, EC_AL_INIT);
+	KUNIT_ASSERT_EQ(test, bus_slave(c->b, 2)->al.status, EC_AL_INIT);
 	cyc_run(c, 4);
 	write_outputs(c, 2);
 	cyc_run(c, 4);

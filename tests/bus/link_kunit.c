@@ -24,9 +24,10 @@ static void all_are_well(struct bus *b, u32 n)
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = bus_slave(b, i);
 
-		KUNIT_EXPECT_EQ_MSG(b->test, s->error, EC_SLAVE_OK, "slave %u: %s", i, s->why);
+		KUNIT_EXPECT_EQ_MSG(b->test, s->note.error, EC_SLAVE_OK, "slave %u: %s", i,
+				    s->note.why);
 		KUNIT_EXPECT_FALSE_MSG(b->test, ec_slave_pdos_pending(s), "slave %u: no PDOs", i);
-		KUNIT_EXPECT_EQ_MSG(b->test, s->sm_pdos[2].n, 1u, "slave %u", i);
+		KUNIT_EXPECT_EQ_MSG(b->test, s->pdos.sm[2].n, 1u, "slave %u", i);
 	}
 }
 
@@ -105,9 +106,9 @@ static void link_hanging_device_is_no_fault_of_slaves(struct kunit *test)
 	slow_stop(s, false);
 	msleep(5000);
 	for (i = 0; i < MANY; i++)
-		KUNIT_EXPECT_EQ_MSG(test, bus_slave(b, i)->al_status, EC_AL_PREOP, "slave %u: %s",
+		KUNIT_EXPECT_EQ_MSG(test, bus_slave(b, i)->al.status, EC_AL_PREOP, "slave %u: %s",
 				    i,
-				    bus_slave(b, i)->why);
+				    bus_slave(b, i)->note.why);
 }
 
 /* how long until the monitor knows, us; ~0 after a second */
@@ -131,7 +132,7 @@ static u32 failed(struct bus *b)
 	u32 i, n = 0;
 
 	for (i = 0; i < bus_n_slaves(b); i++)
-		n += bus_slave_at(b, i)->error != EC_SLAVE_OK;
+		n += bus_slave_at(b, i)->note.error != EC_SLAVE_OK;
 	return n;
 }
 

@@ -36,8 +36,8 @@ static void look(struct cyc *c)
 	for (i = 0; i < N_SAFE; i++) {
 		const struct ec_slave *s = w->slave[i];
 
-		w->offline += READ_ONCE(s->stop.gone) || READ_ONCE(s->silent) ||
-			      READ_ONCE(s->reconfigure) || READ_ONCE(s->al_status) != EC_AL_OP;
+		w->offline += READ_ONCE(s->stop.gone) || READ_ONCE(s->reply.silent) ||
+			      READ_ONCE(s->work.reconfigure) || READ_ONCE(s->al.status) != EC_AL_OP;
 	}
 	w->incomplete += cyc_state(c, 0)->wc_state != 2;
 }

@@ -73,14 +73,14 @@ static void expect_op(struct cyc *c, u32 outputs, u32 inputs)
 	struct bus *b = c->b;
 
 	cyc_activate(c);
-	KUNIT_ASSERT_NE_MSG(b->test, cyc_wait_op(c, 5000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_ASSERT_NE_MSG(b->test, cyc_wait_op(c, 5000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(b->test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_EXPECT_EQ(b->test, get_unaligned_le16(bus_esc(b, 0)->mem + EC_REG_SM(2) + 2),
 			outputs);
 	KUNIT_EXPECT_EQ(b->test, get_unaligned_le16(bus_esc(b, 0)->mem + EC_REG_SM(3) + 2),
 			inputs);
-	KUNIT_EXPECT_STREQ(b->test, bus_slave(b, 0)->warning, "");
+	KUNIT_EXPECT_STREQ(b->test, bus_slave(b, 0)->note.warning, "");
 }
 
 static void expect_refused(struct cyc *c, const char *text)
@@ -90,7 +90,7 @@ static void expect_refused(struct cyc *c, const char *text)
 
 	cyc_activate(c);
 	cyc_run(c, 2000);
-	KUNIT_EXPECT_EQ(b->test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(b->test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &w), 0);
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(w.text, text), "%s", w.text);
 }
@@ -149,7 +149,7 @@ static void made_entries_are_registered(struct kunit *test)
 	cyc_run(c, 500);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 0, 0, 0, 0);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 10000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_NE_MSG(test, cyc_wait_op(c, 10000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
@@ -235,8 +235,8 @@ static struct cyc *output_terminal(struct kunit *test, u16 pdo)
 	bus_plug(b);
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
 	c = reserve(b, &config);
-	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[3]), 0u);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->sm_pdos[3].n, pdo ? 1u : 0u);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->pdos.sm[3]), 0u);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->pdos.sm[3].n, pdo ? 1u : 0u);
 	cyc_map(c, config, 2, 0);
 	/* as 'ethercat cstruct' writes it */
 	cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, 3, 0, 0);

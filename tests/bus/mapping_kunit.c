@@ -52,7 +52,7 @@ static struct cyc *configure(struct kunit *test, const char *text, u32 wrong, u3
 	c = cyc_new(b, 1000);
 	r.domain = cyc_domain(c);
 	r.config = cyc_config(c, 0);
-	l = &bus_slave(b, 0)->sm_pdos[2];
+	l = &bus_slave(b, 0)->pdos.sm[2];
 	KUNIT_ASSERT_EQ(test, l->n, 1u);
 	pdo = l->pdos[0].index;
 	n = min_t(u32, l->pdos[0].n_entries, ARRAY_SIZE(entries));
@@ -79,9 +79,9 @@ static void mapping_other_entry_does_not_reach_op(struct kunit *test)
 	logged(&it, "");
 	cyc_activate(c);
 	cyc_run(c, 3000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_OP);
 	expect_why(b, 0, "registered 0x6040:71, 16 bit; slave has 0x6040:00, 16 bit");
 	expect_why(b, 0, "refused: abort 0x06");
 	first = it;
@@ -112,7 +112,7 @@ static void mapping_unregistered_entry_does_not_matter(struct kunit *test)
 
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_EXPECT_STREQ(test, bus_slave(c->b, 0)->warning, "");
+	KUNIT_EXPECT_STREQ(test, bus_slave(c->b, 0)->note.warning, "");
 }
 
 /* It refuses, or does not reply, and cannot be read either. */
@@ -169,20 +169,20 @@ static void mapping_without_mailbox_is_compared(struct kunit *test)
 
 	cyc_activate(c);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	expect_why(b, 0, "registered 0x7010:01, 1 bit; slave has 0x7000:01, 1 bit");
 	cyc_release(c);
 	c = terminal(test, b, 0, 0x30010102);	/* another length */
 	cyc_activate(c);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 	expect_why(b, 0, "registered 0x3001:01, 2 bit; slave has 0x7000:01, 1 bit");
 	cyc_release(c);
 	/* an entry that is not registered, as cyc_map() takes the first one */
 	c = terminal(test, b, 3, 0x70000201);
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->warning, "");
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->note.warning, "");
 	cyc_release(c);
 	c = terminal(test, b, 0, 0x70100101);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &f), 0);
@@ -203,7 +203,7 @@ static void mapping_without_mailbox_names_are_labels(struct kunit *test)
 	kmsg_dump_rewind(&it);
 	logged(&it, "");
 	cyc_activate(c);
-	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	cyc_run(c, 10);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_EXPECT_EQ(test, logged(&it, "EtherCAT 0-0: "), 1u);
@@ -320,11 +320,11 @@ static void mapping_written_is_shown(struct kunit *test)
 	/* the slave has them, but it is the configuration that has registered some */
 	for (i = 0; i < p.entry_count; i++)
 		KUNIT_EXPECT_FALSE(test,
-				   bus_slave(b, 0)->sm_pdos[2].pdos[0].entries[i].registered);
+				   bus_slave(b, 0)->pdos.sm[2].pdos[0].entries[i].registered);
 	/* the next application finds them, too, although the EEPROM has others */
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[2]), 8u);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->pdos.sm[2]), 8u);
 }
 
 static struct kunit_case mapping_cases[] = {

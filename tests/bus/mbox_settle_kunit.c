@@ -56,7 +56,7 @@ static void mbox_contradicting_eeprom_reaches_op(struct kunit *test)
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	cyc_run(c, 20);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, 0)->mem[EC_REG_SM(0) + EC_SM_OFS_ACTIVATE],

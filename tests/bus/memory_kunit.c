@@ -118,15 +118,15 @@ static void memory_fragmented(struct kunit *test)
 	cyc_activate(c);
 	for (i = 0; i < 1000; i++) {
 		cyc_run(c, 1);
-		for (op = 0; op < SLAVES && bus_slave(b, op)->al_status == EC_AL_OP; op++)
+		for (op = 0; op < SLAVES && bus_slave(b, op)->al.status == EC_AL_OP; op++)
 			;
 		if (op == SLAVES)
 			break;
 	}
 	/* but for the one whose startup SDOs are refused */
 	for (i = 1; i < SLAVES; i++)
-		KUNIT_EXPECT_EQ_MSG(test, bus_slave(b, i)->al_status, EC_AL_OP, "slave %u", i);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+		KUNIT_EXPECT_EQ_MSG(test, bus_slave(b, i)->al.status, EC_AL_OP, "slave %u", i);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_CONFIG_FAILED);
 	KUNIT_EXPECT_EQ(test, req_do(c, 1, 0x1018, 1, EC_REQUEST_OP_READ, 0), 0);
 	cyc_release(c);
 	bus_idle(b);

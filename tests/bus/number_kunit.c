@@ -234,7 +234,7 @@ static void number_of_unreadable_slave(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	n = number(b, C);
 	msleep(5000);
-	KUNIT_ASSERT_EQ(test, bus_slave(b, C)->error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, C)->note.error, EC_SLAVE_SCAN_FAILED);
 	KUNIT_EXPECT_EQ(test, number(b, C), n);
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, C, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 120000), ~0ull);

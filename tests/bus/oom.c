@@ -78,8 +78,8 @@ static bool is_whole(struct bus *b)
 	for (i = 0; i < OOM_SLAVES; i++) {
 		const struct ec_slave *s = bus_slave_at(b, i);
 
-		if (s->al_status != EC_AL_PREOP || s->error || s->pdos_unread ||
-		    ec_slave_pdos_pending(s) || s->warning[0])
+		if (s->al.status != EC_AL_PREOP || s->note.error || s->pdos.unread ||
+		    ec_slave_pdos_pending(s) || s->note.warning[0])
 			return false;
 	}
 	return true;
@@ -122,7 +122,7 @@ int oom_configure(struct bus *b, struct cyc *c, bool kernel)
 				.flags = EC_REG_ENTRY_BY_POS, .config = i, .sm = sm,
 			};
 
-			if (ec_pdo_list_bytes(&s->sm_pdos[sm]))
+			if (ec_pdo_list_bytes(&s->pdos.sm[sm]))
 				ret = ec_ioc(&b->app, EC_IOC_REG_ENTRY, &r);
 		}
 	}

@@ -123,11 +123,11 @@ static void op_slave_error(struct kunit *test)
 	u32 i;
 
 	ec_app_al_fail(bus_app(c->b, "ai"), EC_AL_SAFEOP, 0x001b, ktime_get_ns());
-	for (i = 0; i < 100 && bus_slave(c->b, AI)->al_status == EC_AL_OP; i++)
+	for (i = 0; i < 100 && bus_slave(c->b, AI)->al.status == EC_AL_OP; i++)
 		cyc_run(c, 1);
 	KUNIT_EXPECT_LT(test, i, 100);
 	KUNIT_EXPECT_NE(test, recover(c, 1000), ~0ull);
-	KUNIT_EXPECT_EQ(test, bus_slave(c->b, AI)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(c->b, AI)->note.error, EC_SLAVE_OK);
 }
 
 /* The AL event in a frame of the cycle wakes the monitor: at any phase of its looks. */
@@ -138,7 +138,7 @@ static void op_slave_error_shows_at_once(struct kunit *test)
 
 	for (k = 0; k < 10; k++) {
 		ec_app_al_fail(bus_app(c->b, "ai"), EC_AL_SAFEOP, 0x001b, ktime_get_ns());
-		for (i = 0; i < 100 && bus_slave(c->b, AI)->al_status == EC_AL_OP; i++)
+		for (i = 0; i < 100 && bus_slave(c->b, AI)->al.status == EC_AL_OP; i++)
 			cyc_run(c, 1);
 		most = max(most, i);
 		KUNIT_ASSERT_NE(test, recover(c, 1000), ~0ull);
@@ -183,11 +183,11 @@ static void op_refused(struct kunit *test)
 	cyc_map_all(c, 0, N, 0);
 	cyc_activate(c);
 	cyc_run(c, 1000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, AI)->why, "0x001e"), "why: %s",
-				  bus_slave(b, AI)->why);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al.status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, AI)->note.why, "0x001e"), "why: %s",
+				  bus_slave(b, AI)->note.why);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->al.status, EC_AL_OP);
 	works(c);
 }
 

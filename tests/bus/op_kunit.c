@@ -61,7 +61,7 @@ static void op_mapping_rewritten(struct kunit *test)
 	out = cyc_map(c, config, 2, 0);
 	in = cyc_map(c, config, 3, 0);
 	cyc_activate(c);
-	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 2000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 2000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	KUNIT_EXPECT_EQ(test, app->bytes[EC_APP_OUT], 8);
 	KUNIT_EXPECT_EQ(test, app->bytes[EC_APP_IN], 12);
 	for (i = 0; i < ARRAY_SIZE(cyc_new_in); i++)
@@ -255,7 +255,7 @@ static u8 beside(struct kunit *test, const char *text)
 	cyc_activate(c);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 2000), ~0ull);
 	cyc_run(c, 500);
-	state = bus_slave(b, 0)->al_status;
+	state = bus_slave(b, 0)->al.status;
 	KUNIT_EXPECT_EQ(test, bus_al_states(b), EC_AL_OP | state);
 	cyc_release(c);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 1000), ~0ull);

@@ -43,18 +43,18 @@ static void pdo_same_as_eeprom(struct kunit *test)
 	unsigned int sm;
 
 	for (sm = 2; sm < 4; sm++) {
-		bytes[sm] = ec_pdo_list_bytes(&s->sm_pdos[sm]);
-		entries[sm] = s->sm_pdos[sm].pdos[0].n_entries;
+		bytes[sm] = ec_pdo_list_bytes(&s->pdos.sm[sm]);
+		entries[sm] = s->pdos.sm[sm].pdos[0].n_entries;
 		KUNIT_EXPECT_EQ(test, bytes[sm], 22u);
 	}
-	KUNIT_EXPECT_FALSE(test, s->pdos_known);
+	KUNIT_EXPECT_FALSE(test, s->pdos.known);
 	wait_known(b);
-	KUNIT_EXPECT_TRUE(test, s->pdos_known);
+	KUNIT_EXPECT_TRUE(test, s->pdos.known);
 	for (sm = 2; sm < 4; sm++) {
-		KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&s->sm_pdos[sm]), bytes[sm]);
-		KUNIT_EXPECT_EQ(test, s->sm_pdos[sm].pdos[0].n_entries, entries[sm]);
+		KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&s->pdos.sm[sm]), bytes[sm]);
+		KUNIT_EXPECT_EQ(test, s->pdos.sm[sm].pdos[0].n_entries, entries[sm]);
 		/* names come from the EEPROM still */
-		KUNIT_EXPECT_NE(test, s->sm_pdos[sm].pdos[0].name, 0);
+		KUNIT_EXPECT_NE(test, s->pdos.sm[sm].pdos[0].name, 0);
 	}
 }
 
@@ -66,11 +66,11 @@ static void pdo_mailbox_failed_read_later(struct kunit *test)
 	unsigned int i, busy = 0;
 	char warning[160];
 
-	KUNIT_ASSERT_FALSE(test, s->pdos_known);
+	KUNIT_ASSERT_FALSE(test, s->pdos.known);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
-	for (i = 0; i < 60 && !READ_ONCE(s->pdos_known); i++)
+	for (i = 0; i < 60 && !READ_ONCE(s->pdos.known); i++)
 		msleep(500);
-	KUNIT_EXPECT_TRUE(test, s->pdos_unread);
+	KUNIT_EXPECT_TRUE(test, s->pdos.unread);
 	ec_slave_warning(s, warning, sizeof(warning));
 	KUNIT_EXPECT_TRUE(test, strstarts(warning, "PDOs could not be read over CoE"));
 	/* nobody who waits for the bus waits for that */
@@ -82,12 +82,12 @@ static void pdo_mailbox_failed_read_later(struct kunit *test)
 	}
 	bus_figure("PDOs that cannot be read: worker busy in %u of 400 looks", busy);
 	KUNIT_EXPECT_LE(test, busy, 80u);
-	KUNIT_EXPECT_TRUE(test, s->pdos_unread);
+	KUNIT_EXPECT_TRUE(test, s->pdos.unread);
 
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 0, 0);
-	for (i = 0; i < 400 && READ_ONCE(s->pdos_unread); i++)
+	for (i = 0; i < 400 && READ_ONCE(s->pdos.unread); i++)
 		msleep(500);
-	KUNIT_EXPECT_FALSE(test, s->pdos_unread);
+	KUNIT_EXPECT_FALSE(test, s->pdos.unread);
 	ec_slave_warning(s, warning, sizeof(warning));
 	KUNIT_EXPECT_STREQ(test, warning, "");
 	KUNIT_EXPECT_FALSE(test, ec_slave_pdos_pending(s));
@@ -101,8 +101,8 @@ static void pdo_changed_mapping_is_seen(struct kunit *test)
 	u16 pdo, unassigned;
 
 	wait_known(b);
-	pdo = s->sm_pdos[2].pdos[0].index;
-	unassigned = s->sm_pdos[3].pdos[0].index;
+	pdo = s->pdos.sm[2].pdos[0].index;
+	unassigned = s->pdos.sm[3].pdos[0].index;
 	KUNIT_ASSERT_EQ(test, put(s, 0x1c12, 0, 0, 1), 0);
 	KUNIT_ASSERT_EQ(test, put(s, pdo, 0, 0, 1), 0);
 	KUNIT_ASSERT_EQ(test, put(s, pdo, 1, 0x60400010, 4), 0);
@@ -116,11 +116,11 @@ static void pdo_changed_mapping_is_seen(struct kunit *test)
 	KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 10000), ~0ull);
 	wait_known(b);
 	s = bus_slave(b, 0);
-	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&s->sm_pdos[2]), 2u);
-	KUNIT_ASSERT_EQ(test, s->sm_pdos[2].n, 1u);
-	KUNIT_ASSERT_EQ(test, s->sm_pdos[2].pdos[0].n_entries, 1u);
-	KUNIT_EXPECT_EQ(test, s->sm_pdos[2].pdos[0].entries[0].index, 0x6040);
-	KUNIT_EXPECT_EQ(test, s->sm_pdos[3].n, 0u);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&s->pdos.sm[2]), 2u);
+	KUNIT_ASSERT_EQ(test, s->pdos.sm[2].n, 1u);
+	KUNIT_ASSERT_EQ(test, s->pdos.sm[2].pdos[0].n_entries, 1u);
+	KUNIT_EXPECT_EQ(test, s->pdos.sm[2].pdos[0].entries[0].index, 0x6040);
+	KUNIT_EXPECT_EQ(test, s->pdos.sm[3].n, 0u);
 	/* it can be assigned again with the mapping of the EEPROM */
 	down_read(&bus_table(b)->topo);
 	p = ec_slave_find_pdo(s, unassigned);
@@ -139,9 +139,9 @@ static void pdo_mute_slave(struct kunit *test)
 	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 10000), ~0ull);
 	bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 	wait_known(b);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 0)->pdos_known);
-	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->sm_pdos[2]), 22u);
-	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 1)->sm_pdos[2]), 8u);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 0)->pdos.known);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 0)->pdos.sm[2]), 22u);
+	KUNIT_EXPECT_EQ(test, ec_pdo_list_bytes(&bus_slave(b, 1)->pdos.sm[2]), 8u);
 }
 
 /* Name of PDO 0 of SM2, or of its entry @entry. */
@@ -178,10 +178,10 @@ static void pdo_names_of_dictionary(struct kunit *test)
 
 	KUNIT_EXPECT_STREQ(test, shown(b, 0), "");
 	bus_idle(b);
-	n = bus_slave(b, 0)->sm_pdos[2].pdos[0].n_entries;
+	n = bus_slave(b, 0)->pdos.sm[2].pdos[0].n_entries;
 	KUNIT_EXPECT_GT(test, n, 1u);
 	for (i = 0; i < n; i++)
-		if (bus_slave(b, 0)->sm_pdos[2].pdos[0].entries[i].index)
+		if (bus_slave(b, 0)->pdos.sm[2].pdos[0].entries[i].index)
 			KUNIT_EXPECT_STRNEQ_MSG(test, shown(b, i), "", "entry %u", i);
 	KUNIT_EXPECT_STREQ(test, shown(b, 0), "Controlword");
 	KUNIT_EXPECT_STRNEQ(test, shown(b, -1), "");
@@ -197,7 +197,7 @@ static void pdo_names_beside_cycle(struct kunit *test)
 
 	bus_idle(b);
 	s = bus_slave(b, 0);
-	n = s->names.n;
+	n = s->pdos.names.n;
 	KUNIT_ASSERT_GT(test, n, 0u);
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
@@ -208,11 +208,11 @@ static void pdo_names_beside_cycle(struct kunit *test)
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_EQ(test, s->names.n, n);
+	KUNIT_EXPECT_EQ(test, s->pdos.names.n, n);
 	KUNIT_EXPECT_STREQ(test, shown(b, 0), "Controlword");
 	cyc_release(c);
 	bus_idle(b);
-	KUNIT_EXPECT_GE(test, s->names.n, n);
+	KUNIT_EXPECT_GE(test, s->pdos.names.n, n);
 	KUNIT_EXPECT_STRNEQ(test, shown(b, 2), "");
 }
 
@@ -225,17 +225,17 @@ static void pdo_names_after_long_transfer(struct kunit *test)
 
 	bus_idle(b);
 	s = bus_slave(b, 0);
-	KUNIT_ASSERT_GT(test, s->names.n, 0u);
+	KUNIT_ASSERT_GT(test, s->pdos.names.n, 0u);
 	ec_names_free(s);
-	s->names_done = false;
+	s->pdos.names_done = false;
 	KUNIT_ASSERT_EQ(test, ec_mbox_claim(&s->mbox, &claim, BIT(EC_MBOX_COE), 0), 0);
 	ec_slave_kick(s);
 	msleep(2000);
 	ec_mbox_unclaim(&s->mbox, &claim);
-	KUNIT_ASSERT_EQ(test, s->names.n, 0u);
+	KUNIT_ASSERT_EQ(test, s->pdos.names.n, 0u);
 	ec_slave_kick(s);
 	bus_idle(b);
-	KUNIT_EXPECT_GT(test, s->names.n, 0u);
+	KUNIT_EXPECT_GT(test, s->pdos.names.n, 0u);
 }
 
 #define HOSTILE_PDOS	252	/* of 255 entries each, in categories of 63: 504 KiB */
@@ -283,8 +283,8 @@ static void pdo_names_of_hostile_slave(struct kunit *test)
 	u32 i, k;
 
 	KUNIT_ASSERT_NOT_NULL(test, s);
-	s->sii = hostile_eeprom(test);
-	s->sii_bytes = EC_MAX_SII_BYTES;
+	s->eeprom.data = hostile_eeprom(test);
+	s->eeprom.bytes = EC_MAX_SII_BYTES;
 	for (i = 0; i < 255; i++) {
 		struct ec_pdo *p = ec_pdo_add(&l, 0x1600 + i, 0);
 
@@ -313,7 +313,7 @@ static void pdo_names_of_hostile_slave(struct kunit *test)
 	}
 	KUNIT_EXPECT_EQ(test, l.pdos[254].name, 0);
 	ec_pdo_list_clear(&l);
-	kvfree(s->sii);
+	kvfree(s->eeprom.data);
 }
 
 static struct kunit_case cases[] = {

@@ -123,8 +123,8 @@ static void ports_new_slaves(struct kunit *test)
 	cyc_run(c, 50);
 	KUNIT_EXPECT_EQ_MSG(test, bus_n_slaves(b), N, "the link is not stable yet");
 	for (i = 0; i < 2000 && !(bus_n_slaves(b) == N + 2 &&
-				  READ_ONCE(bus_slave(b, 3)->al_status) == EC_AL_PREOP &&
-				  READ_ONCE(bus_slave(b, 4)->al_status) == EC_AL_PREOP); i++)
+				  READ_ONCE(bus_slave(b, 3)->al.status) == EC_AL_PREOP &&
+				  READ_ONCE(bus_slave(b, 4)->al.status) == EC_AL_PREOP); i++)
 		cyc_run(c, 1);
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), N + 2u);
 	bus_figure("two new slaves in PREOP %u cycles after their link came", i + 50);

@@ -19,8 +19,8 @@ static struct ec_slave *by_station(struct bus *b, u16 station)
 static bool is_well(const struct ec_esc *esc, const struct ec_slave *s)
 {
 	return esc->mem[EC_REG_AL_STATUS] == EC_AL_OP && !READ_ONCE(s->stop.gone) &&
-	       !READ_ONCE(s->silent) && !READ_ONCE(s->reconfigure) &&
-	       READ_ONCE(s->al_status) == EC_AL_OP;
+	       !READ_ONCE(s->reply.silent) && !READ_ONCE(s->work.reconfigure) &&
+	       READ_ONCE(s->al.status) == EC_AL_OP;
 }
 
 /* A port that has closed itself at a loss of link stays closed when the link is back. */
@@ -39,8 +39,9 @@ static void report(struct random_run *r, u32 i)
 
 	if (r->broken++ < 10)
 		pr_info("# broken: slave %u of the segment, AL 0x%02x, gone %d silent %d, reconfigure %d, AL of the list 0x%02x, passed %d, station 0x%04x instead of 0x%04x, well for %llu cycles, %llu ns\n",
-			i, esc->mem[EC_REG_AL_STATUS], s->stop.gone, s->silent, s->reconfigure,
-			s->al_status, is_passed(r->b, esc),
+			i, esc->mem[EC_REG_AL_STATUS], s->stop.gone, s->reply.silent,
+			s->work.reconfigure,
+			s->al.status, is_passed(r->b, esc),
 			get_unaligned_le16(esc->mem + EC_REG_STATION), s->station, r->s[i].well,
 			ktime_get_ns());
 }

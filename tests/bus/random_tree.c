@@ -112,7 +112,7 @@ static u32 index_of(struct bus *b, const struct ec_esc *esc)
 /* byte of the process data of a drive or an io that comes back */
 static u32 echo_at(const struct ec_slave *s, u32 sm)
 {
-	return ec_pdo_list_bytes(&s->sm_pdos[sm]) == 8 ? 6 : 0;
+	return ec_pdo_list_bytes(&s->pdos.sm[sm]) == 8 ? 6 : 0;
 }
 
 static void map_slave(struct random_run *r, u32 position, u32 domains)
@@ -129,7 +129,7 @@ static void map_slave(struct random_run *r, u32 position, u32 domains)
 	x->configured = true;
 	x->domain = i % domains;
 	for (sm = 0; sm < s->n_sms; sm++) {
-		if (!ec_pdo_list_bytes(&s->sm_pdos[sm]))
+		if (!ec_pdo_list_bytes(&s->pdos.sm[sm]))
 			continue;
 		offset = cyc_map(r->c, sc.index, sm, x->domain) + echo_at(s, sm);
 		if (!x->data)

@@ -49,8 +49,8 @@ static void replay_held_slave_waits_in_preop(struct kunit *test)
 	n = wait_held(c);
 	KUNIT_ASSERT_EQ(test, n, 1u);
 	cyc_run(c, 40000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, DRIVE)->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_EQ(test, (u32)bus_slave(b, DRIVE)->error, (u32)EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, DRIVE)->al.status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, (u32)bus_slave(b, DRIVE)->note.error, (u32)EC_SLAVE_OK);
 	replay_why_text(c, text);
 	HAS(test, text, "waiting for the application, which holds it in PREOP (ReinitHold)");
 	KUNIT_EXPECT_EQ(test, replay_put_of(b, &b->app, TYPES, 4, 6, 4), 0);

@@ -29,7 +29,7 @@ static void into_preop(struct cyc *c)
 	cyc_activate(c);
 	bus_request(c->b, DRIVE, EC_AL_PREOP);
 	cyc_run(c, 200);
-	KUNIT_ASSERT_EQ(c->b->test, bus_slave(c->b, DRIVE)->al_status, EC_AL_PREOP);
+	KUNIT_ASSERT_EQ(c->b->test, bus_slave(c->b, DRIVE)->al.status, EC_AL_PREOP);
 	KUNIT_ASSERT_FALSE(c->b->test, bus_config(c->b, 0)->replay.was_op);
 }
 
@@ -165,7 +165,7 @@ static void replay_needs_way_through_init(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, replay_put_of(b, &b->app, TYPES, 4, 6, 4), 0);
 	bus_request(b, DRIVE, EC_AL_PREOP);
 	cyc_run(c, 200);
-	KUNIT_ASSERT_EQ(test, bus_slave(b, DRIVE)->al_status, EC_AL_PREOP);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, DRIVE)->al.status, EC_AL_PREOP);
 	bus_request(b, DRIVE, EC_AL_OP);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	KUNIT_EXPECT_EQ(test, replay_value(b, TYPES, 4, 4), 6ull);
@@ -417,7 +417,7 @@ static void replay_refusal_has_reason(struct kunit *test)
 	KUNIT_EXPECT_FALSE(test, cyc_all_op(c));
 	replay_why_text(c, text);
 	HAS(test, text, "replayed SDO 0x2001:04 (4 byte(s)) failed: abort 0x06010002");
-	KUNIT_EXPECT_EQ(test, bus_slave(b, DRIVE)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, DRIVE)->al.status, EC_AL_PREOP);
 	e->access = access;
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESET, NULL), 0);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);

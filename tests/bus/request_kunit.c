@@ -50,8 +50,8 @@ static struct cyc *prepare(struct kunit *test)
 
 static bool both_op(struct cyc *c)
 {
-	return bus_slave(c->b, 0)->al_status == EC_AL_OP &&
-	       bus_slave(c->b, 1)->al_status == EC_AL_OP;
+	return bus_slave(c->b, 0)->al.status == EC_AL_OP &&
+	       bus_slave(c->b, 1)->al.status == EC_AL_OP;
 }
 
 static void go(struct cyc *c)
@@ -396,7 +396,7 @@ static void req_registers_of_failed_slave(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 2000);
 	for (i = 0; i < 2; i++) {
-		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->error, EC_SLAVE_CONFIG_FAILED);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, i)->note.error, EC_SLAVE_CONFIG_FAILED);
 		req_begin(c, r[i], EC_REG_STATION, 0, false, 2);
 		KUNIT_EXPECT_EQ(test, req_end(c, r[i], 1000), 0);
 		KUNIT_EXPECT_EQ(test, get_unaligned_le16(req_data(c, r[i])),

@@ -44,9 +44,9 @@ static void go(struct cyc *c)
 	u32 i;
 
 	cyc_activate(c);
-	for (i = 0; i < 5000 && bus_slave(c->b, 0)->al_status != EC_AL_OP; i++)
+	for (i = 0; i < 5000 && bus_slave(c->b, 0)->al.status != EC_AL_OP; i++)
 		cyc_run(c, 1);
-	KUNIT_ASSERT_EQ(c->b->test, bus_slave(c->b, 0)->al_status, EC_AL_OP);
+	KUNIT_ASSERT_EQ(c->b->test, bus_slave(c->b, 0)->al.status, EC_AL_OP);
 }
 
 static void begin(struct cyc *c, u32 r, u32 i)

@@ -69,17 +69,17 @@ static void silent_for(struct kunit *test, u32 ms)
 	cyc_run(c, ms);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, AO), s);
 	KUNIT_EXPECT_STREQ(test, s->order, "EL4002");
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_SCAN_FAILED);
 	KUNIT_EXPECT_EQ(test, cyc_config_status(b, AO), 0);
 	expect_why(b, AO, "no reply");
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_status, EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al.status, EC_AL_OP);
 
 	bus_fault(b, EC_SIM_FAULT_DEAD, AO, 0, 0, 0);
 	us = cyc_wait_op(c, 3000);
 	KUNIT_EXPECT_NE(test, us, ~0ull);
 	bus_figure("a slave that was silent for %u ms is in OP after %llu us", ms, us);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, AO), s);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 	KUNIT_EXPECT_EQ(test, bus_esc(b, AO)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	cyc_run(c, 20);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
@@ -110,7 +110,7 @@ static void retry_silent_slave_restarts(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_DEAD, AO, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 5000), ~0ull);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, AO)->order, "EL4002");
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AO)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AO)->note.error, EC_SLAVE_OK);
 }
 
 /* Two neighbours: one stays silent, the other one returns. */
@@ -127,8 +127,8 @@ static void retry_one_of_two_silent(struct kunit *test)
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, AI)->order, "EL3062");
 	bus_fault(b, EC_SIM_FAULT_DEAD, AI, 0, 0, 0);
 	cyc_run(c, 2000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_status, EC_AL_OP);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, AO)->silent);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al.status, EC_AL_OP);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, AO)->reply.silent);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, AO)->order, "EL4002");
 	bus_fault(b, EC_SIM_FAULT_DEAD, AO, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(c, 3000), ~0ull);
@@ -144,13 +144,13 @@ static void retry_silent_without_application(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_DEAD, X, 0, 1, 0);
 	msleep(20000);
 	scans = bus_scans(b);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->note.error, EC_SLAVE_SCAN_FAILED);
 	msleep(5000);
 	/* while it does not reply, nothing else is disturbed */
 	KUNIT_EXPECT_EQ(test, bus_scans(b), scans);
 	bus_fault(b, EC_SIM_FAULT_DEAD, X, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait_al(b, X, EC_AL_PREOP, 2000), ~0ull);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, X)->note.error, EC_SLAVE_OK);
 }
 
 /* What cannot be read is tried again, ever less often; the log has the cause once. */
@@ -166,7 +166,7 @@ static void unreadable(struct kunit *test, enum ec_sim_fault_type type, u32 arg)
 	bus_plug(b);
 	msleep(1000);
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->note.error, EC_SLAVE_SCAN_FAILED);
 	msleep(60000);
 	scans = bus_scans(b);
 	KUNIT_EXPECT_LE(test, scans, 12u);
@@ -174,7 +174,7 @@ static void unreadable(struct kunit *test, enum ec_sim_fault_type type, u32 arg)
 	bus_fault(b, type, AI, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, AI)->order, "EL3062");
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, AI)->why, "");
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, AI)->note.why, "");
 }
 
 static void retry_eeprom_busy(struct kunit *test)
@@ -201,12 +201,12 @@ static void retry_mute(struct kunit *test)
 	bus_plug(b);
 	msleep(20000);
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->note.error, EC_SLAVE_CONFIG_FAILED);
 	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
 	/* the monitor may have seen the state before the worker */
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->note.error, EC_SLAVE_OK);
 }
 
 /* The next try is cut short by a caller who leaves the slave to the monitor again. */
@@ -220,7 +220,7 @@ static void retry_interrupted(struct kunit *test)
 	bus_plug(b);
 	msleep(20000);
 	s = bus_slave(b, AI);
-	KUNIT_ASSERT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_ASSERT_EQ(test, s->note.error, EC_SLAVE_CONFIG_FAILED);
 	for (i = 0; i < 70000 && (!ec_slave_busy(s) || !READ_ONCE(s->stop.worker)); i++)
 		usleep_range(1000, 1001);
 	KUNIT_ASSERT_LT(test, i, 70000u);
@@ -232,7 +232,7 @@ static void retry_interrupted(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MUTE, AI, 0, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 70000), ~0ull);
 	bus_idle(b);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 }
 
 static u32 count_failed(struct bus *b)
@@ -240,7 +240,7 @@ static u32 count_failed(struct bus *b)
 	u32 i, n = 0;
 
 	for (i = 0; i < bus_n_slaves(b); i++)
-		n += bus_slave_at(b, i)->error == EC_SLAVE_CONFIG_FAILED;
+		n += bus_slave_at(b, i)->note.error == EC_SLAVE_CONFIG_FAILED;
 	return n;
 }
 
@@ -276,7 +276,7 @@ static void retry_frames_lost_during_start(struct kunit *test)
 	cyc_run(c, 100);
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
 	for (i = 0; i < N; i++)
-		KUNIT_EXPECT_STREQ(test, bus_slave(b, i)->why, "");
+		KUNIT_EXPECT_STREQ(test, bus_slave(b, i)->note.why, "");
 }
 
 /* A refusal stays one: only frames and time are worth another try. */
@@ -293,10 +293,10 @@ static void retry_not_after_refusal(struct kunit *test)
 	cyc_map_all(c, 0, N, 0);
 	cyc_activate(c);
 	cyc_run(c, 1000);
-	tries = bus_slave(b, AI)->al_reads;
+	tries = bus_slave(b, AI)->al.reads;
 	cyc_run(c, 5000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al_reads, tries);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, AI)->al.reads, tries);
 }
 
 /* An error in SAFEOP that only INIT clears: INIT, then OP; the text names the acknowledge. */
@@ -314,15 +314,15 @@ static void retry_error_without_acknowledge_goes_through_init(struct kunit *test
 	cyc_domain(c);
 	cyc_map_all(c, 0, 1, 0);
 	cyc_activate(c);
-	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_ASSERT_NE_MSG(test, cyc_wait_op(c, 3000), ~0ull, "%s", bus_slave(b, 0)->note.why);
 	ec_app_al_fail(bus_app(b, "a"), EC_AL_SAFEOP, EC_AL_CODE_SM_WATCHDOG, ktime_get_ns());
 	cyc_run(c, 3300);
 	us = cyc_wait_op(c, 10000);
 	bus_figure("an error that only INIT clears: OP after %llu us", us + 3300000);
-	KUNIT_EXPECT_NE_MSG(test, us, ~0ull, "%s", bus_slave(b, 0)->why);
+	KUNIT_EXPECT_NE_MSG(test, us, ~0ull, "%s", bus_slave(b, 0)->note.why);
 	KUNIT_EXPECT_EQ(test, bus_log_lines(ignored), lines + 1);
 	cyc_run(c, 20);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_OK);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 

@@ -154,7 +154,7 @@ static u64 us(u64 ns)
 static bool arrived(struct bus *b, const struct way *w, u8 state)
 {
 	return bus_n_slaves(b) == w->p->n && !bus_scan_busy(b) &&
-	       READ_ONCE(bus_slave(b, w->p->n - 1)->al_status) == state;
+	       READ_ONCE(bus_slave(b, w->p->n - 1)->al.status) == state;
 }
 
 /* A cycle; of frames beside the cycle @wire_ns gets their length, and once the way of a frame. */
@@ -324,8 +324,9 @@ static u32 reread(struct cyc *c, const struct way *w, const char *fault, u32 noa
 		cyc_run(c, 1);
 	KUNIT_ASSERT_LT_MSG(c->b->test, i, 10000u, "%s", fault);
 	s = bus_slave(c->b, w->p->n - 1);
-	KUNIT_EXPECT_EQ_MSG(c->b->test, s->sii_bytes, w->bytes, "%s", fault);
-	KUNIT_EXPECT_EQ_MSG(c->b->test, memcmp(s->sii, x->eep.data, w->bytes), 0, "%s", fault);
+	KUNIT_EXPECT_EQ_MSG(c->b->test, s->eeprom.bytes, w->bytes, "%s", fault);
+	KUNIT_EXPECT_EQ_MSG(c->b->test, memcmp(s->eeprom.data, x->eep.data, w->bytes), 0, "%s",
+			    fault);
 	bus_command(c->b, "unplug a.1");
 	cyc_run(c, 400);
 	KUNIT_ASSERT_EQ(c->b->test, bus_n_slaves(c->b), w->p->n - 1);

@@ -65,7 +65,7 @@ static void expect_grid(struct cyc *c, u64 phase, s32 shift)
 		KUNIT_EXPECT_EQ(test, rest, 0);
 		KUNIT_EXPECT_EQ(test, mem[EC_REG_DC_ACTIVATION], 3);
 		/* the first one was in the future: it is told as pending no more */
-		KUNIT_EXPECT_EQ(test, bus_slave(c->b, i)->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, bus_slave(c->b, i)->note.error, EC_SLAVE_OK);
 	}
 	cyc_run(c, 5000);	/* what the reference was off is made up for */
 	now = ktime_get_ns();
@@ -164,7 +164,7 @@ static void rules_deactivate(struct kunit *test)
 		KUNIT_EXPECT_FALSE(test, bus_dc_has_phase(b));
 		KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EINVAL);
 		bus_idle(b);
-		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al_status, EC_AL_PREOP);
+		KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->al.status, EC_AL_PREOP);
 		cyc_release(c);
 	}
 }
@@ -257,7 +257,7 @@ static void rules_wait_ends_on_release(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_FLAG, &flag), 0);
 	cyc_activate(c);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al_status, EC_AL_PREOP);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1)->al.status, EC_AL_PREOP);
 	KUNIT_EXPECT_NOT_NULL(test, ec_setup_of(bus_slave(b, 1))->waits_for);
 	t0 = ktime_get_ns();
 	cyc_release(c);

@@ -31,10 +31,12 @@ static void others_fine(struct bus *b, u32 bad, u32 limit_ms)
 
 		if (i == bad)
 			continue;
-		KUNIT_EXPECT_EQ_MSG(b->test, s->al_status, EC_AL_PREOP, "slave %u: %s", i, s->why);
-		KUNIT_EXPECT_EQ(b->test, s->error, EC_SLAVE_OK);
-		KUNIT_ASSERT_NOT_NULL(b->test, s->sii);
-		KUNIT_EXPECT_MEMEQ(b->test, s->sii, bus_esc(b, i)->eep.data, s->sii_bytes);
+		KUNIT_EXPECT_EQ_MSG(b->test, s->al.status, EC_AL_PREOP, "slave %u: %s", i,
+				    s->note.why);
+		KUNIT_EXPECT_EQ(b->test, s->note.error, EC_SLAVE_OK);
+		KUNIT_ASSERT_NOT_NULL(b->test, s->eeprom.data);
+		KUNIT_EXPECT_MEMEQ(b->test, s->eeprom.data, bus_esc(b, i)->eep.data,
+				   s->eeprom.bytes);
 	}
 }
 
@@ -42,8 +44,8 @@ static void failed_with(struct bus *b, u32 position, const char *text)
 {
 	struct ec_slave *s = bus_slave(b, position);
 
-	KUNIT_EXPECT_EQ(b->test, s->error, EC_SLAVE_SCAN_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(s->why, text), "why: %s", s->why);
+	KUNIT_EXPECT_EQ(b->test, s->note.error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(s->note.why, text), "why: %s", s->note.why);
 }
 
 static void scan_mixed_widths(struct kunit *test)
@@ -141,7 +143,7 @@ static void scan_not_read_not_published(struct kunit *test)
 	WRITE_ONCE(bus_base(b)->stopping, true);
 	for (i = 0; i < 100; i++) {
 		msleep(1);
-		unread += bus_n_slaves(b) && !bus_slave(b, 0)->sii;
+		unread += bus_n_slaves(b) && !bus_slave(b, 0)->eeprom.data;
 	}
 	WRITE_ONCE(bus_base(b)->stopping, false);
 	KUNIT_EXPECT_EQ(test, unread, 0u);
@@ -157,12 +159,12 @@ static void scan_not_read_gets_new_object(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, ~0u, 0);
 	others_fine(b, 2, 400);
 	old = ec_slave_ref(bus_slave(b, 2));
-	WRITE_ONCE(old->error, EC_SLAVE_OK);
+	WRITE_ONCE(old->note.error, EC_SLAVE_OK);
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 2, 0, 0, 0);
 	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
 	KUNIT_EXPECT_NE(test, bus_wait(b, 5, EC_AL_PREOP, 1000), ~0ull);
 	KUNIT_EXPECT_PTR_NE(test, bus_slave(b, 2), old);
-	KUNIT_EXPECT_NULL(test, old->sii);
+	KUNIT_EXPECT_NULL(test, old->eeprom.data);
 	ec_slave_unref(old);
 }
 
@@ -202,7 +204,7 @@ static void bounce_at(struct bus *b, int position)
 	bounces.b = b;
 	bounces.position = position;
 	bounces.times = 0;
-	WRITE_ONCE(bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+	WRITE_ONCE(bus_slave(b, 0)->note.error, EC_SLAVE_CONFIG_FAILED);
 }
 
 /* A known slave keeps its registers. */
@@ -224,7 +226,7 @@ static void scan_bounce_known(struct kunit *test)
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 2), s);
 	KUNIT_EXPECT_MEMEQ(test, s->regs, regs, sizeof(regs));
 	KUNIT_EXPECT_EQ(test, s->dl_status, dl);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 }
 
 /* A new one, which has accepted its address, is read again. */
@@ -325,13 +327,13 @@ static void scan_mute(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MUTE, 2, 0, 1, 0);
 	others_fine(b, 2, 600);
 	s = bus_slave(b, 2);
-	KUNIT_EXPECT_EQ(test, s->al_status, EC_AL_INIT);
+	KUNIT_EXPECT_EQ(test, s->al.status, EC_AL_INIT);
 	KUNIT_EXPECT_STREQ(test, s->order, "EL3062");
 	/* its own worker gives up after the time of the transition */
 	msleep(4000);
-	KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->why, "PREOP not reached in time"), "why: %s",
-				  s->why);
+	KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(s->note.why, "PREOP not reached in time"), "why: %s",
+				  s->note.why);
 }
 
 static void scan_bad_checksum(struct kunit *test)
@@ -356,14 +358,14 @@ static void scan_blank(struct kunit *test)
 	others_fine(b, 5, 1000);
 	/* nothing in it: no mailbox, no PDO, identity of all ones */
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->info.vendor, 0xffffffff);
-	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->sii_bytes, 1024ul);
-	KUNIT_EXPECT_NOT_NULL(test, strstr(bus_slave(b, 5)->sii_flaw,
+	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->eeprom.bytes, 1024ul);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(bus_slave(b, 5)->note.sii_flaw,
 					   "EEPROM is blank (only 0xff)"));
 }
 
 static void has_flaw(struct bus *b, u32 position, const char *text)
 {
-	const char *flaw = bus_slave(b, position)->sii_flaw;
+	const char *flaw = bus_slave(b, position)->note.sii_flaw;
 
 	KUNIT_EXPECT_NOT_NULL_MSG(b->test, strstr(flaw, text), "'%s' has no '%s'", flaw, text);
 }
@@ -393,7 +395,7 @@ static void scan_blank_zeros(struct kunit *test)
 	memset(e->data, 0, e->len);
 	others_fine(b, 5, 1000);
 	has_flaw(b, 5, "EEPROM is blank (only 0x00)");
-	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->sii_bytes, 1024ul);
+	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->eeprom.bytes, 1024ul);
 }
 
 /* The cause is the EEPROM, not that PREOP was not reached in time. */
@@ -406,8 +408,8 @@ static void scan_blank_mute(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MUTE, 2, 0, 1, 0);
 	others_fine(b, 2, 1000);
 	msleep(4000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->error, EC_SLAVE_CONFIG_FAILED);
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, 2)->why,
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->note.error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 2)->note.why,
 			   "EEPROM is blank (only 0xff): no identity, no mailbox; write an image; then PREOP not reached in time");
 }
 
@@ -446,7 +448,7 @@ static void scan_damaged(struct kunit *test)
 	has_flaw(b, 3, "category 0x0033 at word ");
 	has_flaw(b, 3, "has 98304 bytes, the EEPROM has 2048");
 	has_flaw(b, 4, "beyond the declared size of 128 (word 0x003e); all are used");
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->sii_flaw, "");
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, 0)->note.sii_flaw, "");
 	KUNIT_EXPECT_STREQ(test, bus_slave(b, 4)->order, "EL1008");
 }
 
@@ -511,7 +513,7 @@ static void scan_foreign_address(struct kunit *test)
 	for (i = 0; i < N; i++) {
 		struct ec_slave *s = bus_slave(b, i);
 
-		KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 		KUNIT_EXPECT_EQ(test, s->station,
 				get_unaligned_le16(bus_esc(b, i)->mem + EC_REG_STATION));
 		KUNIT_EXPECT_EQ(test, s->info.product,

@@ -48,7 +48,7 @@ static u32 pd_bytes(const struct ec_slave *s, bool out)
 
 	for (sm = 0; sm < s->n_sms; sm++)
 		if (!!(s->sms[sm].control & EC_SM_DIR_WRITE) == out)
-			bytes += ec_pdo_list_bytes(&s->sm_pdos[sm]);
+			bytes += ec_pdo_list_bytes(&s->pdos.sm[sm]);
 	return bytes;
 }
 
@@ -74,18 +74,18 @@ static void scan_bench_identity(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, s->info.protocols, d->protocols);
 		KUNIT_EXPECT_EQ(test, s->info.std.rx_size, d->std.rx_len);
 		KUNIT_EXPECT_EQ(test, ec_slave_features(s), d->features);
-		KUNIT_EXPECT_EQ(test, s->error, EC_SLAVE_OK);
+		KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 		/* the image is the one in the slave, up to its end mark */
-		KUNIT_ASSERT_LE(test, s->sii_bytes, app->esc->eep.len);
-		KUNIT_EXPECT_GT(test, s->sii_bytes, 128ul);
-		KUNIT_EXPECT_MEMEQ(test, s->sii, app->esc->eep.data, s->sii_bytes);
+		KUNIT_ASSERT_LE(test, s->eeprom.bytes, app->esc->eep.len);
+		KUNIT_EXPECT_GT(test, s->eeprom.bytes, 128ul);
+		KUNIT_EXPECT_MEMEQ(test, s->eeprom.data, app->esc->eep.data, s->eeprom.bytes);
 	}
 }
 
 static void scan_bench_pdos(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "bench", ARRAY_SIZE(bench));
-	const struct ec_pdo_list *l = &bus_slave(b, 4)->sm_pdos[2];
+	const struct ec_pdo_list *l = &bus_slave(b, 4)->pdos.sm[2];
 	u32 i;
 
 	for (i = 0; i < ARRAY_SIZE(bench); i++) {
@@ -111,10 +111,11 @@ static void scan_bench_topology(struct kunit *test)
 	for (i = 0; i < ARRAY_SIZE(bench); i++) {
 		struct ec_slave *s = bus_slave(b, i);
 
-		KUNIT_EXPECT_EQ_MSG(test, bus_next(s, s->upstream), bench[i].parent, "parent of %s",
+		KUNIT_EXPECT_EQ_MSG(test, bus_next(s, s->graph.upstream), bench[i].parent,
+				    "parent of %s",
 				    bench[i].name);
 		for (p = 0; p < EC_MAX_PORT; p++)
-			if (p != s->upstream && bus_next(s, p) != EC_UAPI_NONE16)
+			if (p != s->graph.upstream && bus_next(s, p) != EC_UAPI_NONE16)
 				KUNIT_EXPECT_EQ_MSG(test, bench[bus_next(s, p)].parent, i,
 						    "port %u of %s", p, bench[i].name);
 	}

@@ -16,9 +16,9 @@ static void others_fine(struct bus *b, u32 limit_ms)
 
 	bus_plug_scanned(b, N, limit_ms);
 	for (i = 0; i < 5; i++)
-		KUNIT_EXPECT_EQ_MSG(b->test, bus_slave(b, i)->al_status, EC_AL_PREOP,
+		KUNIT_EXPECT_EQ_MSG(b->test, bus_slave(b, i)->al.status, EC_AL_PREOP,
 				    "slave %u: %s",
-				    i, bus_slave(b, i)->why);
+				    i, bus_slave(b, i)->note.why);
 }
 
 /*
@@ -55,7 +55,7 @@ static u64 until_read(struct bus *b, u32 limit_ms)
 {
 	u64 end = ktime_get_ns() + (u64)limit_ms * NSEC_PER_MSEC, gap = 0;
 
-	while (ktime_get_ns() < end && bus_slave(b, 5)->al_status != EC_AL_PREOP) {
+	while (ktime_get_ns() < end && bus_slave(b, 5)->al.status != EC_AL_PREOP) {
 		usleep_range(1000, 1001);
 		if (bus_table(b)->complete_ns)
 			gap = max(gap, ktime_get_ns() - bus_table(b)->complete_ns);
@@ -67,11 +67,11 @@ static void is_read(struct bus *b, size_t len)
 {
 	struct ec_slave *s = bus_slave(b, 5);
 
-	KUNIT_EXPECT_EQ(b->test, s->al_status, EC_AL_PREOP);
-	KUNIT_EXPECT_STREQ(b->test, s->why, "");
-	KUNIT_EXPECT_STREQ(b->test, s->sii_flaw, "");
-	KUNIT_ASSERT_EQ(b->test, s->sii_bytes, len);
-	KUNIT_EXPECT_MEMEQ(b->test, s->sii, bus_esc(b, 5)->eep.data, len);
+	KUNIT_EXPECT_EQ(b->test, s->al.status, EC_AL_PREOP);
+	KUNIT_EXPECT_STREQ(b->test, s->note.why, "");
+	KUNIT_EXPECT_STREQ(b->test, s->note.sii_flaw, "");
+	KUNIT_ASSERT_EQ(b->test, s->eeprom.bytes, len);
+	KUNIT_EXPECT_MEMEQ(b->test, s->eeprom.data, bus_esc(b, 5)->eep.data, len);
 	KUNIT_EXPECT_GE(b->test, atomic_long_read(&bus_table(b)->sii_bytes), (long)len);
 	KUNIT_EXPECT_LE(b->test, atomic_long_read(&bus_table(b)->sii_bytes), 4 * (long)len);
 }
@@ -102,9 +102,9 @@ static void scan_largest_eeprom_delays_no_other_slave(struct kunit *test)
 
 	enlarge(b, EC_MAX_SII_BYTES);
 	others_fine(b, 5000);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->error, EC_SLAVE_SCAN_FAILED);
-	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, 5)->why, "the rest follows"), "%s",
-				  bus_slave(b, 5)->why);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->note.error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(b, 5)->note.why, "the rest follows"), "%s",
+				  bus_slave(b, 5)->note.why);
 	gap = until_read(b, 150000);
 	bus_figure("an EEPROM of 512 KiB: PREOP after %llu us of bus time; the monitor was busy for %llu us at most",
 		   div_u64(ktime_get_ns() - b->t0, NSEC_PER_USEC), div_u64(gap, NSEC_PER_USEC));
@@ -127,7 +127,7 @@ static void scan_large_replaced(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 5, 0, 0, 0);
 	KUNIT_ASSERT_NE(test, bus_wait(b, N, EC_AL_PREOP, 30000), ~0ull);
 	KUNIT_EXPECT_EQ(test, bus_slave(b, 5)->info.serial & 0xffff, 0x4711u);
-	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->sii_bytes, 4096ul);
+	KUNIT_EXPECT_LE(test, bus_slave(b, 5)->eeprom.bytes, 4096ul);
 }
 
 /* Word 0x3E counts KiBit: 160 KiB, with words that need more than 16 bits, is legal. */

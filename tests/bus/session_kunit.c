@@ -144,7 +144,7 @@ static void session_reserve_refused(struct kunit *test)
 	t0 = ktime_get_ns();
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), 0);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - t0, 10 * NSEC_PER_SEC);
-	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->error, EC_SLAVE_CONFIG_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 0)->note.error, EC_SLAVE_CONFIG_FAILED);
 	bus_end(b);
 	bus_idle(b);
 	t0 = ktime_get_ns();
@@ -159,13 +159,13 @@ static u32 given_up_after(struct cyc *c)
 	u64 t0 = ktime_get_ns();
 	u32 i;
 
-	for (i = 0; i < 20000 && s->error == EC_SLAVE_OK; i++) {
+	for (i = 0; i < 20000 && s->note.error == EC_SLAVE_OK; i++) {
 		if (bus_wanted(c->b)->active)
 			cyc_run(c, 1);
 		else
 			usleep_range(1000, 1001);
 	}
-	return s->error ? div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC) : 0;
+	return s->note.error ? div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC) : 0;
 }
 
 /* The limit an application sets holds for each transition. */
@@ -198,7 +198,7 @@ static void session_state_timeouts(struct kunit *test)
 			bus_request(b, 0, v.from);
 			bus_idle(b);
 		}
-		KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->al_status, v.from);
+		KUNIT_ASSERT_EQ(test, bus_slave(b, 0)->al.status, v.from);
 		bus_fault(b, EC_SIM_FAULT_MUTE, 0, 0, 1, 0);
 		bus_request(b, 0, v.to);
 		ms = given_up_after(c);

@@ -303,13 +303,13 @@ static void soe_startup_refused(struct kunit *test)
 		}
 		KUNIT_ASSERT_EQ(test, startup(c, in[i].idn, in[i].state, 1), 0);
 		cyc_activate(c);
-		for (k = 0; k < 3000 && bus_slave(c->b, 1)->al_status != EC_AL_OP; k++)
+		for (k = 0; k < 3000 && bus_slave(c->b, 1)->al.status != EC_AL_OP; k++)
 			cyc_run(c, 1);
 		cyc_run(c, 500);
-		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 1)->al_status, EC_AL_OP);
-		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->al_status, in[i].stays);
-		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->error, EC_SLAVE_CONFIG_FAILED);
-		KUNIT_EXPECT_STREQ(test, bus_slave(c->b, 0)->why, in[i].why);
+		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 1)->al.status, EC_AL_OP);
+		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->al.status, in[i].stays);
+		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->note.error, EC_SLAVE_CONFIG_FAILED);
+		KUNIT_EXPECT_STREQ(test, bus_slave(c->b, 0)->note.why, in[i].why);
 		cyc_release(c);
 	}
 }

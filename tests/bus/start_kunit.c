@@ -13,7 +13,7 @@
 
 #define LIMIT_US	200000
 #define DC_LIMIT_US	50000	/* beyond the time until the clocks are set and SYNC0 starts */
-#define DC_MAP_US	150000	/* the same when PDOs are written, which takes longer than the clocks */
+#define DC_MAP_US	150000	/* the same when PDOs are written, which takes longer */
 #define SYNC_LEAD_US	100000	/* from its programming to the first SYNC0 */
 #define TRANSITION_US	1000
 #define RESPONSE_US	200
@@ -62,7 +62,7 @@ static void name_pdos(struct cyc *c, u32 config)
 	u32 sm, i, k;
 
 	for (sm = 2; sm < s->n_sms; sm++) {
-		const struct ec_pdo_list *l = &s->sm_pdos[sm];
+		const struct ec_pdo_list *l = &s->pdos.sm[sm];
 
 		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, sm, 0, 0);
 		for (i = 0; i < l->n; i++) {

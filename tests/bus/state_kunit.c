@@ -123,7 +123,7 @@ static void state_no_reference(struct kunit *test)
 
 static u16 al(struct bus *b, u32 position)
 {
-	return bus_slave(b, position)->al_status;
+	return bus_slave(b, position)->al.status;
 }
 
 /* A tool has taken one away, another has failed: both come back, the rest stays. */
@@ -136,10 +136,10 @@ static void state_reset(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 2000);
 	KUNIT_ASSERT_EQ(test, al(b, A), EC_AL_OP);
-	KUNIT_ASSERT_EQ(test, (u32)bus_slave(b, B)->error, (u32)EC_SLAVE_CONFIG_FAILED);
+	KUNIT_ASSERT_EQ(test, (u32) bus_slave(b, B)->note.error, (u32)EC_SLAVE_CONFIG_FAILED);
 	bus_fault(b, EC_SIM_FAULT_REFUSE_AL, B, 0, 0, 0);
 	/* what it is to reach does not count for one that has failed, either */
-	bus_slave(b, B)->requested = EC_AL_PREOP;
+	bus_slave(b, B)->al.requested = EC_AL_PREOP;
 	bus_request(b, A, EC_AL_PREOP);
 	bus_request(b, C, EC_AL_INIT);
 	cyc_run(c, 500);

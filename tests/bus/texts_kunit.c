@@ -118,7 +118,7 @@ static void texts_startup_mailbox_error(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_MAILBOX, BAD, 0, EC_SIM_MAILBOX_ERROR, EC_MBOX_ERR_NO_MEMORY);
 	cyc_activate(c);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->why,
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->note.why,
 			   "startup SDO 0x1018:03 (4 byte(s)) failed: mailbox error reply 0x0007 (the slave has no memory left for the mailbox message)");
 	cyc_release(c);
 }
@@ -218,9 +218,9 @@ static void texts_startup(struct kunit *test)
 	cyc_activate(c);
 	cyc_run(c, 500);
 	KUNIT_EXPECT_NOT_NULL_MSG(test,
-		strstr(bus_slave(b, BAD)->why,
+		strstr(bus_slave(b, BAD)->note.why,
 		       "startup SDO 0x5fff:03 (4 byte(s)) failed: abort 0x06020000: "),
-		"%s", bus_slave(b, BAD)->why);
+		"%s", bus_slave(b, BAD)->note.why);
 	cyc_release(c);
 }
 
@@ -244,7 +244,7 @@ static void texts_startup_unknown_abort(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_SDO, &sdo), 0);
 	cyc_activate(c);
 	cyc_run(c, 500);
-	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->why,
+	KUNIT_EXPECT_STREQ(test, bus_slave(b, BAD)->note.why,
 			   "startup SDO 0x5fff:03 (4 byte(s)) failed: abort 0x08000099: unknown code");
 	cyc_release(c);
 }

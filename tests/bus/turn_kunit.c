@@ -267,18 +267,18 @@ static void turn_monitor_passes_tools(struct kunit *test)
 	bus_idle(b);
 	bus_fault(b, EC_SIM_FAULT_DEAD, 1, 0, 1, 0);
 	msleep(1000);
-	KUNIT_ASSERT_TRUE(test, bus_slave(b, 1)->silent);
+	KUNIT_ASSERT_TRUE(test, bus_slave(b, 1)->reply.silent);
 	places = take_places(b);
 	frames = bus_frames(b);
 	msleep(5000);
 	KUNIT_EXPECT_GT(test, bus_frames(b) - frames, 200ull);
 	bus_fault(b, EC_SIM_FAULT_AL_ERROR, 2, 0, 0x1b, 0);
 	msleep(1000);
-	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->al_status & EC_AL_ERROR);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->al.status & EC_AL_ERROR);
 	/* it is even scanned again */
 	bus_fault(b, EC_SIM_FAULT_DEAD, 1, 0, 0, 0);
 	msleep(3000);
-	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->silent);
+	KUNIT_EXPECT_FALSE(test, bus_slave(b, 1)->reply.silent);
 	give_places(b, places);
 	KUNIT_EXPECT_NE(test, bus_wait(b, N, EC_AL_PREOP, 3000), ~0ull);
 	KUNIT_EXPECT_EQ(test, bus_acyclic(b), 0u);

@@ -50,7 +50,7 @@ static void all_to(struct bus *b, u8 state)
 	while (!bus_settled(b))
 		usleep_range(100, 101);
 	for (i = 0; i < SLAVES; i++)
-		KUNIT_EXPECT_EQ_MSG(b->test, bus_slave(b, i)->al_status, state, "slave %u", i);
+		KUNIT_EXPECT_EQ_MSG(b->test, bus_slave(b, i)->al.status, state, "slave %u", i);
 }
 
 /* Through INIT to PREOP; us. */

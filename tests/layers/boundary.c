@@ -110,7 +110,7 @@ static bool scan(struct ec_master *m)
 	ec_links_look(&m->links);
 	WRITE_ONCE(m->bus.responding, SLAVES);
 	WRITE_ONCE(m->bus.looked, true);
-	WRITE_ONCE(m->bus.slaves[AXIS]->read_pdos, true);
+	WRITE_ONCE(m->bus.slaves[AXIS]->pdos.wanted, true);
 	ec_slave_kick(m->bus.slaves[AXIS]);
 	while (ec_slave_busy(m->bus.slaves[AXIS]))
 		usleep_range(100, 200);
@@ -199,7 +199,7 @@ static int cycle(void *arg)
 
 static bool in_op(void *slave)
 {
-	return READ_ONCE(((struct ec_slave *)slave)->al_status) == EC_AL_OP;
+	return READ_ONCE(((struct ec_slave *)slave)->al.status) == EC_AL_OP;
 }
 
 static void application_in_the_kernel_takes_a_slave_to_op(void)

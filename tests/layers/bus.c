@@ -39,17 +39,17 @@ static void scan_identifies_slaves_and_brings_them_to_preop(void)
 	if (!b)
 		return;
 	for (i = 0; i < 3; i++) {
-		CHECK_EQ(b->bus.slaves[i]->al_status, EC_AL_PREOP);
-		CHECK_EQ(b->bus.slaves[i]->error, EC_SLAVE_OK);
+		CHECK_EQ(b->bus.slaves[i]->al.status, EC_AL_PREOP);
+		CHECK_EQ(b->bus.slaves[i]->note.error, EC_SLAVE_OK);
 		CHECK_EQ(b->bus.slaves[i]->position, i);
 	}
 	CHECK_EQ(b->bus.slaves[0]->info.product, 0x044c2c52);
 	CHECK_EQ(b->bus.slaves[1]->alias, 1001);
 	CHECK_EQ(b->bus.slaves[2]->info.vendor, 0x1234);
 	/* in a line: each hangs at port 1 of the one before */
-	CHECK_EQ(b->bus.slaves[1]->upstream, 0);
-	CHECK(b->bus.slaves[1]->at[0] == b->bus.slaves[0]);
-	CHECK(b->bus.slaves[1]->at[1] == b->bus.slaves[2]);
+	CHECK_EQ(b->bus.slaves[1]->graph.upstream, 0);
+	CHECK(b->bus.slaves[1]->graph.at[0] == b->bus.slaves[0]);
+	CHECK(b->bus.slaves[1]->graph.at[1] == b->bus.slaves[2]);
 	bench_free(b);
 }
 
@@ -66,8 +66,8 @@ static void object_dictionary_has_the_pdos(void)
 	ec_slave_read_coe_pdos(s);
 	mutex_unlock(&s->lock);
 	CHECK(!ec_slave_pdos_pending(s));
-	CHECK_EQ(ec_pdo_list_bytes(&s->sm_pdos[2]), 8);
-	CHECK_EQ(ec_pdo_list_bytes(&s->sm_pdos[3]), 8);
+	CHECK_EQ(ec_pdo_list_bytes(&s->pdos.sm[2]), 8);
+	CHECK_EQ(ec_pdo_list_bytes(&s->pdos.sm[3]), 8);
 	bench_free(b);
 }
 
@@ -81,7 +81,7 @@ static void requests_without_higher_layers_do_nothing(void)
 	ec_slave_request(b->bus.slaves[1], EC_AL_OP);
 	scanned_wait(b->bus.slaves[1]);
 	CHECK(!ec_slave_busy(b->bus.slaves[1]));
-	CHECK_EQ(b->bus.slaves[1]->al_status, EC_AL_PREOP);
+	CHECK_EQ(b->bus.slaves[1]->al.status, EC_AL_PREOP);
 	ec_bus_rescan(&b->bus);
 	CHECK_EQ(b->bus.rescan, true);
 	bench_free(b);

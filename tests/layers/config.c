@@ -81,8 +81,8 @@ static void slave_gets_its_configuration_before_safeop(void)
 	activate(b);
 	plant_state(&b->p, AXIS, EC_AL_SAFEOP);
 	s = b->p.s.bus.slaves[AXIS];
-	CHECK_EQ(s->al_status, EC_AL_SAFEOP);
-	CHECK_EQ(s->error, EC_SLAVE_OK);
+	CHECK_EQ(s->al.status, EC_AL_SAFEOP);
+	CHECK_EQ(s->note.error, EC_SLAVE_OK);
 	CHECK_EQ(ec_coe_upload(&s->mbox, 0x6060, 0, false, data, sizeof(data), &size, &abort,
 			       NULL), 0);
 	CHECK_EQ(data[0], 6);
@@ -109,8 +109,8 @@ static void refused_startup_sdo_is_the_reason(void)
 	activate(b);
 	plant_state(&b->p, AXIS, EC_AL_SAFEOP);
 	s = b->p.s.bus.slaves[AXIS];
-	CHECK_EQ(s->al_status, EC_AL_PREOP);
-	CHECK_EQ(s->error, EC_SLAVE_CONFIG_FAILED);
+	CHECK_EQ(s->al.status, EC_AL_PREOP);
+	CHECK_EQ(s->note.error, EC_SLAVE_CONFIG_FAILED);
 	CHECK(strstr(ec_slave_why(s, why, sizeof(why)), "0x5fff"));
 	bench_free(b);
 }

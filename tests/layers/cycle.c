@@ -155,8 +155,8 @@ static void outputs_reach_slaves_and_inputs_come_back(void)
 	if (CHECK(!IS_ERR(t))) {
 		plant_state(&b->p, OUT, EC_AL_OP);
 		plant_state(&b->p, IN, EC_AL_OP);
-		CHECK_EQ(b->p.s.bus.slaves[OUT]->al_status, EC_AL_OP);
-		CHECK_EQ(b->p.s.bus.slaves[IN]->al_status, EC_AL_OP);
+		CHECK_EQ(b->p.s.bus.slaves[OUT]->al.status, EC_AL_OP);
+		CHECK_EQ(b->p.s.bus.slaves[IN]->al.status, EC_AL_OP);
 		CHECK(alone_wait(is_complete, b, 100));
 		CHECK(!has_input(b));
 		WRITE_ONCE(b->cycle.shared->image[b->out], 1);

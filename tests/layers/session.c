@@ -72,7 +72,7 @@ static struct bench *bench_new(void)
 	if (CHECK_EQ(ec_sessions_init(&b->ss, ec_session_again), 0)) {
 		ec_dc_init(&b->dc, &b->s.seg.base, &b->s.seg.links, &b->s.bus, b->ss.service);
 		if (scanned_scan(&b->s, SLAVES)) {
-			b->s.bus.slaves[AXIS]->read_pdos = true;
+			b->s.bus.slaves[AXIS]->pdos.wanted = true;
 			ec_slave_kick(b->s.bus.slaves[AXIS]);
 			scanned_wait(b->s.bus.slaves[AXIS]);
 			return b;
@@ -104,12 +104,12 @@ static void master_has_one_application_at_a_time(void)
 
 static bool in_op(void *slave)
 {
-	return READ_ONCE(((struct ec_slave *)slave)->al_status) == EC_AL_OP;
+	return READ_ONCE(((struct ec_slave *)slave)->al.status) == EC_AL_OP;
 }
 
 static bool in_preop(void *slave)
 {
-	return READ_ONCE(((struct ec_slave *)slave)->al_status) == EC_AL_PREOP;
+	return READ_ONCE(((struct ec_slave *)slave)->al.status) == EC_AL_PREOP;
 }
 
 static int cycle_owner(void *arg)
