@@ -19,6 +19,8 @@
 #include "trial_int.h"
 
 #define TEMPORARY	BIT(1)	/* of register 0x0100: for a second */
+/* datagrams of a train: opened and closed twice, five checks */
+#define TRAIN		(EC_TRIAL_WORK + 9 + 2 * EC_GAP_FRAMES)
 #define DEPTH		64	/* slaves one behind the other at which a branch begins */
 
 /**
@@ -132,7 +134,7 @@ int ec_trial_run(struct ec_trials *t, u16 station)
 			       ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
 	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
-	struct ec_dg dg[EC_TRIAL_WORK + 9 + 2 * EC_GAP_FRAMES], *work, *close, *check;
+	struct ec_dg *dg = t->train, *work, *close, *check;
 	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 }, any[1];
 	struct ec_gaps gaps = find_gaps(t);
 	unsigned int n, i;
@@ -494,7 +496,7 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
  * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
  * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
  * behind it; -EXDEV: others are behind its port 0; -ESTALE: the ring is not that of the list;
- * -ENOSPC: no free station address; -EPERM: @is is not let in.
+ * -ENOSPC: no free station address; -EPERM: @is is not let in; -ENOMEM.
  */
 int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 {
@@ -511,13 +513,16 @@ int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 	struct ec_guest g;
 	int ret;
 
+	t.train = kcalloc(TRAIN, sizeof(*t.train), GFP_KERNEL);
+	if (!t.train)
+		return -ENOMEM;
 	WRITE_ONCE(s->bus->trials, s->bus->trials + 1);
 	t.next = t.position < s->bus->n_slaves ? s->bus->slaves[t.position] : NULL;
 	ret = trial_one(&t, &g);
 	s->ports.loops = t.host.loops;
 	s->dl_seen = t.dl ?: s->dl_seen;
 	*is = t.is;
-	if (ret)
-		return ret == -EALREADY ? 1 : ret;
-	return trial_branch(&t, &g);
+	ret = ret ?: trial_branch(&t, &g);
+	kfree(t.train);
+	return ret == -EALREADY ? 1 : ret;
 }

@@ -63,6 +63,7 @@ struct ec_guest {
  * @next: slave of the list at that position now; NULL: there is none
  * @dl: DL status of the host at the end of the last trial
  * @count: slaves that reply then
+ * @train: memory for the datagrams of a trial
  * @work: datagrams of the next trial, then of the last one
  * @n: how many
  * @is: result: a device that is not let in
@@ -75,6 +76,7 @@ struct ec_trials {
 	const struct ec_slave *next;
 	u16 dl;
 	u16 count;
+	struct ec_dg *train;
 	struct ec_dg work[EC_TRIAL_WORK];
 	unsigned int n;
 	struct ec_behind is;
