@@ -11,6 +11,7 @@
 #include "master/boundary/cdev.h"
 #include "master/boundary/ioctl.h"
 #include "master/boundary/master.h"
+#include "master/bus/bus_list.h"
 #include "master/bus/scan.h"
 #include "master/carry/posts.h"
 #include "master/config/apply.h"
@@ -18,6 +19,7 @@
 #include "alone.h"
 #include "master/session/reserve.h"
 #include "master/session/session_attach.h"
+#include "master/clock/dc.h"
 
 static const u8 mac[ETH_ALEN] = { 0x02, 0x00, 0x00, 0xec, 0x00, 0x03 };
 static const char text[] =

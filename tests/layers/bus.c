@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Slaves are found and read; there is no application, and no monitor that asks for it. */
 #include <linux/slab.h>
+#include "master/bus/pdo_coe.h"
 #include "master/bus/slave.h"
 #include "scanned.h"
 

@@ -4,11 +4,13 @@
 #define EC_PLANT_H
 
 #include <linux/slab.h>
+#include "master/bus/pdo_coe.h"
 #include "master/bus/slave.h"
 #include "master/config/apply.h"
 #include "master/config/config.h"
 #include "master/config/domain.h"
 #include "scanned.h"
+#include "master/clock/dc.h"
 
 /**
  * struct plant - a segment and a configuration

@@ -5,6 +5,7 @@
 
 #include <linux/delay.h>
 #include "master/bus/bus.h"
+#include "master/bus/bus_list.h"
 #include "master/bus/scan.h"
 #include "master/bus/slave.h"
 #include "segment.h"

@@ -12,6 +12,7 @@
 #include "master/session/session.h"
 #include "master/session/session_attach.h"
 #include "scanned.h"
+#include "master/clock/dc.h"
 
 static const char text[] =
 	"segment seed=6\n"
