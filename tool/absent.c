@@ -94,6 +94,7 @@ static void closed_json(const struct ect_slave *s, unsigned int port, const stru
 	static const char *const keys[] = {
 		"", "no_reply", "no_loop_control", "losses", "other_device", "other_sign",
 		"other_serial", "second", "reversed", "boot", "unreadable", "unexpected",
+		"wrong_way", "swallows_frames",
 	};
 	u8 kept = s->port_kept[port];
 
@@ -102,7 +103,7 @@ static void closed_json(const struct ect_slave *s, unsigned int port, const stru
 	out_u("port", port, NULL);
 	out_str("reason", kept < ARRAY_SIZE(keys) ? keys[kept] : "unknown", NULL);
 	out_u("wait_s", s->port_wait_s[port], NULL);
-	if (b->kept < ECT_PORT_OTHER) {
+	if (!ec_port_text(b->kept)->device) {
 		out_null("behind", NULL);
 	} else {
 		out_object("behind");
@@ -124,7 +125,7 @@ static struct ect_behind behind(struct dev *d, const struct ect_slave *s, unsign
 {
 	struct ect_behind b = { .struct_size = sizeof(b) };
 
-	if (s->port_kept[port] < ECT_PORT_OTHER || ect_behind_read(d->h, s->device, port, &b))
+	if (!ec_port_text(s->port_kept[port])->device || ect_behind_read(d->h, s->device, port, &b))
 		return (struct ect_behind){ 0 };
 	return b;
 }
@@ -154,7 +155,7 @@ static void closed_draw(struct dev *d, const struct slaves *all)
 		for (unsigned int p = 0; p < ECT_PORTS; p++) {
 			struct ect_behind b = behind(d, &all->v[i], p);
 
-			if (b.kept < ECT_PORT_OTHER)
+			if (!ec_port_text(b.kept)->device)
 				continue;
 			out_text("\n\tclosed%zu_%u [shape=\"box\", style=\"dotted\", label=\"",
 				 i, p);

@@ -170,7 +170,7 @@ int ec_ioc_let_in(struct ec_call *call)
 	up_read(&s->bus->topo);
 	switch (ret) {
 	case -ENOENT:
-		return no_device(call, s, i->port, kept < EC_PORT_OTHER ? kept : 0);
+		return no_device(call, s, i->port, ec_port_text(kept)->device ? 0 : kept);
 	case -ESTALE:
 		return ec_refuse(call, ret,
 				 "another device is behind port %u of slave %u now; see 'ethercat slaves'",

@@ -3,6 +3,7 @@
 #include <linux/etherdevice.h>
 #include <linux/rcupdate.h>
 #include <linux/slab.h>
+#include "../wire/port_text.h"
 #include "api.h"
 #include "cdev.h"
 #include "../config/config.h"
@@ -221,7 +222,7 @@ int ec_ioc_port(struct ec_call *call)
 	i->next_slave = s->graph.at[p] ? s->graph.at[p]->position : EC_UAPI_NONE16;
 	i->delay_to_next_dc = way(s, p);
 	i->kept = ec_ports_kept(s, p, &i->wait_s);
-	if (i->kept >= EC_PORT_OTHER && ec_border_get(s->bus, s->device, p, &is)) {
+	if (ec_port_text(i->kept)->device && ec_border_get(s->bus, s->device, p, &is)) {
 		i->vendor_id = is.vendor;
 		i->product_code = is.product;
 		i->revision_number = is.revision;

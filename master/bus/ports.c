@@ -4,6 +4,7 @@
 #include <linux/slab.h>
 #include <linux/sysfs.h>
 #include "../link/links.h"
+#include "../wire/port_text.h"
 #include "../carry/xfer.h"
 #include "border.h"
 #include "graph.h"
@@ -267,9 +268,13 @@ static void forget_door(struct ec_slave *s, unsigned int port)
 /* The port stays closed: reported once, and tried again ever less often. */
 static void note_closed(struct ec_slave *s, unsigned int port, const struct ec_behind *is)
 {
-	bool differs = ec_border_note(s->bus, s->device, port, is);
+	bool device = ec_port_text(is->kept)->device, differs = false;
 	struct ec_door *d = &s->ports.door[port];
 
+	if (device)
+		differs = ec_border_note(s->bus, s->device, port, is);
+	else if (d->kept)
+		ec_border_forget(s->bus, s->device, port);
 	d->wait_ms = clamp_t(u32, 2 * d->wait_ms, WAIT_MIN_MS, WAIT_MAX_MS);
 	d->next_ns = ktime_get_ns() + d->wait_ms * (u64)NSEC_PER_MSEC;
 	if (d->kept == is->kept && !differs)
@@ -456,7 +461,7 @@ int ec_ports_let_in(struct ec_slave *s, unsigned int port, const struct ec_behin
 	int ret;
 
 	lockdep_assert_held(&s->bus->topo);
-	if (ec_ports_kept(s, port, &wait_s) < EC_PORT_OTHER)
+	if (!ec_port_text(ec_ports_kept(s, port, &wait_s))->device)
 		return -ENOENT;
 	ret = ec_border_let_in(s->bus, s->device, port, what);
 	if (ret)

@@ -363,6 +363,7 @@ static void ports_reversed_branch(struct kunit *test)
 	u32 lines = bus_log_lines(line);
 	struct watch w = { 0 };
 	struct cyc *c = in_op(test, &w);
+	struct ec_ioc_let_in let = { .port = 1, .slave = { .position = A2 } };
 	u32 i;
 
 	old_fmmus(c->b, X1, A1);
@@ -372,6 +373,8 @@ static void ports_reversed_branch(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
 	KUNIT_EXPECT_EQ(test, bus_log_lines(line) - lines, 1u);
 	KUNIT_EXPECT_EQ(test, kept(c->b, A2).kept, (u32)EC_PORT_WRONG_WAY);
+	/* no device that a user could let in */
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_LET_IN, &let), -ENOENT);
 	bus_command(c->b, "unplug x2.0");
 	for (i = 0; i < 20000 && bus_n_slaves(c->b) == N; i++)
 		cyc_run(c, 1);
