@@ -91,6 +91,16 @@ static bool returns_without(struct search *f, const struct ec_slave *s)
 	return !dg[2].err;
 }
 
+/* Have frames begun to return by themselves? Then it was no port. */
+static bool returns_anyway(const struct search *f)
+{
+	u8 any;
+	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, &any);
+
+	ec_xfer_train(f->bus->links, &dg, 1);
+	return !dg.err;
+}
+
 /* Keep those behind @s, without it; or all but them. */
 static void restrict_to(struct search *f, struct ec_slave *s, bool behind)
 {
@@ -151,7 +161,7 @@ bool ec_swallowed(struct ec_bus *bus)
 	f.size = kvcalloc(bus->n_slaves + 1, sizeof(*f.size), GFP_KERNEL);
 	if (f.in && f.size) {
 		find_top(&f);
-		found = f.top && close_top(&f);
+		found = f.top && !returns_anyway(&f) && close_top(&f);
 	}
 	kvfree(f.in);
 	kvfree(f.size);

@@ -441,6 +441,34 @@ static void ports_host_instead_of_branch(struct kunit *test)
 	}
 }
 
+/*
+ * No frame returns for another reason: no port stays closed for that, whether slaves have executed
+ * the frames or not.
+ */
+static void ports_all_frames_lost(struct kunit *test)
+{
+	static const char * const faults[] = { "lose rate=1000000ppm", "lose rate=1000000ppm when=out" };
+	u32 i, k, lines = bus_log_lines("no frame returned while it was open");
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w);
+
+	for (i = 0; i < ARRAY_SIZE(faults); i++) {
+		bus_command(c->b, faults[i]);
+		cyc_run(c, 600);
+		KUNIT_EXPECT_TRUE(test, w.silent);
+		bus_command(c->b, i ? "lose rate=0ppm when=out" : "lose rate=0ppm");
+		for (k = 0; k < 3000 && cyc_state(c, 0)->wc_state != 2; k++)
+			cyc_run(c, 1);
+		w.incomplete = 0;
+		cyc_run(c, 1000);
+		KUNIT_EXPECT_EQ(test, w.incomplete, 0u);
+		KUNIT_EXPECT_EQ(test, bus_n_slaves(c->b), (u32)N);
+		KUNIT_EXPECT_EQ(test, loops(c->b, HUB), 0x14);
+		KUNIT_EXPECT_EQ(test, loops(c->b, A1), 0x04);
+	}
+	KUNIT_EXPECT_EQ(test, bus_log_lines("no frame returned while it was open"), lines);
+}
+
 /* A contact that bounces costs the frames of the first bounce, and is left alone then. */
 static void ports_flapping(struct kunit *test)
 {
@@ -496,6 +524,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ports_slave_with_fixed_loops),
 	KUNIT_CASE(ports_reversed_branch),
 	KUNIT_CASE(ports_host_instead_of_branch),
+	KUNIT_CASE(ports_all_frames_lost),
 	KUNIT_CASE(ports_flapping),
 	KUNIT_CASE(ports_retry),
 	{}
