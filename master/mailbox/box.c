@@ -18,6 +18,8 @@
 #include "box_repeat.h"
 #include "box_state.h"
 
+#define AWAY_NS	(20 * NSEC_PER_MSEC)	/* a slave that does not reply for longer has failed */
+
 /* states --------------------------------------------------------------------*/
 
 /* SM1 was read or is empty, so it does not keep the slave from emptying SM0. */
@@ -293,13 +295,23 @@ static void found_empty(struct ec_box *box)
 
 /* results: each returns the next step, REST: what there is to do ------------*/
 
+/* A trial that met an event may have given the slave another address, for some cycles. */
+static bool is_back_soon(struct ec_box *box)
+{
+	u64 now = ktime_get_ns();
+
+	box->away_ns = box->away_ns ?: now;
+	return now - box->away_ns < AWAY_NS;
+}
+
 static enum ec_box_step on_status(struct ec_box *box, int ret)
 {
 	ec_box_looked(box);
-	if (ret == -ETIMEDOUT && !is_emptying(box)) {
+	if ((ret == -ETIMEDOUT && !is_emptying(box)) || (ret == -EIO && is_back_soon(box))) {
 		ec_box_pause(box);
 		return EC_BOX_REST;
 	}
+	box->away_ns = 0;
 	if (ret) {
 		ec_box_fail(box, ret);
 		return EC_BOX_REST;

@@ -244,6 +244,8 @@ struct ec_box {
 	u64 since_ns;
 	/** @took_ns: how long the slave took for its last message */
 	u64 took_ns;
+	/** @away_ns: since when the slave does not reply at its address (ktime); 0: it does */
+	u64 away_ns;
 	/** @due_ns: no access before that time (ktime) */
 	u64 due_ns;
 
