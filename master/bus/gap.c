@@ -8,38 +8,25 @@
 #include "../link/links.h"
 #include "gap.h"
 
-#define PASS_NS	2500	/* through a slave and 100 m of cable, both ways */
 #define FRAMES	8	/* of a trial, without those of gaps */
 
 /**
- * ec_gap_find() - how much time has to be between the frames of a trial
+ * ec_gap_fits() - has a cycle enough free wire time for a trial?
  * @l: links
- * @passed: slaves of the branches that a frame passes before the port
+ * @branch_ns: a frame is in the branches before the port for so long
  * @bytes: data of the work
  *
- * In a cycle without so much free wire time the gaps are shorter, the first one before the other:
- * without the second one nothing could be let in.
- *
  * Context: Process.
- * Return: the gaps; 0 without such branches, the first one also without process data.
+ * Return: whether it is so; without a cycle it always is.
  */
-struct ec_gaps ec_gap_find(const struct ec_links *l, u32 passed, u32 bytes)
+bool ec_gap_fits(const struct ec_links *l, u32 branch_ns, u32 bytes)
 {
-	u32 wanted_ns = min_t(u32, passed, EC_MAX_SLAVES) * PASS_NS;
-	u32 need_ns = FRAMES * ec_frame_wire_ns(EC_ETH_MIN) + 80 * bytes;
 	u32 free_ns = ec_access_slack_ns(l);
-	struct ec_gaps g = { 0 };
 
-	if (free_ns == ~0u) {
-		g.after_ns = wanted_ns;
-		return g;
-	}
 	/* clock frames take some of it now and then */
-	free_ns -= free_ns / 8;
-	free_ns -= min(free_ns, need_ns);
-	g.after_ns = min(free_ns, wanted_ns);
-	g.before_ns = min(free_ns - g.after_ns, wanted_ns);
-	return g;
+	return free_ns == ~0u ||
+	       free_ns - free_ns / 8 >
+	       2 * branch_ns + FRAMES * ec_frame_wire_ns(EC_ETH_MIN) + 80 * bytes;
 }
 
 /**

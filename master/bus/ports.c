@@ -287,6 +287,13 @@ static void note_closed(struct ec_slave *s, unsigned int port, const struct ec_b
 			is->slaves);
 }
 
+/* What a trial says of a port behind which no device was found that could be listed. */
+static u32 why_kept(int ret)
+{
+	return ret == -ENXIO ? EC_PORT_NO_REPLY : ret == -EXDEV ? EC_PORT_WRONG_WAY :
+	       ret == -EOPNOTSUPP ? EC_PORT_LOOPS : ret == -ENOBUFS ? EC_PORT_NO_TIME : 0;
+}
+
 static bool try_door(struct ec_slave *s, unsigned int port)
 {
 	struct ec_behind is = { 0 };
@@ -299,11 +306,7 @@ static bool try_door(struct ec_slave *s, unsigned int port)
 			     port, ret);
 		return true;
 	}
-	if (ret == -ENXIO || ret == -EOPNOTSUPP || ret == -EXDEV)
-		is = (struct ec_behind){
-			.kept = ret == -ENXIO ? EC_PORT_NO_REPLY :
-				ret == -EXDEV ? EC_PORT_WRONG_WAY : EC_PORT_LOOPS,
-		};
+	is.kept = is.kept ?: why_kept(ret);
 	if (is.kept)
 		note_closed(s, port, &is);
 	else

@@ -12,6 +12,9 @@ struct ec_dg;
 struct regs {
 	u8 info[EC_INFO_SIZE];
 	u8 station[4];		/* 0x0010 station, 0x0012 alias */
+	u16 was;		/* 0x0010 before it got another one */
+	u16 own;		/* likewise, if no other slave has that; else 0 */
+	u8 before[2];		/* 0x0010 of the slave that got the address of this one */
 	u8 control[2];		/* 0x0100, 0x0101 */
 	u8 dl[2];
 	u8 al[6];

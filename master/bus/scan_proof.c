@@ -7,6 +7,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "scan_count.h"
 #include "scan_int.h"
 #include "scan_proof.h"
 
@@ -196,6 +197,32 @@ static int prove(struct proof *p)
 	return ret;
 }
 
+/* One that fell silent is still counted, and does not reply at its address either. */
+static int prove_silence(struct scan *sc)
+{
+	unsigned int i, k, n = 0;
+	int ret, count;
+
+	for (i = 0; i < sc->n; i++) {
+		if (sc->regs[i].there || !ec_scan_is_known(sc, sc->slaves[i]))
+			continue;
+		sc->who[n] = i;
+		sc->dg[n++] = EC_FPRD(sc->slaves[i]->station, EC_REG_STATION, 2,
+				      sc->regs[i].station);
+	}
+	if (!n)
+		return 0;
+	ret = ec_xfer(sc->bus->links, sc->dg, n);
+	count = ec_scan_count(sc->bus);
+	for (k = 0; k < n; k++) {
+		struct regs *r = &sc->regs[sc->who[k]];
+
+		r->there = !sc->dg[k].err && sc->dg[k].wkc == 1;
+		r->gone |= !r->there && count != sc->n;
+	}
+	return ret ?: min(count, 0);
+}
+
 /**
  * ec_scan_proof() - is the bus what the scan has found?
  * @sc: scan that has read everything, with its stretches; @thrown is set in those where it is not
@@ -206,11 +233,12 @@ static int prove(struct proof *p)
 int ec_scan_proof(struct scan *sc)
 {
 	struct proof p = { .sc = sc };
-	int ret = -ENOMEM;
+	int ret = prove_silence(sc);
 
 	/* an empty list needs no check of the bus */
-	if (!sc->n || !sc->n_stretches)
-		return 0;
+	if (ret || !sc->n || !sc->n_stretches)
+		return ret;
+	ret = -ENOMEM;
 	p.r = kvcalloc(sc->n, sizeof(*p.r), GFP_KERNEL);
 	p.dg = kvcalloc(2 * sc->n, sizeof(*p.dg), GFP_KERNEL);
 	if (p.r && p.dg)

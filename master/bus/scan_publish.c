@@ -89,7 +89,7 @@ static void note_replies(struct scan *sc)
 			continue;
 		if (sc->regs[i].there)
 			sc->changed |= ec_slave_set_replies(s);
-		else
+		else if (!sc->regs[i].gone)
 			sc->changed |= ec_slave_set_silent(s,
 				"no reply from the slave, frames pass; waiting for a reply");
 	}

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Station addresses: which of the slaves on the bus are known, and addresses for the others. What
- * goes to a ring position may reach another slave when a contact opens or closes, so the only write
- * by position is that of an address, and a known slave that got it gets its own back.
+ * Station addresses: which of the slaves on the bus are known, and which address the others get.
  */
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
-#include "scan_count.h"
+#include "scan_address.h"
 #include "scan_int.h"
 #include "scan_station.h"
 
@@ -272,14 +270,15 @@ static bool is_addressed(const struct scan *sc, unsigned int i)
 	       sc->claims[station] == 1 && !ec_scan_unreadable(sc->bus, i);
 }
 
-/* An unknown slave: it keeps its address if no slave has had that. The datagram to write one. */
-static int scan_station_add(struct scan *sc, unsigned int i, struct ec_dg *dg, bool *write)
+/* An unknown slave: it keeps its address if no slave has had that. */
+static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 {
 	u16 station = ec_scan_address(sc, i), old = station;
 	struct ec_slave *known = sc->known[old], *s;
 	bool addressed = is_addressed(sc, i);
 
 	*write = !addressed || known;
+	sc->regs[i].own = addressed ? old : 0;
 	if (*write) {
 		station = ec_scan_station(sc->bus->next_station, sc->known, sc->claims);
 		if (!station)
@@ -298,32 +297,12 @@ static int scan_station_add(struct scan *sc, unsigned int i, struct ec_dg *dg, b
 		scan_station_take_part(s, known);
 		s->found = known->eeprom.data ? known->found : 0;
 	}
+	sc->regs[i].was = sc->regs[i].there ? old : 0;
 	put_unaligned_le16(station, sc->regs[i].station);
-	if (addressed)
-		*dg = EC_FPWR(old, EC_REG_STATION, 2, sc->regs[i].station);
-	else
-		*dg = EC_DG(EC_CMD_APWR, (u16)-i, EC_REG_STATION, 2, sc->regs[i].station);
 	return 0;
 }
 
-/* New slaves get their address; one that does not accept it is marked as failed. */
-static int write_stations(struct scan *sc, const u16 *at, unsigned int n)
-{
-	unsigned int i;
-	int ret = ec_xfer(sc->bus->links, sc->dg, n);
-
-	for (i = 0; i < n && !ret; i++) {
-		if (sc->dg[i].wkc == 1)
-			continue;
-		sc->regs[at[i]].gone = ec_scan_count(sc->bus) != sc->n;
-		if (sc->regs[at[i]].gone)
-			continue;
-		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
-			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
-	}
-	return ret;
-}
-
+/* Which slave of the scan is which known one; returns how many need an address, @at, or -errno. */
 static int assign(struct scan *sc, u16 *at)
 {
 	struct rows r = restore_rows(sc);
@@ -345,13 +324,13 @@ static int assign(struct scan *sc, u16 *at)
 			continue;
 		}
 		same_before &= ec_scan_unreadable(sc->bus, i) != NULL;
-		ret = scan_station_add(sc, i, &sc->dg[n], &write);
+		ret = scan_station_add(sc, i, &write);
 		if (ret)
 			return ret;
 		at[n] = i;
 		n += write;
 	}
-	return write_stations(sc, at, n);
+	return n;
 }
 
 /**
@@ -373,6 +352,8 @@ int ec_scan_stations(struct scan *sc)
 		count_claims(sc);
 		ret = assign(sc, at);
 	}
+	if (ret > 0)
+		ret = ec_scan_address_all(sc, at, ret);
 	kvfree(at);
 	return ret;
 }

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * What is behind a closed port is made harmless before process data reach it. The port is open for
- * the frames of a trial only, which leave in one send: open twice, work, close twice, as a frame
- * may be lost. The setting is temporary, so that the port closes itself if the master fails.
- *
- * By position nothing is written but a station address that no slave has: when the contact breaks
- * between two frames, the next slave of the ring is at that position, and gets its own back.
+ * What is behind a closed port is made harmless before process data reach it: slave by slave, in
+ * trials for which the port is open.
  */
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
-#include "gap.h"
 #include "graph.h"
 #include "known.h"
 #include "ports.h"
@@ -18,175 +13,11 @@
 #include "trial.h"
 #include "trial_int.h"
 
-#define TEMPORARY	BIT(1)	/* of register 0x0100: for a second */
-/* datagrams of a train: opened and closed twice, five checks */
-#define TRAIN		(EC_TRIAL_WORK + 9 + 2 * EC_GAP_FRAMES)
-#define DEPTH		64	/* slaves one behind the other at which a branch begins */
+#define PASS_NS	2500	/* through a slave and 100 m of cable, both ways */
+#define DEPTH	64	/* slaves one behind the other at which a branch begins */
 
-/**
- * ec_trial_add() - add a datagram to the work of a trial
- * @t: trials
- * @dg: datagram; there are %EC_TRIAL_WORK at most
- *
- * Context: The monitor thread.
- * Return: the datagram, with its result after ec_trial_run().
- */
-struct ec_dg *ec_trial_add(struct ec_trials *t, struct ec_dg dg)
-{
-	t->work[t->n] = dg;
-	return &t->work[t->n++];
-}
-
-/* Close the port for good: the frames for that may be lost. */
-static void close_surely(const struct ec_trials *t, const u8 *closed)
-{
-	unsigned int i;
-
-	for (i = 0; i < EC_TRIAL_TRIES; i++)
-		if (!ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, closed, 2))
-			return;
-}
-
-/* Does @s not reply at its address, although the port at which it hangs is open? */
-static bool has_lost_address(const struct ec_slave *s, const struct ec_dg *own,
-			     const struct ec_dg *up, const u8 *dl)
-{
-	if (own->err || own->wkc)
-		return false;
-	return !ec_graph_parent(s) ||
-	       (!up->err && up->wkc == 1 &&
-		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->graph.parent_port));
-}
-
-/* The only slave of the list that has lost its address; 0: there is none, or more */
-static u16 find_owner(struct ec_bus *bus)
-{
-	struct ec_dg *dg = kvcalloc(bus->n_slaves, sizeof(*dg), GFP_KERNEL);
-	u8 (*dl)[2] = kvcalloc(bus->n_slaves, sizeof(*dl), GFP_KERNEL);
-	unsigned int n = 0;
-	u16 station = 0;
-
-	if (!dg || !dl)
-		goto out;
-	ec_for_each_slave(s, bus) {
-		dg[n] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[n]);
-		n++;
-	}
-	ec_xfer(bus->links, dg, n);
-	n = 0;
-	ec_for_each_slave(s, bus) {
-		unsigned int up = ec_graph_parent(s) ? ec_graph_parent(s)->position : 0;
-
-		if (dg[s->position].wkc == 1)
-			s->dl_seen = get_unaligned_le16(dl[s->position]);
-		if (!has_lost_address(s, &dg[s->position], &dg[up], dl[up]))
-			continue;
-		n++;
-		station = s->station;
-	}
-out:
-	kvfree(dg);
-	kvfree(dl);
-	return n == 1 ? station : 0;
-}
-
-/*
- * A slave of the bus has the address of the guest, although the port is closed: the contact broke
- * before the address was written. It is the next one of the ring, unless others were disconnected
- * as well.
- */
-static void trial_give_back(const struct ec_trials *t, u16 station, bool next)
-{
-	u16 owner = next ? t->next->station : find_owner(t->bus);
-	u8 own[2];
-
-	put_unaligned_le16(owner, own);
-	if (owner && !ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2))
-		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
-			t->host.station, t->port, owner);
-	else
-		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, another slave has station address 0x%04x now and is scanned again\n",
-			t->host.station, t->port, station);
-}
-
-/* Between the host and its port: the slaves of the branches that a frame passes before. */
-static struct ec_gaps find_gaps(const struct ec_trials *t)
-{
-	u32 passed = t->position > t->host.position ? t->position - t->host.position - 1 : 0;
-	u32 bytes = 0, i;
-
-	for (i = 0; i < t->n; i++)
-		bytes += t->work[i].len;
-	return ec_gap_find(t->bus->links, passed, bytes);
-}
-
-/**
- * ec_trial_run() - one trial: open, work, close, check
- * @t: trials with the work
- * @station: address that the slave behind the port has or gets
- *
- * Context: The monitor thread. Waits for bus traffic.
- * Return: 0; -EAGAIN: frames were lost; -ENOLINK: the contact broke.
- */
-int ec_trial_run(struct ec_trials *t, u16 station)
-{
-	const u8 opened[2] = { t->host.control | TEMPORARY,
-			       ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
-	const u8 closed[2] = { t->host.control & ~TEMPORARY, t->host.loops };
-	const struct ec_slave *next = t->next, *up = next ? ec_graph_parent(next) : NULL;
-	struct ec_dg *dg = t->train, *work, *close, *check;
-	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 }, any[1];
-	struct ec_gaps gaps = find_gaps(t);
-	unsigned int n, i;
-
-	n = ec_gap_add(dg, gaps.before_ns);
-	/* twice: without it the work would be done by the next slave of the ring */
-	for (i = 0; i < 2; i++) {
-		dg[n] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, opened);
-		dg[n++].last = true;
-	}
-	work = &dg[n];
-	for (i = 0; i < t->n; i++)
-		dg[n++] = t->work[i];
-	dg[n - 1].last = true;
-	n += ec_gap_add(&dg[n], gaps.after_ns);
-	close = &dg[n];
-	for (i = 0; i < 2; i++) {
-		dg[n] = EC_FPWR(t->host.station, EC_REG_DL_CONTROL, 2, closed);
-		dg[n++].last = true;
-	}
-	check = &dg[n];
-	dg[n++] = EC_FPRD(t->host.station, EC_REG_DL_STATUS, 2, dl);
-	dg[n++] = EC_FPRD(station, EC_REG_STATION, 2, ghost);
-	dg[n++] = EC_FPRD(next ? next->station : station, EC_REG_STATION, 2, own);
-	dg[n++] = EC_FPRD(up ? up->station : station, EC_REG_DL_STATUS, 2, up_dl);
-	dg[n++] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, any);
-	ec_xfer_train(t->bus->links, dg, n);
-	for (i = 0; i < t->n; i++)
-		t->work[i] = work[i];
-	if (check[0].err || check[0].wkc != 1 ||
-	    !(get_unaligned_le16(dl) & EC_DLS_LOOP(t->port))) {
-		close_surely(t, closed);
-		for (i = 0; i < 5; i++)
-			check[i].repeat = true;
-		ec_xfer(t->bus->links, check, 5);
-	}
-	t->count = check[4].wkc;
-	t->dl = check[0].err || check[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
-	if (!check[1].err && check[1].wkc) {
-		trial_give_back(t, station, next &&
-				has_lost_address(next, &check[2], &check[3], up_dl));
-		return -ENOLINK;
-	}
-	if (!(t->dl & EC_DLS_LINK(t->port)))
-		return -ENOLINK;
-	for (i = 0; i < t->n; i++)
-		if (t->work[i].err)
-			return -EAGAIN;
-	if (check[4].err)
-		return -EAGAIN;
-	return close[0].wkc || close[1].wkc ? 0 : -EAGAIN;
-}
+/* in which a frame passes the ports */
+static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 
 /* The first slave behind the port gets an address; -ENXIO: none replies; or as ec_trial_run(). */
 static int greet(struct ec_trials *t, struct ec_guest *g)
@@ -194,7 +25,7 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 	static const u8 all_closed[1] = { 0xfc };
 	const struct ec_dg *was;
 	u16 adp = -t->position;
-	u8 fresh[2];
+	u8 fresh[2], read[4] = { 0 };
 	int ret;
 
 	put_unaligned_le16(g->station, fresh);
@@ -211,9 +42,17 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 		ret = ec_trial_run(t, g->station);
 		return ret == -ENOLINK ? ret : -EAGAIN;
 	}
-	was = ec_trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, g->station_was));
+	was = ec_trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, read));
 	ec_trial_add(t, EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, fresh));
+	t->was = read;
 	ret = ec_trial_run(t, g->station);
+	t->was = NULL;
+	if (ret == -ENOBUFS)
+		return ret;
+	/* the reply may have been lost, and the address written, the time before */
+	if (get_unaligned_le16(read) != g->station)
+		memcpy(g->station_was, read, 2);
+	memcpy(g->station_was + 2, read + 2, 2);
 	g->mute = was->err;
 	if (!was->err && !was->wkc && ret != -ENOLINK)
 		return -ENXIO;
@@ -342,11 +181,36 @@ static u16 kept_station(struct ec_bus *bus, const struct ec_guest *g)
 /* Let the guest in: its port is open from now on. */
 static int let_in(struct ec_trials *t)
 {
-	const u8 open[2] = { t->host.control & ~TEMPORARY,
+	const u8 open[2] = { t->host.control & ~EC_DL_TEMPORARY,
 			     ec_loops_with(t->host.loops, t->port, EC_LOOP_AUTO_CLOSE) };
 
 	t->host.loops = open[1];
 	return ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DL_CONTROL, open, 2);
+}
+
+/*
+ * How long is a frame in the branches of the host that it passes before the port? The host has
+ * latched when it came in, and when it returned from the last one of them.
+ */
+static u32 measure_branch(const struct ec_trials *t)
+{
+	static const u8 latch[4];
+	u32 passed = t->position > t->host.position ? t->position - t->host.position - 1 : 0;
+	u32 guess = min_t(u32, passed, EC_MAX_SLAVES) * PASS_NS;
+	u8 times[4 * EC_MAX_PORT];
+	unsigned int last, k;
+	s32 ns;
+
+	if (!passed ||
+	    ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DC_RECV(0), latch, 4) ||
+	    ec_xfer_fprd(t->bus->links, t->host.station, EC_REG_DC_RECV(0), times, sizeof(times)))
+		return guess;
+	for (last = k = 0; order[k] != t->port; k++)
+		if (ec_graph_open_ports(t->dl) & BIT(order[k]))
+			last = order[k];
+	ns = get_unaligned_le32(times + 4 * last) - get_unaligned_le32(times);
+	/* not every controller has receive times */
+	return ns > 0 ? ns : guess;
 }
 
 /*
@@ -366,7 +230,10 @@ static int look(struct ec_trials *t)
 	t->dl = dg[0].err || dg[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
-	return dg[1].err || get_unaligned_le16(station) != next ? -ESTALE : 0;
+	if (dg[1].err || get_unaligned_le16(station) != next)
+		return -ESTALE;
+	t->branch_ns = measure_branch(t);
+	return 0;
 }
 
 /* One slave; -EALREADY: it is let in, but the slaves behind it are not. */
@@ -407,7 +274,6 @@ static int trial_one(struct ec_trials *t, struct ec_guest *g)
 /* The port of the guest that the ring passes next, behind which there is a link; 0: none. */
 static unsigned int next_link(const struct ec_guest *g, unsigned int after)
 {
-	static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 	unsigned int k = 0;
 
 	while (order[k] != after)
@@ -496,7 +362,8 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
  * Return: slaves that were let in; -ENXIO: no slave replies behind the port; -ENOLINK: the contact
  * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
  * behind it; -EXDEV: others are behind its port 0; -ESTALE: the ring is not that of the list;
- * -ENOSPC: no free station address; -EPERM: @is is not let in; -ENOMEM.
+ * -ENOSPC: no free station address; -EPERM: @is is not let in; -ENOBUFS: the cycle leaves too
+ * little wire time; -ENOMEM.
  */
 int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 {
@@ -513,7 +380,7 @@ int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 	struct ec_guest g;
 	int ret;
 
-	t.train = kcalloc(TRAIN, sizeof(*t.train), GFP_KERNEL);
+	t.train = kcalloc(EC_TRIAL_TRAIN, sizeof(*t.train), GFP_KERNEL);
 	if (!t.train)
 		return -ENOMEM;
 	WRITE_ONCE(s->bus->trials, s->bus->trials + 1);

@@ -5,10 +5,13 @@
 
 #include "../carry/dg.h"
 #include "border.h"
+#include "gap.h"
 #include "slave.h"
 
 #define EC_TRIAL_WORK	8	/* datagrams of the work, at most */
 #define EC_TRIAL_TRIES	3
+/* datagrams of a trial: opened and closed twice, five checks */
+#define EC_TRIAL_TRAIN	(EC_TRIAL_WORK + 9 + 2 * EC_GAP_FRAMES)
 
 /**
  * struct ec_host - a slave at whose port something is tried
@@ -60,12 +63,14 @@ struct ec_guest {
  * @host: slave with the port
  * @port: port
  * @position: of the first slave behind the port
+ * @branch_ns: a frame is in the branches of the host that it passes before the port for so long
  * @next: slave of the list at that position now; NULL: there is none
  * @dl: DL status of the host at the end of the last trial
  * @count: slaves that reply then
  * @train: memory for the datagrams of a trial
  * @work: datagrams of the next trial, then of the last one
  * @n: how many
+ * @was: that it reads the station address which it writes; NULL: it writes none
  * @is: result: a device that is not let in
  */
 struct ec_trials {
@@ -73,16 +78,18 @@ struct ec_trials {
 	struct ec_host host;
 	u8 port;
 	u16 position;
+	u32 branch_ns;
 	const struct ec_slave *next;
 	u16 dl;
 	u16 count;
 	struct ec_dg *train;
 	struct ec_dg work[EC_TRIAL_WORK];
 	unsigned int n;
+	const u8 *was;
 	struct ec_behind is;
 };
 
-/* trial.c */
+/* trial_run.c */
 struct ec_dg *ec_trial_add(struct ec_trials *t, struct ec_dg dg);
 int ec_trial_run(struct ec_trials *t, u16 station);
 

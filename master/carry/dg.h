@@ -17,6 +17,7 @@
  *	effect, writes that may be executed twice)
  * @keep: the reply leaves @data unchanged; only such datagrams in flight may share @data
  * @last: of ec_xfer_train(): the next datagram is in another frame
+ * @pair: the next datagram is in the same frame, so that one slave executes both
  * @first: of ec_xfer_clock(): its frame is the first clock frame of a cyclic send
  * @adp: low half of the address
  * @ado: high half of the address
@@ -36,6 +37,7 @@ struct ec_dg {
 	bool repeat : 1;
 	bool keep : 1;
 	bool last : 1;
+	bool pair : 1;
 	bool first : 1;
 	u16 adp;
 	u16 ado;

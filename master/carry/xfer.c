@@ -39,13 +39,14 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 {
 	const struct ec_links *l = b->c->links;
 	unsigned int most = l->max_datagrams, len = 0, i;
-	u16 room = EC_DGRAM_OVERHEAD + max(ec_access_room(l), b->dg[first].len);
+	u16 least = b->dg[first].len +
+		    (b->dg[first].pair ? EC_DGRAM_OVERHEAD + b->dg[first + 1].len : 0);
+	u16 room = EC_DGRAM_OVERHEAD + max(ec_access_room(l), least);
 
 	/* clock frames are shorter, so that the permitted number of them fits into a cycle */
 	if (b->class == EC_POST_CLOCK) {
 		most = EC_CLOCK_DATAGRAMS;
-		room = clamp_t(u16, ec_share_clock_bytes(l), EC_DGRAM_OVERHEAD + b->dg[first].len,
-			       room);
+		room = clamp_t(u16, ec_share_clock_bytes(l), EC_DGRAM_OVERHEAD + least, room);
 	}
 	if (b->class == EC_POST_TRAIN)
 		room = EC_FRAME_BODY_MAX;
@@ -57,6 +58,8 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 		if (b->class == EC_POST_TRAIN && b->dg[i].last)
 			return i + 1 - first;
 	}
+	if (i > first + 1 && b->dg[i - 1].pair)
+		i--;
 	return i - first;
 }
 

@@ -78,6 +78,11 @@ const struct ec_port_text *ec_port_text(u32 kept)
 			"connect port 0 (IN) of that slave there",
 			false,
 		},
+		[EC_PORT_NO_TIME] = {
+			"the cycle leaves too little time on the wire for looking behind it",
+			"use a longer cycle, or connect it before activation",
+			false,
+		},
 	};
 
 	return &texts[kept < ARRAY_SIZE(texts) ? kept : 0];

@@ -44,6 +44,7 @@ enum ec_port_type {		/* two bits per port in 0x0007 */
 
 /* data link layer */
 #define EC_REG_DL_CONTROL	0x0100
+#define EC_DL_TEMPORARY		BIT(1)	/* the rest of 0x0100 to 0x0103 is in force for a second */
 #define EC_REG_DL_LOOPS		0x0101
 #define EC_REG_DL_ALIAS		0x0103
 #define EC_REG_DL_STATUS	0x0110

@@ -2,6 +2,7 @@
 /* A trial at a port that frames come to late: large branches are in front of it. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
+#include "master/boundary/ioctl.h"
 
 #define N	41u	/* connected at first */
 
@@ -57,6 +58,32 @@ static void trial_behind_large_branch_by_chance(struct kunit *test)
 	let_in(test, TEXT("random"));
 }
 
+/* The branch before the port takes so long that no trial fits into a cycle: nothing is tried. */
+static void trial_without_time(struct kunit *test)
+{
+	static const char text[] =
+		"segment seed=3 response=100us transition=1ms under_way=lost\n"
+		"slave hub EK1100\n"
+		"repeat 40 slave a drive in=8 out=8 cable=5us\n"
+		"branch none\nslave x1 drive in=8 out=8\n";
+	struct bus *b = bus_up(test, text, N);
+	struct cyc *c = cyc_in_op(b, 0, N);
+	struct ec_ioc_port p = { .port = 2 };
+	u32 lines = bus_log_lines("too little time on the wire");
+	u64 wrong = 0;
+
+	cyc_run(c, 200);
+	c->ctx = &wrong;
+	c->each = look;
+	bus_command(b, "plug hub.2 x1.0");
+	cyc_run(c, 10000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), N);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_PORT, &p), 0);
+	KUNIT_EXPECT_EQ(test, p.kept, (u32)EC_PORT_NO_TIME);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("too little time on the wire") - lines, 1u);
+	KUNIT_EXPECT_EQ(test, wrong, 0ull);
+}
+
 /*
  * Slaves have left the ring before the port, and the master does not know yet: nobody else gets an
  * address for that.
@@ -92,6 +119,7 @@ static void trial_after_slaves_have_gone(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(trial_behind_large_branch),
 	KUNIT_CASE(trial_behind_large_branch_by_chance),
+	KUNIT_CASE(trial_without_time),
 	KUNIT_CASE(trial_after_slaves_have_gone),
 	{}
 };

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Station addresses are the only thing that is written by ring position, and another slave is at
+ * that position when a contact has opened or closed. So the frame that writes an address reads the
+ * one before: a slave that got an address by mistake gets its own back. Such a frame is never
+ * repeated.
+ */
+#include "../link/links.h"
+#include "../carry/xfer.h"
+#include "scan_address.h"
+#include "scan_count.h"
+#include "scan_int.h"
+
+/* datagrams for a slave, the last one of which writes */
+enum {
+	NO_WRITE,	/* it has not replied: another one could be in its place by now */
+	WRITE_ONLY,	/* at its own address, or there is no known slave that could be hit */
+	READ_WRITE,
+};
+
+static unsigned int datagrams(const struct scan *sc, unsigned int i)
+{
+	const struct regs *r = &sc->regs[i];
+
+	return !sc->bus->n_slaves || r->own ? WRITE_ONLY : r->there ? READ_WRITE : NO_WRITE;
+}
+
+static void address_add(struct scan *sc, struct ec_dg *dg, unsigned int i)
+{
+	struct regs *r = &sc->regs[i];
+	u16 adp = -i;
+
+	switch (datagrams(sc, i)) {
+	case WRITE_ONLY:
+		*dg = r->own ? EC_FPWR(r->own, EC_REG_STATION, 2, r->station) :
+			       EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, r->station);
+		break;
+	case READ_WRITE:
+		dg[0] = EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 2, r->before);
+		dg[0].pair = true;
+		dg[1] = EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, r->station);
+		dg[0].repeat = dg[1].repeat = false;
+		break;
+	}
+}
+
+/* Slaves that got the address of another one get their own back. Returns how many. */
+static unsigned int give_back(struct scan *sc, const u16 *at, unsigned int n)
+{
+	const struct ec_dg *dg = sc->dg;
+	unsigned int i, k = 0;
+
+	for (i = 0; i < n; i++) {
+		struct regs *r = &sc->regs[at[i]];
+		u16 before = get_unaligned_le16(r->before);
+
+		dg += datagrams(sc, at[i]);
+		if (datagrams(sc, at[i]) != READ_WRITE || dg[-1].err || dg[-1].wkc != 1 ||
+		    !before || before == r->was)
+			continue;
+		r->gone = true;
+		sc->dg[k++] = EC_FPWR(ec_scan_address(sc, at[i]), EC_REG_STATION, 2, r->before);
+	}
+	if (!k)
+		return 0;
+	ec_xfer(sc->bus->links, sc->dg, k);
+	ec_warn(sc->bus, "scan: slaves left the ring while station addresses were written, those of %u others restored\n",
+		k);
+	return k;
+}
+
+/**
+ * ec_scan_address_all() - write the station addresses of slaves that need one
+ * @sc: scan
+ * @at: ring positions of these slaves
+ * @n: how many
+ *
+ * A slave that does not accept it is marked as failed.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: 0; -EAGAIN: the ring has changed meanwhile; or as ec_xfer().
+ */
+int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
+{
+	struct ec_dg *dg = sc->dg;
+	int count = -1, ret;
+	unsigned int i;
+
+	for (i = 0; i < n; i++) {
+		address_add(sc, dg, at[i]);
+		dg += datagrams(sc, at[i]);
+	}
+	ret = ec_xfer(sc->bus->links, sc->dg, dg - sc->dg);
+	dg = sc->dg;
+	for (i = 0; i < n && !ret; i++) {
+		dg += datagrams(sc, at[i]);
+		if (datagrams(sc, at[i]) && dg[-1].wkc == 1)
+			continue;
+		count = count < 0 ? ec_scan_count(sc->bus) : count;
+		sc->regs[at[i]].gone = count != sc->n;
+		if (sc->regs[at[i]].gone)
+			continue;
+		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
+			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
+	}
+	return give_back(sc, at, n) ? -EAGAIN : ret;
+}
