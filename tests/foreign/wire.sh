@@ -37,6 +37,9 @@ venv() {
 		fail "$1 cannot be installed (tests/install-deps.sh python; PyPI reachable?)"
 }
 
+# the Python with pysoem; $python
+pysoem() { venv pysoem 1.1.13; }
+
 # on_the_wire COMMAND...: does not return
 on_the_wire() {
 	local inside u rt

@@ -7,6 +7,6 @@
 
 cd "$(dirname "$0")/../.." || exit 1
 . tests/foreign/wire.sh
-venv pysoem 1.1.13
+pysoem
 simulator "$@"
 on_the_wire "$python" tests/pysoem/witness.py

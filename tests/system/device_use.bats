@@ -137,6 +137,45 @@ slaves_are() {
 	use sim0
 }
 
+# found: how many slaves SOEM finds at veth2
+found() {
+	"$EC_PYSOEM" -c 'import pysoem; m = pysoem.Master(); m.open("veth2"); print(m.config_init())'
+}
+
+@test "SOEM after this master: also what is connected where a session had closed a port" {
+	[ -n "$EC_PYSOEM" ] || skip "pysoem is for the programs of the host only"
+	printf 'slave a EK1100\nslave b EL2008\nbranch none\nslave x EL1008\n' \
+		>"$BATS_TEST_TMPDIR/segment"
+	tell=$BATS_TEST_TMPDIR/control
+	ip link add veth2 type veth peer name veth3
+	ip link set veth2 up
+	ip link set veth3 up
+	"$EC_BUILD/tool/ethercat-sim" -s "$BATS_TEST_TMPDIR/segment" --control "$tell" veth3 \
+		>"$BATS_TEST_TMPDIR/sim" 2>&1 3>&- &
+	readers=$!
+	wait_for 60 test -S "$tell"
+	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
+	for end in death release; do
+		use veth2
+		wait_for 60 slaves_are EL2008
+		"$EC_BUILD/apps/cyclic" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+		app=$!
+		wait_for 120 grep -q ': 2 of 2 in OP' "$BATS_TEST_TMPDIR/out"
+		[[ $(ethercat reg_read -m0 -p1 -t uint8 0x101) == 0x?c* ]]
+		[ $end = release ] || kill -9 $app
+		kill $app || true	# it may have gone
+		wait $app || true
+		app=
+		wait_for 30 use sim0
+		"$EC_BUILD/tool/ethercat-sim" --tell "$tell" plug b.1 x.0
+		[ "$(found)" = 3 ]
+		"$EC_BUILD/tool/ethercat-sim" --tell "$tell" unplug b.1
+	done
+	rmmod ec_generic
+	kill $readers
+	readers=
+}
+
 @test "to and fro 12 times beside readers, requests and other callers that are killed" {
 	readers=
 	while :; do

@@ -97,6 +97,11 @@ build() {
 	make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all
 }
 
+# a foreign master; its programs are those of this machine
+pysoem=
+! grep -qs EC_PYSOEM "${@:-tests/system/device_use.bats}" || [ "${#cross[@]}" != 0 ] ||
+	pysoem=$(. tests/foreign/wire.sh && pysoem >&2 && echo "$python") || exit 1
+
 inexact=
 [[ $kernel != *-k[ca]san ]] || inexact=tests/${kernel##*-}/exact-time.list
 logs=$(mktemp -d)
@@ -146,7 +151,7 @@ run() {
 	{ time tests/vm/run.sh --kernel "$kernel" --timeout 600 "${options[@]}" -- \
 		env EC_BUILD="$EC_BUILD" EC_NIC="${EC_NIC:-}" EC_BINDS="${EC_BINDS:-}" \
 		EC_CYCLES="${EC_CYCLES:-}" EC_SEED="${EC_SEED:-}" EC_FAULTS="${EC_FAULTS:-}" \
-		EC_WARN="$warn" \
+		EC_WARN="$warn" EC_PYSOEM="$pysoem" \
 		sh -c "$preload" sh "$f" "$logs/files" >"$logs/${f##*/}" 2>&1
 	  echo "$?" >"$logs/${f##*/}.end"; } 2>"$logs/${f##*/}.time"
 }
