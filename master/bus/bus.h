@@ -12,6 +12,7 @@
 #include "../base/base.h"
 #include "border_table.h"
 #include "known_table.h"
+#include "owed.h"
 #include "workers.h"
 
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the present list of slaves is used */
@@ -115,6 +116,10 @@ struct ec_bus {
 	u16 next_station;
 	/** @listed_station: of these, given last when the list of slaves changed; the monitor's */
 	u16 listed_station;
+	/** @owed: slaves that got the address of another one; the monitor's */
+	struct ec_owed *owed;
+	/** @n_owed: entries in @owed */
+	unsigned int n_owed;
 	/** @lists: how often the list of slaves has changed; the monitor's */
 	u32 lists;
 	/** @thrown_away: scans in a row whose result contradicted the bus; the monitor's */

@@ -161,4 +161,5 @@ void ec_bus_exit(struct ec_bus *bus)
 	WRITE_ONCE(bus->n_slaves, 0);
 	ec_known_exit(&bus->known);
 	ec_border_clear(&bus->border);
+	ec_owed_exit(bus);
 }

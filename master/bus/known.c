@@ -144,7 +144,15 @@ struct ec_lost *ec_known_lost(const struct ec_bus *bus, u64 number)
 	return NULL;
 }
 
-static bool is_present(const struct ec_bus *bus, u16 station)
+/**
+ * ec_known_is_present() - has a slave of the list a station address?
+ * @bus: bus
+ * @station: station address
+ *
+ * Context: The monitor thread.
+ * Return: whether one has it.
+ */
+bool ec_known_is_present(const struct ec_bus *bus, u16 station)
 {
 	ec_for_each_slave(s, bus)
 		if (s->station == station)
@@ -172,7 +180,7 @@ static bool was_present(const struct ec_known *k, u16 station)
  */
 bool ec_known_was_there(const struct ec_bus *bus, u16 station)
 {
-	return was_present(&bus->known, station) && !is_present(bus, station);
+	return was_present(&bus->known, station) && !ec_known_is_present(bus, station);
 }
 
 /**
@@ -228,7 +236,7 @@ u16 ec_known_fresh_station(struct ec_bus *bus)
 	u32 i;
 
 	for (i = 0; i <= EC_MAX_SLAVES; i++)
-		if (++last && last != U16_MAX && !is_present(bus, last) &&
+		if (++last && last != U16_MAX && !ec_known_is_present(bus, last) &&
 		    !was_present(&bus->known, last)) {
 			bus->next_station = last;
 			return last;

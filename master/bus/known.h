@@ -12,6 +12,7 @@ struct ec_slave;
 
 void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n,
 		     unsigned int limit);
+bool ec_known_is_present(const struct ec_bus *bus, u16 station);
 bool ec_known_was_there(const struct ec_bus *bus, u16 station);
 u64 ec_known_by_station(const struct ec_bus *bus, u16 station);
 bool ec_known_is(const struct ec_bus *bus, u16 station, u32 vendor, u32 product, u32 serial);

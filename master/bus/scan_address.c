@@ -7,6 +7,7 @@
  */
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "owed.h"
 #include "scan_address.h"
 #include "scan_count.h"
 #include "scan_int.h"
@@ -59,11 +60,12 @@ static unsigned int give_back(struct scan *sc, const u16 *at, unsigned int n)
 		    !before || before == r->was)
 			continue;
 		r->gone = true;
-		sc->dg[k++] = EC_FPWR(ec_scan_address(sc, at[i]), EC_REG_STATION, 2, r->before);
+		ec_owed_note(sc->bus, ec_scan_address(sc, at[i]), before);
+		k++;
 	}
 	if (!k)
 		return 0;
-	ec_xfer(sc->bus->links, sc->dg, k);
+	ec_owed_pay(sc->bus);
 	ec_warn(sc->bus, "scan: slaves left the ring while station addresses were written, those of %u others restored\n",
 		k);
 	return k;

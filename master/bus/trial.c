@@ -8,6 +8,7 @@
 #include "../carry/xfer.h"
 #include "graph.h"
 #include "known.h"
+#include "owed.h"
 #include "ports.h"
 #include "slave.h"
 #include "trial.h"
@@ -19,6 +20,24 @@
 /* in which a frame passes the ports */
 static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 
+/* Is it an address that a try before has given to the guest? */
+static bool was_fresh(const struct ec_guest *g, u16 station)
+{
+	return (u16)(station - g->first) <= (u16)(g->station - g->first);
+}
+
+/* If a slave of the bus had the address of the guest, it must reply there: else it is the guest. */
+static int prove_other(const struct ec_trials *t, const struct ec_guest *g, u16 was)
+{
+	u8 station[2];
+
+	if (!ec_known_is_present(t->bus, was) ||
+	    !ec_xfer_fprd(t->bus->links, was, EC_REG_STATION, station, 2))
+		return 0;
+	ec_owed_note(t->bus, g->station, was);
+	return -EAGAIN;
+}
+
 /* The first slave behind the port gets an address; -ENXIO: none replies; or as ec_trial_run(). */
 static int greet(struct ec_trials *t, struct ec_guest *g)
 {
@@ -28,20 +47,24 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 	u8 fresh[2], read[4] = { 0 };
 	int ret;
 
-	put_unaligned_le16(g->station, fresh);
 	t->n = 0;
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
 	/*
 	 * A device behind the guest may let no frame return, but the guest executes what it gets.
-	 * That no slave of the bus has its address is certain by now.
+	 * That no slave of the bus has its address is certain if all have replied.
 	 */
-	if (g->mute) {
+	if (g->mute && t->count == t->bus->n_slaves) {
 		g->mute = false;
 		ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
 		ret = ec_trial_run(t, g->station);
 		return ret == -ENOLINK ? ret : -EAGAIN;
 	}
+	/* each time another one: if frames are lost, it is not known who has got it */
+	g->station = ec_known_fresh_station(t->bus);
+	if (!g->station)
+		return -ENOSPC;
+	put_unaligned_le16(g->station, fresh);
 	was = ec_trial_add(t, EC_DG(EC_CMD_APRD, adp, EC_REG_STATION, 4, read));
 	ec_trial_add(t, EC_DG(EC_CMD_APWR, adp, EC_REG_STATION, 2, fresh));
 	t->was = read;
@@ -49,14 +72,14 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 	t->was = NULL;
 	if (ret == -ENOBUFS)
 		return ret;
-	/* the reply may have been lost, and the address written, the time before */
-	if (get_unaligned_le16(read) != g->station)
+	/* an address of a try before, whose reply was lost, is no address of its own */
+	if (!was_fresh(g, get_unaligned_le16(read)))
 		memcpy(g->station_was, read, 2);
 	memcpy(g->station_was + 2, read + 2, 2);
 	g->mute = was->err;
 	if (!was->err && !was->wkc && ret != -ENOLINK)
 		return -ENXIO;
-	return ret;
+	return ret ?: prove_other(t, g, get_unaligned_le16(read));
 }
 
 static int trial_ask(struct ec_trials *t, struct ec_guest *g)
@@ -241,9 +264,7 @@ static int trial_one(struct ec_trials *t, struct ec_guest *g)
 {
 	int ret, judged;
 
-	*g = (struct ec_guest){ .station = ec_known_fresh_station(t->bus) };
-	if (!g->station)
-		return -ENOSPC;
+	*g = (struct ec_guest){ .first = t->bus->next_station + 1 };
 	ret = look(t) ?: try_often(t, g, greet);
 	/* each time: a PC or a switch lets no frame return */
 	if (ret == -EAGAIN && t->work[0].err)

@@ -32,6 +32,7 @@ struct ec_host {
 /**
  * struct ec_guest - a slave that was found there
  * @station: its station address
+ * @first: that the first try gave it
  * @kept: address that it had, 0: none that it may have again
  * @entry: port by which frames come in
  * @mute: no frame to it has returned
@@ -45,6 +46,7 @@ struct ec_host {
  */
 struct ec_guest {
 	u16 station;
+	u16 first;
 	u16 kept;
 	u8 entry;
 	bool mute;

@@ -12,6 +12,8 @@
 #include "../carry/xfer.h"
 #include "gap.h"
 #include "graph.h"
+#include "known.h"
+#include "owed.h"
 #include "trial_int.h"
 
 /**
@@ -81,14 +83,6 @@ out:
 	return n == 1 ? station : 0;
 }
 
-static bool is_listed(const struct ec_bus *bus, u16 station)
-{
-	ec_for_each_slave(s, bus)
-		if (s->station == station)
-			return true;
-	return false;
-}
-
 /*
  * A slave of the bus has the address of the guest, although the port is closed: the contact broke
  * before the address was written. The frame that wrote it has read its own; if that was lost, it is
@@ -97,13 +91,14 @@ static bool is_listed(const struct ec_bus *bus, u16 station)
 static void trial_give_back(const struct ec_trials *t, u16 station, bool next)
 {
 	u16 owner = t->was ? get_unaligned_le16(t->was) : 0;
-	u8 own[2];
 
-	if (!is_listed(t->bus, owner))
+	if (!ec_known_is_present(t->bus, owner))
 		owner = next ? t->next->station : find_owner(t->bus);
-
-	put_unaligned_le16(owner, own);
-	if (owner && !ec_xfer_fpwr(t->bus->links, station, EC_REG_STATION, own, 2))
+	if (owner) {
+		ec_owed_note(t->bus, station, owner);
+		ec_owed_pay(t->bus);
+	}
+	if (owner)
 		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
 			t->host.station, t->port, owner);
 	else

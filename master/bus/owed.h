@@ -1,0 +1,24 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Station addresses that slaves have to get back. */
+#ifndef EC_BUS_OWED_H
+#define EC_BUS_OWED_H
+
+#include <linux/types.h>
+
+struct ec_bus;
+
+/**
+ * struct ec_owed - a slave that got the address of another one
+ * @has: address that it has, and no other slave has had
+ * @own: its own
+ */
+struct ec_owed {
+	u16 has;
+	u16 own;
+};
+
+void ec_owed_note(struct ec_bus *bus, u16 has, u16 own);
+void ec_owed_pay(struct ec_bus *bus);
+void ec_owed_exit(struct ec_bus *bus);
+
+#endif
