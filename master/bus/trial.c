@@ -60,7 +60,7 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 		ret = ec_trial_run(t, g->station);
 		return ret == -ENOLINK ? ret : -EAGAIN;
 	}
-	/* each time another one: if frames are lost, it is not known who has got it */
+	/* each time another one: when frames are lost, any slave may have got it */
 	g->station = ec_known_fresh_station(t->bus);
 	if (!g->station)
 		return -ENOSPC;
