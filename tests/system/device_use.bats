@@ -139,7 +139,8 @@ slaves_are() {
 
 # found: how many slaves SOEM finds at veth2
 found() {
-	"$EC_PYSOEM" -c 'import pysoem as p; m = p.Master(); m.open("veth2"); print(m.config_init())'
+	"$EC_PYSOEM" -c 'import pysoem; m = pysoem.Master()
+m.open("veth2"); print(m.config_init())'
 }
 
 @test "SOEM after this master: also what is connected where a session had closed a port" {
