@@ -188,7 +188,10 @@ static bool as_wanted(const struct ec_survey *sv, u16 ored, u16 wkc)
 	return !sv->differ && ored == sv->state && wkc >= sv->replying;
 }
 
-/* The count of a reply, 0 above the limit; that is logged once until a count is within it. */
+/*
+ * The count of a reply. One above the limit, which is logged once, says nothing: the count stays
+ * what it was.
+ */
 static unsigned int believable(struct watch *w, unsigned int count)
 {
 	unsigned int limit = ec_scan_limit();
@@ -202,7 +205,7 @@ static unsigned int believable(struct watch *w, unsigned int count)
 			"a reply reports %u slaves, limit %u by memory; not scanned: check the cables and the last slave\n",
 			count, limit);
 	w->too_many = count;
-	return 0;
+	return w->count;
 }
 
 static void set_rider(struct ec_rider *r, const struct ec_dg *dg)
@@ -523,7 +526,7 @@ static void maybe_scan(struct watch *w)
 	struct ec_scan_result result = { 0 };
 	bool asked = false;
 
-	ec_owed_pay(&m->bus);
+	ec_owed_pay(&m->bus, false);
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
 		return;

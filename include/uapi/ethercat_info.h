@@ -164,6 +164,7 @@ struct ec_ioc_port {
 #define EC_PORT_WRONG_WAY	12	/* connected the wrong way round, others behind it */
 #define EC_PORT_SWALLOWS	13	/* no frame returned while it was open */
 #define EC_PORT_NO_TIME		14	/* too little time beside the cycle for a trial */
+#define EC_PORT_EARLY		15	/* of a slave connected the wrong way round */
 
 /* let the device behind a port in; only if it is the one with this identity */
 struct ec_ioc_let_in {

@@ -17,12 +17,14 @@
  * @bytes: data of the work
  *
  * Context: Process.
- * Return: whether it is so; without a cycle it always is.
+ * Return: whether it is so; without a cycle it is, for branches up to 475 us.
  */
 bool ec_gap_fits(const struct ec_links *l, u32 branch_ns, u32 bytes)
 {
 	u32 free_ns = ec_access_slack_ns(l);
 
+	if (branch_ns / 80 > EC_GAP_FRAMES * EC_DGRAM_DATA_MAX)
+		return false;
 	/* clock frames take some of it now and then */
 	return free_ns == ~0u ||
 	       free_ns - free_ns / 8 >

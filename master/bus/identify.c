@@ -12,6 +12,7 @@
 
 /* One with identification 0 does not answer the request. */
 #define WAIT_NS		(50 * NSEC_PER_MSEC)
+#define POLLS		10	/* at least */
 #define POLL_US		500
 #define REPLY		(EC_REG_AL_CODE + 2 - EC_REG_AL_STATUS)
 
@@ -154,7 +155,7 @@ bool ec_identify_is_due(const struct ec_slave *s)
  * Of those whose EEPROM says that they have one: general category, flags bit 3 (AL control,
  * registers 0x0120 and 0x0134) or bit 4 (a word of their memory).
  *
- * Context: The monitor thread. Waits for bus traffic, and at most some 50 ms for replies.
+ * Context: The monitor thread. Waits for bus traffic, and at most 50 ms or 10 polls for replies.
  */
 void ec_identify_all(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
 {
@@ -172,10 +173,10 @@ void ec_identify_all(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 		for (i = 0; i < n; i++)
 			if (is_asked(slaves[i]))
 				identify_add(&id, slaves[i]);
-		until = ktime_get_ns() + WAIT_NS;
 		identify_request(&id, EC_AL_ID);
-		while (id.n && read_replies(&id) && ktime_get_ns() < until &&
-		       !READ_ONCE(bus->base->stopping))
+		until = ktime_get_ns() + WAIT_NS;
+		for (i = 0; id.n && read_replies(&id) &&
+		     (i < POLLS || ktime_get_ns() < until) && !READ_ONCE(bus->base->stopping); i++)
 			usleep_range(POLL_US, 2 * POLL_US);
 		identify_request(&id, 0);
 	}

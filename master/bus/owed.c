@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * A slave that got an address meant for another one gets its own back, even if it is cut off before
- * it can: until it has accepted that, or is not in the list of slaves any more.
+ * it can: until it has accepted that, another slave replies there, or some seconds have passed.
  */
+#include <linux/ktime.h>
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "known.h"
 #include "owed.h"
 #include "slave.h"
+
+#define TRIES		3
+#define LATEST_NS	(10 * NSEC_PER_SEC)
 
 /**
  * ec_owed_note() - a slave has to get its station address back
@@ -22,45 +26,79 @@
  */
 void ec_owed_note(struct ec_bus *bus, u16 has, u16 own)
 {
-	struct ec_owed *more = krealloc_array(bus->owed, bus->n_owed + 1, sizeof(*more),
-					      GFP_KERNEL | __GFP_NOWARN);
+	struct ec_owed owed = { .since_ns = ktime_get_ns(), .has = has, .own = own }, *more;
+	unsigned int i;
 
-	if (!more)
-		return;
-	more[bus->n_owed++] = (struct ec_owed){ .has = has, .own = own };
-	bus->owed = more;
+	for (i = 0; i < bus->n_owed && bus->owed[i].own != own; i++)
+		;
+	if (i == bus->n_owed) {
+		more = krealloc_array(bus->owed, i + 1, sizeof(*more), GFP_KERNEL | __GFP_NOWARN);
+		if (!more)
+			return;
+		bus->owed = more;
+		bus->n_owed++;
+	}
+	bus->owed[i] = owed;
+}
+
+/* Those that do not reply at their own address by now, and have not been tried for too long. */
+static void owed_sift(struct ec_bus *bus, struct ec_dg *dg, u8 (*station)[2])
+{
+	unsigned int i, n = bus->n_owed;
+	u64 now = ktime_get_ns();
+
+	for (i = 0; i < n; i++)
+		dg[i] = EC_FPRD(bus->owed[i].own, EC_REG_STATION, 2, station[i]);
+	ec_xfer(bus->links, dg, n);
+	bus->n_owed = 0;
+	for (i = 0; i < n; i++)
+		if ((dg[i].err || !dg[i].wkc) && now - bus->owed[i].since_ns < LATEST_NS &&
+		    ec_known_is_present(bus, bus->owed[i].own))
+			bus->owed[bus->n_owed++] = bus->owed[i];
+}
+
+static void owed_write(struct ec_bus *bus, struct ec_dg *dg, u8 (*station)[2])
+{
+	unsigned int i, n = bus->n_owed;
+
+	for (i = 0; i < n; i++) {
+		put_unaligned_le16(bus->owed[i].own, station[i]);
+		dg[i] = EC_FPWR(bus->owed[i].has, EC_REG_STATION, 2, station[i]);
+	}
+	ec_xfer(bus->links, dg, n);
+	bus->n_owed = 0;
+	for (i = 0; i < n; i++)
+		if (dg[i].err || !dg[i].wkc)
+			bus->owed[bus->n_owed++] = bus->owed[i];
 }
 
 /**
  * ec_owed_pay() - give slaves their station addresses back
  * @bus: bus
+ * @first: they have just been noted, and have not replied there
  *
  * Context: The monitor thread. May sleep; waits for bus traffic if there are such slaves.
+ * Return: whether all of them have it now.
  */
-void ec_owed_pay(struct ec_bus *bus)
+bool ec_owed_pay(struct ec_bus *bus, bool first)
 {
-	unsigned int i, n = bus->n_owed;
+	u8 (*station)[2];
 	struct ec_dg *dg;
-	u8 (*own)[2];
+	unsigned int i;
 
-	if (!n)
-		return;
-	dg = kvcalloc(n, sizeof(*dg), GFP_KERNEL);
-	own = kvcalloc(n, sizeof(*own), GFP_KERNEL);
-	if (!dg || !own)
-		goto out;
-	for (i = 0; i < n; i++) {
-		put_unaligned_le16(bus->owed[i].own, own[i]);
-		dg[i] = EC_FPWR(bus->owed[i].has, EC_REG_STATION, 2, own[i]);
+	if (!bus->n_owed)
+		return true;
+	dg = kvcalloc(bus->n_owed, sizeof(*dg), GFP_KERNEL);
+	station = kvcalloc(bus->n_owed, sizeof(*station), GFP_KERNEL);
+	if (dg && station) {
+		if (!first)
+			owed_sift(bus, dg, station);
+		for (i = 0; i < TRIES && bus->n_owed; i++)
+			owed_write(bus, dg, station);
 	}
-	ec_xfer(bus->links, dg, n);
-	bus->n_owed = 0;
-	for (i = 0; i < n; i++)
-		if ((dg[i].err || !dg[i].wkc) && ec_known_is_present(bus, bus->owed[i].own))
-			bus->owed[bus->n_owed++] = bus->owed[i];
-out:
 	kvfree(dg);
-	kvfree(own);
+	kvfree(station);
+	return !bus->n_owed;
 }
 
 /**

@@ -9,16 +9,18 @@ struct ec_bus;
 
 /**
  * struct ec_owed - a slave that got the address of another one
+ * @since_ns: (ktime)
  * @has: address that it has, and no other slave has had
  * @own: its own
  */
 struct ec_owed {
+	u64 since_ns;
 	u16 has;
 	u16 own;
 };
 
 void ec_owed_note(struct ec_bus *bus, u16 has, u16 own);
-void ec_owed_pay(struct ec_bus *bus);
+bool ec_owed_pay(struct ec_bus *bus, bool first);
 void ec_owed_exit(struct ec_bus *bus);
 
 #endif

@@ -12,6 +12,7 @@
 #include "slave.h"
 #include "trial.h"
 
+#define VAIN_MAX	4	/* trials that failed: up to 1.6 s until the next one */
 #define STABLE_NS	(100 * NSEC_PER_MSEC)	/* of link without loss, then a port is tried */
 #define UNKNOWN_NS	(2 * (u64)NSEC_PER_SEC)	/* of a new slave, which may get a configuration */
 #define WAIT_MIN_MS	1000	/* between trials at a port where no slave replies; doubles */
@@ -172,6 +173,8 @@ static void write_ports(struct ec_bus *bus, struct ec_slave **list, unsigned int
 	for (i = 0; i < n; i++) {
 		v[i][2] = wanted_loops(list[i]);
 		dg[2 * i] = EC_FPWR(list[i]->station, EC_REG_DL_LOOPS, 1, &v[i][2]);
+		/* else the read could be executed before a repeated write */
+		dg[2 * i].pair = true;
 		dg[2 * i + 1] = EC_FPRD(list[i]->station, EC_REG_DL_CONTROL, 2, v[i]);
 	}
 	ec_xfer(bus->links, dg, 2 * n);
@@ -291,17 +294,19 @@ static void note_closed(struct ec_slave *s, unsigned int port, const struct ec_b
 static u32 why_kept(int ret)
 {
 	return ret == -ENXIO ? EC_PORT_NO_REPLY : ret == -EXDEV ? EC_PORT_WRONG_WAY :
-	       ret == -EOPNOTSUPP ? EC_PORT_LOOPS : ret == -ENOBUFS ? EC_PORT_NO_TIME : 0;
+	       ret == -EOPNOTSUPP ? EC_PORT_LOOPS : ret == -ENOBUFS ? EC_PORT_NO_TIME :
+	       ret == -EDOM ? EC_PORT_EARLY : 0;
 }
 
 static bool try_door(struct ec_slave *s, unsigned int port)
 {
+	struct ec_door *d = &s->ports.door[port];
 	struct ec_behind is = { 0 };
 	int ret = ec_trial(s, port, &is);
 
 	if (ret > 0) {
 		ec_border_forget(s->bus, s->device, port);
-		s->ports.door[port] = (struct ec_door){ 0 };
+		*d = (struct ec_door){ 0 };
 		ec_slave_dbg(s, 1, "port %u: %d new slave(s), made harmless before process data reached them\n",
 			     port, ret);
 		return true;
@@ -310,9 +315,10 @@ static bool try_door(struct ec_slave *s, unsigned int port)
 	if (is.kept)
 		note_closed(s, port, &is);
 	else
-		s->ports.door[port].next_ns = ktime_get_ns() + STABLE_NS;
+		d->next_ns = ktime_get_ns() + (STABLE_NS << min_t(u32, d->vain, VAIN_MAX));
+	d->vain = is.kept ? 0 : min(d->vain + 1, VAIN_MAX);
 	if (ret == -ENOLINK)
-		s->ports.door[port].link_ns = 0;
+		d->link_ns = 0;
 	ec_slave_dbg(s, 1, "trial at port %u: %d\n", port, ret);
 	return false;
 }

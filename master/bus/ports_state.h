@@ -11,13 +11,19 @@
  * @link_ns: since when it has had a link without loss (ktime), 0: it has none
  * @next_ns: no trial before (ktime)
  * @wait_ms: distance of the last two trials in which no slave replied
+ * @fresh: station address that a trial gave to the slave behind it
+ * @was: the one that this slave had before
  * @kept: EC_PORT_*: why it stays closed, which was reported
+ * @vain: trials in a row that failed for another reason
  */
 struct ec_door {
 	u64 link_ns;
 	u64 next_ns;
-	u32 wait_ms;
+	u16 wait_ms;
+	u16 fresh;
+	u16 was;
 	u8 kept;
+	u8 vain;
 };
 
 /**

@@ -65,9 +65,8 @@ static unsigned int give_back(struct scan *sc, const u16 *at, unsigned int n)
 	}
 	if (!k)
 		return 0;
-	ec_owed_pay(sc->bus);
-	ec_warn(sc->bus, "scan: slaves left the ring while station addresses were written, those of %u others restored\n",
-		k);
+	ec_warn(sc->bus, "scan: slaves left the ring while station addresses were written, those of %u others %s\n",
+		k, ec_owed_pay(sc->bus, true) ? "restored" : "are restored when these reply");
 	return k;
 }
 
@@ -102,8 +101,10 @@ int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 		sc->regs[at[i]].gone = count != sc->n;
 		if (sc->regs[at[i]].gone)
 			continue;
-		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS),
-			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan");
+		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS), "%s",
+			      datagrams(sc, at[i]) ?
+			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan" :
+			      "no reply at its ring position, frames pass; power-cycle or replace the slave, then rescan");
 	}
 	return give_back(sc, at, n) ? -EAGAIN : ret;
 }

@@ -165,20 +165,24 @@ static int check_lost(struct scan *sc, const struct stretch *t, enum doubt *doub
 		ret = ec_xfer(sc->bus->links, dg, n);
 	for (i = 0; i < n && !ret; i++)
 		if (dg[i].wkc)
-			*doubt = KNOWN;
+			*doubt = max(*doubt, KNOWN);
 out:
 	kvfree(dg);
 	kvfree(v);
 	return ret;
 }
 
-/* A slave that contradicts itself all the time must not keep the others from being used. */
-static void note_doubt(struct scan *sc, struct stretch *t, enum doubt doubt)
+/*
+ * A slave that contradicts itself all the time must not keep the others from being used. Returns
+ * whether that counts: a contact that is lost does not.
+ */
+static bool note_doubt(struct scan *sc, struct stretch *t, enum doubt doubt)
 {
 	static const unsigned int max[] = { 0, NEW_MAX, KNOWN_MAX, UINT_MAX };
 
 	t->thrown = sc->bus->thrown_away < max[doubt];
 	sc->n_thrown += t->thrown;
+	return t->thrown && doubt != UNREAD;
 }
 
 static int prove(struct proof *p)
@@ -186,14 +190,16 @@ static int prove(struct proof *p)
 	struct scan *sc = p->sc;
 	unsigned int k;
 	int ret = ask_found(p);
+	bool counts = false;
 
 	for (k = 0; k < sc->n_stretches && !ret; k++) {
 		enum doubt doubt = check_found(p, &sc->stretch[k]);
 
 		ret = check_lost(sc, &sc->stretch[k], &doubt);
-		note_doubt(sc, &sc->stretch[k], doubt);
+		counts |= note_doubt(sc, &sc->stretch[k], doubt);
 	}
-	sc->bus->thrown_away = sc->n_thrown ? sc->bus->thrown_away + 1 : 0;
+	if (counts || !sc->n_thrown)
+		sc->bus->thrown_away = counts ? sc->bus->thrown_away + 1 : 0;
 	return ret;
 }
 
@@ -235,6 +241,8 @@ int ec_scan_proof(struct scan *sc)
 	struct proof p = { .sc = sc };
 	int ret = prove_silence(sc);
 
+	if (!ret && !sc->n_stretches)
+		sc->bus->thrown_away = 0;
 	/* an empty list needs no check of the bus */
 	if (ret || !sc->n || !sc->n_stretches)
 		return ret;

@@ -284,6 +284,8 @@ static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 		if (!station)
 			return -ENOSPC;
 		sc->bus->next_station = station;
+		/* not for another one as well */
+		sc->claims[station] = 1;
 	}
 	s = ec_slave_alloc(sc->bus, station);
 	if (!s)

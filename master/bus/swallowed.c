@@ -14,6 +14,7 @@
 #include "slave.h"
 #include "swallowed.h"
 
+#define PROBES	2	/* pairs of frames: some may be lost for another reason */
 #define CLOSES	3	/* writes that close the port: each may be lost */
 
 /**
@@ -94,11 +95,19 @@ static bool returns_without(struct search *f, const struct ec_slave *s)
 /* Have frames begun to return by themselves? Then it was no port. */
 static bool returns_anyway(const struct search *f)
 {
+	struct ec_dg dg[2];
+	unsigned int i;
 	u8 any;
-	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, &any);
 
-	ec_xfer_train(f->bus->links, &dg, 1);
-	return !dg.err;
+	for (i = 0; i < PROBES; i++) {
+		dg[0] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, &any);
+		dg[0].last = true;
+		dg[1] = dg[0];
+		ec_xfer_train(f->bus->links, dg, 2);
+		if (!dg[0].err || !dg[1].err)
+			return true;
+	}
+	return false;
 }
 
 /* Keep those behind @s, without it; or all but them. */

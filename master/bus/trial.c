@@ -15,6 +15,7 @@
 #include "trial_int.h"
 
 #define PASS_NS	2500	/* through a slave and 100 m of cable, both ways */
+#define BRANCH	64	/* slaves that are let in together; the others after the next scan */
 #define DEPTH	64	/* slaves one behind the other at which a branch begins */
 
 /* in which a frame passes the ports */
@@ -24,6 +25,22 @@ static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 static bool was_fresh(const struct ec_guest *g, u16 station)
 {
 	return (u16)(station - g->first) <= (u16)(g->station - g->first);
+}
+
+/* Take address and alias that the guest had. One of an earlier try, or trial, is not its own. */
+static void take_address(const struct ec_trials *t, struct ec_guest *g, const u8 *read)
+{
+	u16 station = get_unaligned_le16(read);
+
+	if (t->door && station && station == t->door->fresh)
+		station = t->door->was;
+	if (!was_fresh(g, station))
+		put_unaligned_le16(station, g->station_was);
+	memcpy(g->station_was + 2, read + 2, 2);
+	if (!t->door)
+		return;
+	t->door->fresh = g->station;
+	t->door->was = get_unaligned_le16(g->station_was);
 }
 
 /* If a slave of the bus had the address of the guest, it must reply there: else it is the guest. */
@@ -41,7 +58,8 @@ static int prove_other(const struct ec_trials *t, const struct ec_guest *g, u16 
 /* The first slave behind the port gets an address; -ENXIO: none replies; or as ec_trial_run(). */
 static int greet(struct ec_trials *t, struct ec_guest *g)
 {
-	static const u8 all_closed[1] = { 0xfc };
+	/* 0x0100 as after a reset; for a second */
+	static const u8 all_closed[2] = { BIT(0) | EC_DL_TEMPORARY, 0xfc };
 	const struct ec_dg *was;
 	u16 adp = -t->position;
 	u8 fresh[2], read[4] = { 0 };
@@ -56,7 +74,7 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 	 */
 	if (g->mute && t->count == t->bus->n_slaves) {
 		g->mute = false;
-		ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, all_closed));
+		ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_CONTROL, 2, all_closed));
 		ret = ec_trial_run(t, g->station);
 		return ret == -ENOLINK ? ret : -EAGAIN;
 	}
@@ -72,14 +90,12 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 	t->was = NULL;
 	if (ret == -ENOBUFS)
 		return ret;
-	/* an address of a try before, whose reply was lost, is no address of its own */
-	if (!was_fresh(g, get_unaligned_le16(read)))
-		memcpy(g->station_was, read, 2);
-	memcpy(g->station_was + 2, read + 2, 2);
+	if (!was->err && was->wkc == 1)
+		take_address(t, g, read);
 	g->mute = was->err;
 	if (!was->err && !was->wkc && ret != -ENOLINK)
 		return -ENXIO;
-	return ret ?: prove_other(t, g, get_unaligned_le16(read));
+	return ret ?: prove_other(t, g, get_unaligned_le16(g->station_was));
 }
 
 static int trial_ask(struct ec_trials *t, struct ec_guest *g)
@@ -107,18 +123,26 @@ static int trial_ask(struct ec_trials *t, struct ec_guest *g)
 	return ret;
 }
 
-/* The port by which frames come in: the open one that latched first. */
+/*
+ * The port by which frames come in: the open one that latched first; without receive times as in
+ * graph.c.
+ */
 static u8 guest_entry(const struct ec_guest *g)
 {
+	bool has_times = memchr_inv(g->times, 0, sizeof(g->times));
 	u8 open = ec_graph_open_ports(get_unaligned_le16(g->dl));
 	int best = -1;
-	unsigned int p;
+	unsigned int i;
 
-	for (p = 0; p < EC_MAX_PORT; p++)
+	for (i = 0; i < EC_MAX_PORT; i++) {
+		u8 p = order[i];
+
 		if (open & BIT(p) &&
-		    (best < 0 || (s32)(get_unaligned_le32(g->times + 4 * p) -
-				       get_unaligned_le32(g->times + 4 * best)) < 0))
+		    (best < 0 || (has_times ? (s32)(get_unaligned_le32(g->times + 4 * p) -
+						    get_unaligned_le32(g->times + 4 * best)) < 0 :
+				  best != 0)))
 			best = p;
+	}
 	return max(best, 0);
 }
 
@@ -147,9 +171,12 @@ static bool is_last(const struct ec_guest *g)
 static int tame(struct ec_trials *t, struct ec_guest *g)
 {
 	static const u8 zero[EC_MAX_FMMU * EC_FMMU_PAGE];
-	static const u8 init[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
+	/* one that copies AL control to AL status would show an error */
+	const u8 init[2] = { EC_AL_INIT | (g->al[0] & EC_AL_ERROR), 0 };
 	u16 fmmus = min_t(u16, g->info[EC_REG_FMMUS], EC_MAX_FMMU) * EC_FMMU_PAGE;
-	u8 loops[1] = { guest_loops(g) }, is[1] = { 0 }, kept[2], any[1];
+	const u8 tried[2] = { g->control[0] | EC_DL_TEMPORARY, guest_loops(g) };
+	const u8 closed[2] = { g->control[0] & ~EC_DL_TEMPORARY, guest_loops(g) };
+	u8 is[1] = { 0 }, kept[2], any[1];
 	const struct ec_dg *count;
 	u8 left[EC_MAX_FMMU * EC_FMMU_PAGE] = { 0 };
 	unsigned int last;
@@ -157,8 +184,12 @@ static int tame(struct ec_trials *t, struct ec_guest *g)
 
 	put_unaligned_le16(g->kept ?: g->station, kept);
 	t->n = 0;
-	/* in a frame of its own: its ports close behind that */
-	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_LOOPS, 1, loops))->last = true;
+	/*
+	 * In a frame of its own: its ports close behind that. For good only if it replies then:
+	 * frames may have come in by another port than it seemed.
+	 */
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_CONTROL, 2, tried))->last = true;
+	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DL_CONTROL, 2, closed));
 	if (fmmus)
 		ec_trial_add(t, EC_FPWR(g->station, EC_REG_FMMU(0), fmmus, zero));
 	ec_trial_add(t, EC_FPWR(g->station, EC_REG_DC_ACTIVATION, 1, zero));
@@ -176,10 +207,10 @@ static int tame(struct ec_trials *t, struct ec_guest *g)
 		return ret;
 	if (t->work[last - 2].wkc != 1 || memchr_inv(left, 0, sizeof(left)))
 		return -EAGAIN;
-	if (is[0] == loops[0] && count->wkc > t->count + 1)
+	if (is[0] == closed[1] && count->wkc > t->count + 1)
 		return -EXDEV;
 	/* one that does not keep its loops lets in what is behind it */
-	return is[0] == loops[0] ? 0 : -EOPNOTSUPP;
+	return is[0] == closed[1] ? 0 : -EOPNOTSUPP;
 }
 
 static int try_often(struct ec_trials *t, struct ec_guest *g,
@@ -236,6 +267,13 @@ static u32 measure_branch(const struct ec_trials *t)
 	return ns > 0 ? ns : guess;
 }
 
+/* Does a slave of the list not reply, as is known? */
+static bool is_mute(const struct ec_slave *s)
+{
+	return s && (READ_ONCE(s->reply.silent) ||
+		     READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED);
+}
+
 /*
  * The port may have lost its link since it was seen, and the ring slaves before it: then another
  * slave than the next one of the list is at the position, or none.
@@ -253,7 +291,7 @@ static int look(struct ec_trials *t)
 	t->dl = dg[0].err || dg[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
-	if (dg[1].err || get_unaligned_le16(station) != next)
+	if (dg[1].err || (get_unaligned_le16(station) != next && !(is_mute(t->next) && !dg[1].wkc)))
 		return -ESTALE;
 	t->branch_ns = measure_branch(t);
 	return 0;
@@ -335,7 +373,7 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
 		return n;
 	stack[0].guest = *first;
 	stack[0].position = t->position;
-	for (;;) {
+	while (n < BRANCH && READ_ONCE(t->bus->guarded)) {
 		struct level *l = &stack[depth];
 		int ret;
 
@@ -351,6 +389,7 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
 			continue;
 		t->host = l->host;
 		t->port = l->port;
+		t->door = NULL;
 		t->position++;
 		ret = trial_one(t, &g);
 		l->host.loops = t->host.loops;
@@ -384,7 +423,7 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
  * broke; -EAGAIN: frames were lost; -EOPNOTSUPP: the slave does not keep its loops, and others are
  * behind it; -EXDEV: others are behind its port 0; -ESTALE: the ring is not that of the list;
  * -ENOSPC: no free station address; -EPERM: @is is not let in; -ENOBUFS: the cycle leaves too
- * little wire time; -ENOMEM.
+ * little wire time; -EDOM: frames pass the port before they are processed; -ENOMEM.
  */
 int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 {
@@ -396,11 +435,15 @@ int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 			.device = s->device,
 		},
 		.port = port,
+		.door = &s->ports.door[port],
 		.position = ec_graph_place(s, port),
 	};
 	struct ec_guest g;
 	int ret;
 
+	/* what is written by position would be executed before the port is passed */
+	if (t.position <= s->position)
+		return -EDOM;
 	t.train = kcalloc(EC_TRIAL_TRAIN, sizeof(*t.train), GFP_KERNEL);
 	if (!t.train)
 		return -ENOMEM;

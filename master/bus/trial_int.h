@@ -8,7 +8,7 @@
 #include "gap.h"
 #include "slave.h"
 
-#define EC_TRIAL_WORK	8	/* datagrams of the work, at most */
+#define EC_TRIAL_WORK	9	/* datagrams of the work, at most */
 #define EC_TRIAL_TRIES	3
 /* datagrams of a trial: opened and closed twice, five checks */
 #define EC_TRIAL_TRAIN	(EC_TRIAL_WORK + 9 + 2 * EC_GAP_FRAMES)
@@ -69,6 +69,7 @@ struct ec_guest {
  * @next: slave of the list at that position now; NULL: there is none
  * @dl: DL status of the host at the end of the last trial
  * @count: slaves that reply then
+ * @door: what is known of the port; NULL: it is that of a guest
  * @train: memory for the datagrams of a trial
  * @work: datagrams of the next trial, then of the last one
  * @n: how many
@@ -84,6 +85,7 @@ struct ec_trials {
 	const struct ec_slave *next;
 	u16 dl;
 	u16 count;
+	struct ec_door *door;
 	struct ec_dg *train;
 	struct ec_dg work[EC_TRIAL_WORK];
 	unsigned int n;

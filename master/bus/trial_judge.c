@@ -165,7 +165,8 @@ static int ask_by_al(struct eeprom *e, u16 *identification)
 		*identification = get_unaligned_le16(reply + EC_REG_AL_CODE - EC_REG_AL_STATUS);
 	e->t->n = 0;
 	ec_trial_add(e->t, EC_FPWR(station, EC_REG_AL_CONTROL, 2, end));
-	return ret ?: judge_run(e->t, e->g);
+	/* a device whose firmware does not run takes no request, not the end of one either */
+	return ret ?: judge_run(e->t, e->g) == -ENOLINK ? -ENOLINK : 0;
 }
 
 static int read_identification(struct eeprom *e, const struct places *p, struct ec_behind *is)
@@ -283,7 +284,8 @@ bool ec_trial_in_boot(struct ec_trials *t, const struct ec_guest *g)
 	    (get_unaligned_le16(g->al) & EC_AL_STATE_MASK) != EC_AL_BOOT)
 		return false;
 	behind_begin(t, g, EC_PORT_BOOT);
-	return ec_border_judge(t->bus, t->host.device, t->port, &t->is);
+	t->is.kept = ec_border_judge(t->bus, t->host.device, t->port, &t->is);
+	return t->is.kept;
 }
 
 /**
@@ -314,9 +316,9 @@ int ec_trial_judge(struct ec_trials *t, struct ec_guest *g)
 	if (kept == EC_PORT_UNKNOWN &&
 	    ec_known_is(t->bus, g->kept, t->is.vendor, t->is.product, t->is.serial))
 		kept = EC_PORT_NOT_KEPT;
+	t->is.kept = kept;
 	if (!kept)
 		return 0;
-	t->is.kept = kept;
 	if (kept != EC_PORT_UNREADABLE && is_unlisted(t, &t->is) &&
 	    ((asks & EC_BORDER_ID) || !find_places(&e, &p)))
 		judge_read_name(&e, &p, &t->is);

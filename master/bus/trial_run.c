@@ -51,13 +51,13 @@ static bool has_lost_address(const struct ec_slave *s, const struct ec_dg *own,
 		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->graph.parent_port));
 }
 
-/* The only slave of the list that has lost its address; 0: there is none, or more */
-static u16 find_owner(struct ec_bus *bus)
+/* The only slave of the list that has lost its address; NULL: there is none, or more */
+static const struct ec_slave *find_owner(struct ec_bus *bus)
 {
 	struct ec_dg *dg = kvcalloc(bus->n_slaves, sizeof(*dg), GFP_KERNEL);
 	u8 (*dl)[2] = kvcalloc(bus->n_slaves, sizeof(*dl), GFP_KERNEL);
+	const struct ec_slave *found = NULL;
 	unsigned int n = 0;
-	u16 station = 0;
 
 	if (!dg || !dl)
 		goto out;
@@ -72,38 +72,75 @@ static u16 find_owner(struct ec_bus *bus)
 
 		if (dg[s->position].wkc == 1)
 			s->dl_seen = get_unaligned_le16(dl[s->position]);
-		if (!has_lost_address(s, &dg[s->position], &dg[up], dl[up]))
+		if (READ_ONCE(s->reply.silent) ||
+		    !has_lost_address(s, &dg[s->position], &dg[up], dl[up]))
 			continue;
 		n++;
-		station = s->station;
+		found = s;
 	}
 out:
 	kvfree(dg);
 	kvfree(dl);
-	return n == 1 ? station : 0;
+	return n == 1 ? found : NULL;
+}
+
+/* In a state that no device has that was let in nowhere, and the one that @s had? */
+static bool runs_as(const struct ec_trials *t, u16 station, const struct ec_slave *s)
+{
+	u16 is = READ_ONCE(s->al.status);
+	u8 al[2];
+
+	return is & EC_AL_BEYOND_PREOP &&
+	       !ec_xfer_fprd(t->bus->links, station, EC_REG_AL_STATUS, al, 2) &&
+	       get_unaligned_le16(al) == is;
 }
 
 /*
- * A slave of the bus has the address of the guest, although the port is closed: the contact broke
- * before the address was written. The frame that wrote it has read its own; if that was lost, it is
- * the next one of the ring, unless others were disconnected as well.
+ * The own address of the slave that has the one meant for the guest. The frame that wrote it has
+ * read the one before. If that was lost, it is the next slave of the ring, or the only one that has
+ * lost its address, and runs as that did. 0: another device; it may be the guest, connected
+ * elsewhere.
  */
+static u16 owner_of(const struct ec_trials *t, u16 station, bool next)
+{
+	const struct ec_slave *s;
+	u16 was;
+
+	if (!t->was)
+		return 0;
+	was = get_unaligned_le16(t->was);
+	if (was)
+		return ec_known_is_present(t->bus, was) ? was : 0;
+	s = next ? t->next : find_owner(t->bus);
+	return s && runs_as(t, station, s) ? s->station : 0;
+}
+
+/* A device on the bus has the address of the guest, although the port is closed. */
 static void trial_give_back(const struct ec_trials *t, u16 station, bool next)
 {
-	u16 owner = t->was ? get_unaligned_le16(t->was) : 0;
+	u16 owner = owner_of(t, station, next);
 
-	if (!ec_known_is_present(t->bus, owner))
-		owner = next ? t->next->station : find_owner(t->bus);
-	if (owner) {
-		ec_owed_note(t->bus, station, owner);
-		ec_owed_pay(t->bus);
-	}
 	if (owner)
+		ec_owed_note(t->bus, station, owner);
+	if (owner && ec_owed_pay(t->bus, true))
 		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
 			t->host.station, t->port, owner);
 	else
 		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, another slave has station address 0x%04x now and is scanned again\n",
 			t->host.station, t->port, station);
+}
+
+/* A port that has closed itself at a loss of link would be opened by the next write as well. */
+static bool ports_as_known(const struct ec_trials *t)
+{
+	u8 open = ec_graph_open_ports(t->dl);
+	unsigned int p;
+
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if ((t->host.loops >> 2 * p & 3) == EC_LOOP_AUTO_CLOSE && p != t->port &&
+		    !(open & BIT(p)))
+			return false;
+	return true;
 }
 
 static bool fits(const struct ec_trials *t)
@@ -122,7 +159,7 @@ static bool fits(const struct ec_trials *t)
  *
  * Context: The monitor thread. Waits for bus traffic.
  * Return: 0; -EAGAIN: frames were lost; -ENOLINK: the contact broke; -ENOBUFS: the cycle leaves too
- * little wire time.
+ * little wire time; -ESTALE: another port of the host has lost its link.
  */
 int ec_trial_run(struct ec_trials *t, u16 station)
 {
@@ -136,6 +173,8 @@ int ec_trial_run(struct ec_trials *t, u16 station)
 
 	if (!fits(t))
 		return -ENOBUFS;
+	if (t->dl && !ports_as_known(t))
+		return -ESTALE;
 	n = ec_gap_add(dg, t->branch_ns);
 	/* twice: without it the work would be done by the next slave of the ring */
 	for (i = 0; i < 2; i++) {

@@ -298,10 +298,11 @@ static void found_empty(struct ec_box *box)
 /* A trial that met an event may have given the slave another address, for some cycles. */
 static bool is_back_soon(struct ec_box *box)
 {
+	u64 cycles_ns = 8 * NSEC_PER_USEC * ec_access_interval_us(&box->links->access);
 	u64 now = ktime_get_ns();
 
 	box->away_ns = box->away_ns ?: now;
-	return now - box->away_ns < AWAY_NS;
+	return now - box->away_ns < max_t(u64, AWAY_NS, cycles_ns);
 }
 
 static enum ec_box_step on_status(struct ec_box *box, int ret)
@@ -311,7 +312,6 @@ static enum ec_box_step on_status(struct ec_box *box, int ret)
 		ec_box_pause(box);
 		return EC_BOX_REST;
 	}
-	box->away_ns = 0;
 	if (ret) {
 		ec_box_fail(box, ret);
 		return EC_BOX_REST;
@@ -436,6 +436,8 @@ static void box_done(struct ec_post *post)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&box->lock, flags);
+	if (!box->dg.err && box->dg.wkc == 1)
+		box->away_ns = 0;
 	ec_box_post(box, on_step(box, box->dg.err ?: box->dg.wkc == 1 ? 0 : -EIO));
 	ec_box_go(box);
 	raw_spin_unlock_irqrestore(&box->lock, flags);

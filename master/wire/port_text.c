@@ -83,6 +83,11 @@ const struct ec_port_text *ec_port_text(u32 kept)
 			"use a longer cycle, or connect it before activation",
 			false,
 		},
+		[EC_PORT_EARLY] = {
+			"the slave with this port is connected the wrong way round",
+			"connect port 0 (IN) of that slave to the slave before it",
+			false,
+		},
 	};
 
 	return &texts[kept < ARRAY_SIZE(texts) ? kept : 0];

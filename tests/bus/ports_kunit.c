@@ -425,7 +425,7 @@ static void ports_host_instead_of_branch(struct kunit *test)
 		}
 		bus_figure("%s: frames again after %u cycles, list without those behind it after %u",
 			   at[k].host, first, i);
-		KUNIT_EXPECT_LE(test, first, 200u);
+		KUNIT_EXPECT_LE(test, first, 220u);
 		KUNIT_EXPECT_LE(test, i, 400u);
 		KUNIT_EXPECT_EQ(test, bus_log_lines(line) - lines, 1u);
 		w.incomplete = 0;

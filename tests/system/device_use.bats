@@ -143,7 +143,7 @@ found() {
 m.open("veth2"); print(m.config_init())'
 }
 
-@test "SOEM after this master: also what is connected where a session had closed a port" {
+@test "SOEM after this master finds a slave that is connected where a session had closed a port" {
 	[ -n "$EC_PYSOEM" ] || skip "pysoem is for the programs of the host only"
 	printf 'slave a EK1100\nslave b EL2008\nbranch none\nslave x EL1008\n' \
 		>"$BATS_TEST_TMPDIR/segment"
