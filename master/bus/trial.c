@@ -15,7 +15,7 @@
 #include "trial_int.h"
 
 #define PASS_NS	2500	/* through a slave and 100 m of cable, both ways */
-#define BRANCH	64	/* slaves that are let in together; the others after the next scan */
+#define BRANCH	256	/* slaves that are let in together; the others after the next scan */
 #define DEPTH	64	/* slaves one behind the other at which a branch begins */
 
 /* in which a frame passes the ports */
