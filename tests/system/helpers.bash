@@ -159,3 +159,22 @@ refused() {
 		return 1
 	}
 }
+
+# back_in_ms FILE CUT HEAL LIMIT SLAVES: what was cut off for a second is in OP again at most LIMIT ms
+# after the cable was whole, as the log says; in exact time (--icount) and with all SLAVES in OP.
+# FILE takes the commands of the simulator.
+back_in_ms() {
+	local healed back ms
+
+	echo "$2" >"$1"
+	sleep 1
+	healed=$(date +%s%N)
+	echo "$3" >"$1"
+	wait_for 60 all_slaves_are OP "$5"
+	back=$(ethercat log --json |
+		gojq '[.masters[0].events[] | select(.event == "slave_back")] | last | .time_ns')
+	ms=$(((back - healed) / 1000000))
+	echo "# back in OP $ms ms after the cable was whole" >&3
+	[ $ms -gt 0 ]
+	[ $ms -le "$4" ]
+}

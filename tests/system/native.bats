@@ -108,6 +108,13 @@ is_bound() { [ "$(basename "$(readlink "/sys/bus/pci/devices/$1/driver")")" = "$
 	demo_ends
 }
 
+@test "slaves that were cut off are back in OP 300 ms after the cable is whole" {
+	demo_runs
+	# 100 ms of link without loss, and 200 ms; three slaves, one after the other
+	back_in_ms /sys/kernel/debug/ec_sim/eth1 'cut coupler3.0' 'heal coupler3.0' 300 22
+	demo_ends
+}
+
 # devices KEY PCI: of the list
 listed() { ethercat devices -j | gojq -r ".devices[] | select(.pci == \"$2\") | .$1"; }
 

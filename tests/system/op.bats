@@ -32,3 +32,14 @@ teardown_file() { stop; }
 	[[ "$output" == *"cycles: 500, working counter errors: 0, "* ]]
 	[[ "$output" == *"kernel: running, "*"overruns: 0, "* ]]
 }
+
+@test "slaves that were cut off are back in OP 300 ms after the cable is whole" {
+	[ "$(uname -m)" = x86_64 ] || skip "a time for a fast machine"
+	"$EC_BUILD/apps/demo" --cycles 1000000 >"$BATS_TEST_TMPDIR/demo" 2>&1 3>&- &
+	app=$!
+	wait_for 120 all_slaves_are OP 22
+	# 100 ms of link without loss, and 200 ms; three slaves, one after the other
+	back_in_ms /sys/kernel/debug/ec_sim/sim0 'cut coupler3.0' 'heal coupler3.0' 300 22
+	kill -9 $app
+	wait_for 120 all_slaves_are PREOP 22
+}
