@@ -7,6 +7,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "graph.h"
 #include "known.h"
 #include "owed.h"
 #include "slave.h"
@@ -39,6 +40,75 @@ void ec_owed_note(struct ec_bus *bus, u16 has, u16 own)
 		bus->n_owed++;
 	}
 	bus->owed[i] = owed;
+}
+
+/**
+ * ec_owed_find() - slaves of the list that have lost their station addresses
+ * @bus: bus
+ * @found: result, in ring order
+ * @max: entries in @found
+ *
+ * They do not reply there, although the port at which they hang is open.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: how many there are.
+ */
+unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, unsigned int max)
+{
+	struct ec_dg *dg = kvcalloc(bus->n_slaves, sizeof(*dg), GFP_KERNEL);
+	u8 (*dl)[2] = kvcalloc(bus->n_slaves, sizeof(*dl), GFP_KERNEL);
+	bool *lost = kvcalloc(bus->n_slaves, sizeof(*lost), GFP_KERNEL);
+	unsigned int n = 0;
+
+	if (!dg || !dl || !lost)
+		goto out;
+	ec_for_each_slave(s, bus)
+		dg[s->position] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[s->position]);
+	ec_xfer(bus->links, dg, bus->n_slaves);
+	ec_for_each_slave(s, bus) {
+		const struct ec_slave *u = ec_graph_parent(s);
+		const struct ec_dg *d = &dg[s->position];
+
+		if (!d->err && d->wkc == 1)
+			s->dl_seen = get_unaligned_le16(dl[s->position]);
+		if (d->err || d->wkc || READ_ONCE(s->reply.silent))
+			continue;
+		if (u && !lost[u->position] &&
+		    (dg[u->position].err || dg[u->position].wkc != 1 ||
+		     !(ec_graph_open_ports(get_unaligned_le16(dl[u->position])) &
+		       BIT(s->graph.parent_port))))
+			continue;
+		lost[s->position] = true;
+		if (n < max)
+			found[n] = s;
+		n++;
+	}
+out:
+	kvfree(dg);
+	kvfree(dl);
+	kvfree(lost);
+	return n;
+}
+
+/**
+ * ec_owed_runs_as() - is a slave in the state of another one, above PREOP?
+ * @bus: bus
+ * @station: station address of the slave
+ * @s: the other one
+ *
+ * No device that was let in nowhere is in such a state.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: whether it is.
+ */
+bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s)
+{
+	u16 is = READ_ONCE(s->al.status);
+	u8 al[2];
+
+	return is & EC_AL_BEYOND_PREOP &&
+	       !ec_xfer_fprd(bus->links, station, EC_REG_AL_STATUS, al, 2) &&
+	       get_unaligned_le16(al) == is;
 }
 
 /* Those that do not reply at their own address by now, and have not been tried for too long. */

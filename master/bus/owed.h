@@ -6,6 +6,7 @@
 #include <linux/types.h>
 
 struct ec_bus;
+struct ec_slave;
 
 /**
  * struct ec_owed - a slave that got the address of another one
@@ -19,6 +20,8 @@ struct ec_owed {
 	u16 own;
 };
 
+unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, unsigned int max);
+bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s);
 void ec_owed_note(struct ec_bus *bus, u16 has, u16 own);
 bool ec_owed_pay(struct ec_bus *bus, bool first);
 void ec_owed_exit(struct ec_bus *bus);

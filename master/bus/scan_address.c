@@ -70,6 +70,49 @@ static unsigned int give_back(struct scan *sc, const u16 *at, unsigned int n)
 	return k;
 }
 
+/* Addresses whose frames are lost, and of which one is in use by a slave beyond PREOP. */
+static unsigned int find_doubtful(struct scan *sc, const u16 *at, unsigned int n, u16 *used)
+{
+	const struct ec_dg *dg = sc->dg;
+	unsigned int i, k = 0, found = 0;
+
+	for (i = 0; i < n; i++) {
+		dg += datagrams(sc, at[i]);
+		if (datagrams(sc, at[i]) == READ_WRITE && dg[-1].err)
+			used[k++] = ec_scan_address(sc, at[i]);
+	}
+	for (i = 0; i < k; i++)
+		sc->dg[i] = EC_FPRD(used[i], EC_REG_AL_STATUS, 2, sc->regs[i].al);
+	ec_xfer(sc->bus->links, sc->dg, k);
+	for (i = 0; i < k; i++)
+		if (!sc->dg[i].err && sc->dg[i].wkc == 1 &&
+		    get_unaligned_le16(sc->regs[i].al) & EC_AL_BEYOND_PREOP)
+			used[found++] = used[i];
+	return found;
+}
+
+/*
+ * The frame that wrote an address is lost, and a running slave has it: no new one runs. If as many
+ * slaves have lost theirs, it is one of these, in the order of the ring.
+ */
+static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
+{
+	const struct ec_slave **lost = kvcalloc(n, sizeof(*lost), GFP_KERNEL);
+	u16 *used = kvcalloc(n, sizeof(*used), GFP_KERNEL);
+	unsigned int i = 0, k = lost && used ? find_doubtful(sc, at, n, used) : 0;
+
+	if (k && ec_owed_find(sc->bus, lost, k) == k)
+		while (i < k && ec_owed_runs_as(sc->bus, used[i], lost[i]))
+			i++;
+	if (k && i == k) {
+		for (i = 0; i < k; i++)
+			ec_owed_note(sc->bus, used[i], lost[i]->station);
+		ec_owed_pay(sc->bus, true);
+	}
+	kvfree(lost);
+	kvfree(used);
+}
+
 /**
  * ec_scan_address_all() - write the station addresses of slaves that need one
  * @sc: scan
@@ -106,5 +149,9 @@ int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan" :
 			      "no reply at its ring position, frames pass; power-cycle or replace the slave, then rescan");
 	}
-	return give_back(sc, at, n) ? -EAGAIN : ret;
+	if (give_back(sc, at, n))
+		return -EAGAIN;
+	if (ret == -ETIMEDOUT && sc->bus->n_slaves)
+		give_back_lost(sc, at, n);
+	return ret;
 }

@@ -51,50 +51,6 @@ static bool has_lost_address(const struct ec_slave *s, const struct ec_dg *own,
 		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->graph.parent_port));
 }
 
-/* The only slave of the list that has lost its address; NULL: there is none, or more */
-static const struct ec_slave *find_owner(struct ec_bus *bus)
-{
-	struct ec_dg *dg = kvcalloc(bus->n_slaves, sizeof(*dg), GFP_KERNEL);
-	u8 (*dl)[2] = kvcalloc(bus->n_slaves, sizeof(*dl), GFP_KERNEL);
-	const struct ec_slave *found = NULL;
-	unsigned int n = 0;
-
-	if (!dg || !dl)
-		goto out;
-	ec_for_each_slave(s, bus) {
-		dg[n] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, dl[n]);
-		n++;
-	}
-	ec_xfer(bus->links, dg, n);
-	n = 0;
-	ec_for_each_slave(s, bus) {
-		unsigned int up = ec_graph_parent(s) ? ec_graph_parent(s)->position : 0;
-
-		if (dg[s->position].wkc == 1)
-			s->dl_seen = get_unaligned_le16(dl[s->position]);
-		if (READ_ONCE(s->reply.silent) ||
-		    !has_lost_address(s, &dg[s->position], &dg[up], dl[up]))
-			continue;
-		n++;
-		found = s;
-	}
-out:
-	kvfree(dg);
-	kvfree(dl);
-	return n == 1 ? found : NULL;
-}
-
-/* In a state that no device has that was let in nowhere, and the one that @s had? */
-static bool runs_as(const struct ec_trials *t, u16 station, const struct ec_slave *s)
-{
-	u16 is = READ_ONCE(s->al.status);
-	u8 al[2];
-
-	return is & EC_AL_BEYOND_PREOP &&
-	       !ec_xfer_fprd(t->bus->links, station, EC_REG_AL_STATUS, al, 2) &&
-	       get_unaligned_le16(al) == is;
-}
-
 /*
  * The own address of the slave that has the one meant for the guest. The frame that wrote it has
  * read the one before. If that was lost, it is the next slave of the ring, or the only one that has
@@ -103,7 +59,7 @@ static bool runs_as(const struct ec_trials *t, u16 station, const struct ec_slav
  */
 static u16 owner_of(const struct ec_trials *t, u16 station, bool next)
 {
-	const struct ec_slave *s;
+	const struct ec_slave *s = NULL;
 	u16 was;
 
 	if (!t->was)
@@ -111,8 +67,11 @@ static u16 owner_of(const struct ec_trials *t, u16 station, bool next)
 	was = get_unaligned_le16(t->was);
 	if (was)
 		return ec_known_is_present(t->bus, was) ? was : 0;
-	s = next ? t->next : find_owner(t->bus);
-	return s && runs_as(t, station, s) ? s->station : 0;
+	if (next)
+		s = t->next;
+	else if (ec_owed_find(t->bus, &s, 1) != 1)
+		return 0;
+	return s && ec_owed_runs_as(t->bus, station, s) ? s->station : 0;
 }
 
 /* A device on the bus has the address of the guest, although the port is closed. */
