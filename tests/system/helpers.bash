@@ -160,8 +160,8 @@ refused() {
 	}
 }
 
-# back_in_ms FILE CUT HEAL LIMIT SLAVES: what was cut off for a second is in OP again at most LIMIT ms
-# after the cable was whole, as the log says; in exact time (--icount) and with all SLAVES in OP.
+# back_in_ms FILE CUT HEAL LIMIT SLAVES: what was cut off for a second is in OP again at most LIMIT
+# ms after the cable was whole, as the log says; in exact time (--icount) and with all SLAVES in OP.
 # FILE takes the commands of the simulator.
 back_in_ms() {
 	local healed back ms
