@@ -46,6 +46,7 @@
  *		refuse NAME STATE code=N  allow NAME
  *		busy|idle NAME (EEPROM)  noack NAME count=N (EEPROM)
  *		wkc NAME add=N  errors NAME.PORT add=N
+ *		damage NAME.PORT rate=Nppm (frames that come there by the cable)
  *		mailbox NAME good|length|short|counter|type|babble|stale|fragments (its messages)
  *		mailbox NAME error|abort|deny code=N (likewise)
  *		mailbox NAME delay by=TIME (likewise)

@@ -35,6 +35,7 @@ static const struct verb {
 	{ "noack", SLAVE, EC_SIM_FAULT_EEPROM_NOACK, 0 },
 	{ "wkc", SLAVE, EC_SIM_FAULT_WKC, 0 },
 	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
+	{ "damage", PORT, EC_SIM_FAULT_DAMAGE, 0 },
 	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
 	{ "latch", SLAVE, EC_SIM_FAULT_LATCH, 0 },
 	{ "jump", SLAVE, EC_SIM_FAULT_JUMP, 0 },
@@ -340,6 +341,20 @@ static int jump(struct ec_desc *d, struct ec_sim_fault *f)
 	return 0;
 }
 
+/* how many frames a cable damages */
+static int damage(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	s64 ppb = -1;
+
+	if (ec_desc_rate(d, "rate", 1000000000, &ppb))
+		return -EINVAL;
+	if (ppb < 0)
+		return ec_desc_fail(d, "missing rate: expected fault damage NAME.PORT rate=10ppm",
+				    NULL, "");
+	f->arg = (u32)div64_u64((u64)ppb + 999, 1000);
+	return 0;
+}
+
 /* what a verb wants to know beside its target */
 static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault *f)
 {
@@ -358,6 +373,8 @@ static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault 
 		return option(d, f, "count", 0, 0xFFFFFFFFll);
 	case EC_SIM_FAULT_WKC:
 		return option(d, f, "add", -32768, 32767);
+	case EC_SIM_FAULT_DAMAGE:
+		return damage(d, f);
 	case EC_SIM_FAULT_ERRORS:
 		return option(d, f, "add", 0, 255);
 	case EC_SIM_FAULT_AL_ERROR:

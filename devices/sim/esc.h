@@ -278,6 +278,7 @@ struct ec_esc_dc {
  * @mailbox: enum ec_sim_mailbox_fault
  * @mailbox_code: its @arg2, see enum ec_sim_mailbox_fault
  * @mailbox_after: messages that are still right
+ * @damage_ppm: of frames that come to this port, so many of a million are damaged by its cable
  */
 struct ec_esc_fault {
 	bool dead;
@@ -291,6 +292,7 @@ struct ec_esc_fault {
 	u8 mailbox;
 	u32 mailbox_code;
 	u32 mailbox_after;
+	u32 damage_ppm[EC_MAX_PORT];
 };
 
 /**

@@ -109,6 +109,7 @@ struct ec_sim {
 	u64 port_events;		/* links lost and loops closed */
 	u64 port_next;			/* no port changes by itself earlier */
 	u64 disturbed;			/* frames on their way when a link changed */
+	bool damages;			/* there is a cable that damages frames */
 	struct ec_sim_host_frame host[EC_SIM_HOST_FRAMES];
 	u32 host_arrived;		/* to be fetched */
 	u32 hosts;			/* plugged in so far */

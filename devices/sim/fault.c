@@ -33,6 +33,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_OLD] = "old",
 	[EC_SIM_FAULT_BOUNCE] = "bounce",
 	[EC_SIM_FAULT_HOST] = "host",
+	[EC_SIM_FAULT_DAMAGE] = "damage",
 };
 
 /**
@@ -108,6 +109,8 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 		       f->arg <= EC_SIM_HOST_ETHERCAT &&
 		       (!f->value || f->value >= EC_SIM_HOST_MIN_NS) &&
 		       (!f->value || !f->arg || f->value >= EC_SIM_HOST_ETHERCAT_NS);
+	if (f->type == EC_SIM_FAULT_DAMAGE)
+		return ec_sim_has_port(sim, f->slave, f->port) && f->arg <= 1000000;
 	if (f->type == EC_SIM_FAULT_LATCH && (f->arg > 1 || !f->arg2 || f->arg2 > 3))
 		return false;
 	if (f->type == EC_SIM_FAULT_OLD && f->value & EC_SIM_OLD_STATE &&
@@ -195,12 +198,22 @@ void ec_sim_clear_faults(struct ec_sim *sim)
 		memset(&sim->esc[i]->fault, 0, sizeof(sim->esc[i]->fault));
 		ec_esc_quick_forget(sim->esc[i]);
 	}
+	sim->damages = false;
 }
 
 u64 ec_sim_faults_next(const struct ec_sim *sim)
 {
 	return sim->fault_due < 0 ? EC_ESC_NEVER :
 				    sim->fault[sim->fault_due].f.at_ns;
+}
+
+static void damage(struct ec_sim *sim, const struct ec_sim_fault *f)
+{
+	sim->esc[f->slave]->fault.damage_ppm[f->port] = f->arg;
+	sim->damages = false;
+	for (u32 i = 0; i < sim->count; i++)
+		for (int p = 0; p < EC_MAX_PORT; p++)
+			sim->damages |= sim->esc[i]->fault.damage_ppm[p];
 }
 
 static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
@@ -270,6 +283,9 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 		break;
 	case EC_SIM_FAULT_JUMP:
 		ec_esc_dc_jump(esc, (s64)f->value, now);
+		break;
+	case EC_SIM_FAULT_DAMAGE:
+		damage(sim, f);
 		break;
 	case EC_SIM_FAULT_ERRORS:
 		count = esc->mem + EC_REG_ERR_RX(f->port);

@@ -10,6 +10,8 @@
  * - a link that is lost between the first and the last bit of a frame on a cable ends it;
  * - a loop that opens or closes acts on the frames that get there later, never on the
  *   frame whose write did it;
+ * - a cable that damages frames makes their FCS wrong: the slave at its end counts an invalid
+ *   frame, those that get it later a forwarded error, as the register 0x0300 of each port says;
  * - a frame that comes back to a port whose loop closed after the frame was sent is lost
  *   or passes, as ec_sim_set_under_way() says.
  */
@@ -66,7 +68,7 @@ static u64 port_next(struct ec_sim *sim)
  */
 bool ec_sim_must_fly(struct ec_sim *sim, u64 until)
 {
-	return sim->flights || sim->under_way != EC_SIM_UNDER_WAY_BACK ||
+	return sim->flights || sim->damages || sim->under_way != EC_SIM_UNDER_WAY_BACK ||
 	       ec_sim_faults_next(sim) <= until ||
 	       (sim->port_next <= until && port_next(sim) <= until);
 }
@@ -191,6 +193,7 @@ static void set_out(const struct ec_sim *sim, struct ec_sim_flight *fl, int from
 {
 	fl->circulating = false;
 	fl->disturbed = false;
+	fl->damaged = false;
 	fl->hops = 0;
 	fl->from = from;
 	fl->from_port = 0;
@@ -297,7 +300,8 @@ static void execute(struct ec_sim *sim, struct ec_sim_flight *fl, struct ec_esc 
 	struct ec_dgram d;
 	int ret = 1;
 
-	if (!ec_sim_datagrams(&it, fl->frame, fl->len))
+	/* nothing of a damaged frame is taken over */
+	if (fl->damaged || !ec_sim_datagrams(&it, fl->frame, fl->len))
 		return;
 	arrivals(sim, fl, esc, &ctx);
 	ec_esc_settle(esc);
@@ -357,6 +361,25 @@ static bool destroyed(const struct ec_sim_flight *fl, const struct ec_esc *esc)
 	       !ec_esc_bug(esc, EC_SIM_BUG_FORWARD);
 }
 
+/* The frame has come to a port by its cable: is its FCS right? */
+static void check(struct ec_sim *sim, struct ec_sim_flight *fl, struct ec_esc *esc)
+{
+	u32 ppm = esc->fault.damage_ppm[fl->to_port];
+	u8 *count = esc->mem + EC_REG_ERR_RX(fl->to_port);
+
+	if (!sim->damages)
+		return;
+	if (fl->damaged) {
+		if (esc->cfg.features & EC_FEAT_FCS_SEPARATE)
+			count = esc->mem + EC_REG_ERR_FWD(fl->to_port);
+	} else if (ppm && (u64)ec_sim_random(sim) * 1000000 >> 32 < ppm) {
+		fl->damaged = true;
+		fl->res.induced = true;
+	}
+	if (fl->damaged && *count != 0xff)
+		++*count;
+}
+
 /* a frame is at a slave; false: it ends there */
 static bool enter(struct ec_sim *sim, struct ec_sim_flight *fl)
 {
@@ -369,6 +392,7 @@ static bool enter(struct ec_sim *sim, struct ec_sim_flight *fl)
 		return false;
 	if (!esc->port[fl->to_port].open && !let_in(sim, fl, esc))
 		return false;
+	check(sim, fl, esc);
 	p = destroyed(fl, esc) ? -1 : through(sim, fl, esc, &delay_ns);
 	if (p < 0)
 		return false;
@@ -389,7 +413,7 @@ void ec_sim_step(struct ec_sim *sim)
 	bool back = fl->to < 0;
 
 	sim->flights = fl->next;
-	if (!came_through(sim, fl) || (back ? fl->lose_back : !enter(sim, fl)))
+	if (!came_through(sim, fl) || (back ? fl->lose_back || fl->damaged : !enter(sim, fl)))
 		ec_sim_lose(sim, fl);
 	else if (back)
 		ec_sim_arrive(sim, fl, -2 - fl->to, fl->at_ns - fl->start_ns);

@@ -69,6 +69,9 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_HOST: a PC or a switch comes to @slave, @port; a cable there comes out
  *                     before. It sends a frame, EC_SIM_HOST_* in @arg, every @value ns,
  *                     0: none. @arg2 is 0
+ * @EC_SIM_FAULT_DAMAGE: frames that come to @slave, @port by its cable are damaged there: @arg of
+ *                       a million, 0 ends it. The slave counts them as invalid, those after it as
+ *                       forwarded errors; no slave executes them, and they do not come back
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -101,6 +104,7 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_OLD,
 	EC_SIM_FAULT_BOUNCE,
 	EC_SIM_FAULT_HOST,
+	EC_SIM_FAULT_DAMAGE,
 	EC_SIM_FAULT_TYPES
 };
 
@@ -258,6 +262,7 @@ enum ec_sim_under_way {
  * @lose_back: to be lost on the way back
  * @circulating: it has passed a slave without upstream link
  * @disturbed: a link changed while it was on its way
+ * @damaged: its FCS is wrong since a cable
  * @hops: slaves entered so far
  * @wire_ns: from its first to its last bit
  * @start_ns: when the first bit was sent
@@ -289,6 +294,7 @@ struct ec_sim_flight {
 	bool lose_back;
 	bool circulating;
 	bool disturbed;
+	bool damaged;
 	u32 hops;
 	u32 wire_ns;
 	u64 start_ns;

@@ -432,7 +432,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	ec.sms = max_t(u8, d->n_sms, d->esc_type == EC_APP_ESC_ET1200 ? 4 : 8);
 	ec.ram_kib = ram_kib(model);
 	memcpy(ec.ports, d->ports, sizeof(ec.ports));
-	ec.features = d->features | (cfg->no_lrw ? EC_FEAT_NO_LRW : 0);
+	ec.features = d->features | EC_FEAT_FCS_SEPARATE | (cfg->no_lrw ? EC_FEAT_NO_LRW : 0);
 	ec.dc_delay_only = cfg->clock_bits ? cfg->clock_bits == EC_APP_CLOCK_DELAY :
 					     d->dc_delay_only;
 	if (cfg->clock_bits && !ec.dc_delay_only) {

@@ -73,7 +73,7 @@ static void scan_bench_identity(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, s->alias, bench[i].alias);
 		KUNIT_EXPECT_EQ(test, s->info.protocols, d->protocols);
 		KUNIT_EXPECT_EQ(test, s->info.std.rx_size, d->std.rx_len);
-		KUNIT_EXPECT_EQ(test, ec_slave_features(s), d->features);
+		KUNIT_EXPECT_EQ(test, ec_slave_features(s), d->features | EC_FEAT_FCS_SEPARATE);
 		KUNIT_EXPECT_EQ(test, s->note.error, EC_SLAVE_OK);
 		/* the image is the one in the slave, up to its end mark */
 		KUNIT_ASSERT_LE(test, s->eeprom.bytes, app->esc->eep.len);
