@@ -11,6 +11,7 @@
 #include "base/once64.h"
 #include "bus/absent.h"
 #include "bus/known.h"
+#include "bus/line_errors.h"
 #include "bus/mailboxes.h"
 #include "bus/ports.h"
 #include "bus/slave.h"
@@ -605,6 +606,15 @@ static void read_pdos(struct watch *w)
 	}
 }
 
+/* While nothing else is to be done. */
+static void count_line_errors(struct watch *w)
+{
+	bool event = w->irq & EC_ECAT_EVENT_DL && w->dl_stays < STAYS;
+
+	if (w->scanned && w->link_up && !w->survey.chores)
+		ec_line_errors_look(&w->m->bus, event);
+}
+
 /* No link and no known slaves: this completes a requested scan. */
 static void no_slaves(struct ec_master *m)
 {
@@ -695,6 +705,7 @@ static int monitor(void *data)
 			maybe_scan(&w);
 			if (!idle)
 				read_pdos(&w);
+			count_line_errors(&w);
 		} else {
 			no_slaves(m);
 		}

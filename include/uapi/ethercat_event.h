@@ -51,6 +51,12 @@
 #define EC_EVENT_PORT_KEPT	0x1a
 
 /*
+ * a cable damages frames: port of the slave, invalid frames there, errors of its receiver, in s;
+ * slave at the other end or EC_EVENT_NONE, its port; 1: the other end is the main device
+ */
+#define EC_EVENT_LINE_ERRORS	0x1b
+
+/*
  * as requested: AL state, before, slaves: this one and those after it, the lowest AL state in
  * between if it is lower than both
  */

@@ -146,6 +146,12 @@ struct ec_ioc_port {
 	__u16 alias;
 	__u16 identification;
 	char name[EC_UAPI_STRING];
+	/*
+	 * errors of this port that its registers do not contain any more, as the master has cleared
+	 * them since a counter was full: invalid frames, errors of the receiver, forwarded errors
+	 */
+	__u32 cleared[3];
+	__u32 reserved2;
 };
 
 #define EC_PORT_NOT_KEPT	0

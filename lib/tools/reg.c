@@ -56,23 +56,66 @@ int ect_reg_exchange(struct ect_handle *h, uint64_t device, uint16_t address, vo
 
 #define ERRORS_TRIES	4	/* attempts of a read that changes nothing */
 
+/* counts of each port that the registers do not contain any more: the master has cleared them */
+struct cleared {
+	u32 port[ECT_PORTS][3];
+};
+
+static int get_cleared(struct ect_handle *h, u64 device, struct cleared *to)
+{
+	int ret = 0;
+
+	for (u32 p = 0; p < ECT_PORTS && !ret; p++) {
+		struct ec_ioc_port from = { .slave = ect_address(device), .port = p };
+
+		ret = ect_command(h, EC_IOC_PORT, &from);
+		memcpy(to->port[p], from.cleared, sizeof(to->port[p]));
+	}
+	return ret;
+}
+
+/* as if the counter had not been cleared: it stops at 255 */
+static u8 counted(const u8 *regs, unsigned int reg, u32 cleared)
+{
+	u32 n = regs[reg - EC_REG_ERRORS];
+
+	return (u8)(cleared < UINT8_MAX - n ? n + cleared : UINT8_MAX);
+}
+
+/* both of the same time: the master may clear them in between */
+static int read_counters(struct ect_handle *h, u64 device, u8 *regs, struct cleared *cleared)
+{
+	int ret = get_cleared(h, device, cleared);
+
+	for (int i = 0; i < ERRORS_TRIES && !ret; i++) {
+		struct cleared before = *cleared;
+
+		ret = ect_reg_read(h, device, EC_REG_ERRORS, regs, EC_ERRORS_SIZE);
+		ret = ret ? ret : get_cleared(h, device, cleared);
+		if (!memcmp(&before, cleared, sizeof(before)))
+			break;
+	}
+	return ret;
+}
+
 int ect_get_errors(struct ect_handle *h, u64 device, struct ect_errors *to)
 {
+	struct cleared c = { 0 };
 	u8 regs[EC_ERRORS_SIZE];
 	int ret = -ETIMEDOUT;
 
 	*to = (struct ect_errors){ .struct_size = sizeof(*to) };
 	for (int i = 0; i < ERRORS_TRIES && ret == -ETIMEDOUT; i++)
-		ret = ect_reg_read(h, device, EC_REG_ERRORS, regs, sizeof(regs));
+		ret = read_counters(h, device, regs, &c);
 	if (ret)
 		return ret;
 	to->unit = regs[EC_REG_ERR_PU - EC_REG_ERRORS];
 	to->pdi = regs[EC_REG_ERR_PDI - EC_REG_ERRORS];
 	for (unsigned int p = 0; p < ECT_PORTS; p++)
 		to->ports[p] = (struct ect_port_errors){
-			.invalid = regs[EC_REG_ERR_RX(p) - EC_REG_ERRORS],
-			.receiver = regs[EC_REG_ERR_PHY(p) - EC_REG_ERRORS],
-			.forwarded = regs[EC_REG_ERR_FWD(p) - EC_REG_ERRORS],
+			.invalid = counted(regs, EC_REG_ERR_RX(p), c.port[p][0]),
+			.receiver = counted(regs, EC_REG_ERR_PHY(p), c.port[p][1]),
+			.forwarded = counted(regs, EC_REG_ERR_FWD(p), c.port[p][2]),
 			.lost_link = regs[EC_REG_ERR_LOST(p) - EC_REG_ERRORS],
 		};
 	return 0;

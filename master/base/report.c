@@ -12,6 +12,8 @@ static u32 report_id(const struct ec_event *e)
 	case EC_EVENT_SLAVE_LOST:
 	case EC_EVENT_SLAVE_FOUND:
 		return 1 + e->slave;
+	case EC_EVENT_LINE_ERRORS:
+		return 1 + (e->slave << 2 | e->arg[0]);
 	case EC_EVENT_CONFIG:
 		return 1 + (e->arg[0] << 16 | e->arg[1]);
 	default:

@@ -12,7 +12,7 @@ CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), RSV2(ec_ioc_slave),
 	OLDEST(ec_ioc_slave, dc_odd))
 CMD(EC_IOC_SLAVE_NAMES, ec_ioc_slave_names, 0, SLAVE(ec_ioc_slave_names), RSV1(ec_ioc_slave_names))
 CMD(EC_IOC_SLAVE_WHY, ec_ioc_slave_why, 0, SHOW_SLAVE(ec_ioc_slave_why), RSV1(ec_ioc_slave_why))
-CMD(EC_IOC_PORT, ec_ioc_port, 0, SHOW_SLAVE(ec_ioc_port), RSV1(ec_ioc_port),
+CMD(EC_IOC_PORT, ec_ioc_port, 0, SHOW_SLAVE(ec_ioc_port), RSV2(ec_ioc_port),
 	OLDEST(ec_ioc_port, reserved))
 CMD(EC_IOC_ABSENT, ec_ioc_absent, 0, RSV1(ec_ioc_absent))
 CMD(EC_IOC_SM, ec_ioc_sm, 0, SLAVE(ec_ioc_sm), RSV1(ec_ioc_sm))

@@ -10,6 +10,7 @@
 #include "../session/session_attach.h"
 #include "../bus/border.h"
 #include "../bus/bus_list.h"
+#include "../bus/line_errors.h"
 #include "../bus/ports.h"
 #include "../wire/port_text.h"
 #include "../bus/slave.h"
@@ -78,6 +79,8 @@ static int reg_access(struct ec_call *call, u8 cmd)
 		return ec_refuse(call, -EIO,
 				 "slave %u did not execute access to 0x%04x: working counter %u, expected %u",
 				 position, i->address, dg.wkc, expected);
+	if (ec_cmd_writes(dg.cmd) && call->slave)
+		ec_line_errors_written(call->slave, i->address, i->size);
 	return 0;
 }
 

@@ -17,6 +17,7 @@
 #include "../bus/absent.h"
 #include "../bus/border.h"
 #include "../bus/find.h"
+#include "../bus/line_errors.h"
 #include "../bus/ports.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
@@ -222,6 +223,7 @@ int ec_ioc_port(struct ec_call *call)
 	i->next_slave = s->graph.at[p] ? s->graph.at[p]->position : EC_UAPI_NONE16;
 	i->delay_to_next_dc = way(s, p);
 	i->kept = ec_ports_kept(s, p, &i->wait_s);
+	ec_line_errors_cleared(s, p, i->cleared);
 	if (ec_port_text(i->kept)->device && ec_border_get(s->bus, s->device, p, &is)) {
 		i->vendor_id = is.vendor;
 		i->product_code = is.product;

@@ -12,6 +12,7 @@
 #include "../base/base.h"
 #include "border_table.h"
 #include "known_table.h"
+#include "line_errors.h"
 #include "owed.h"
 #include "workers.h"
 
@@ -130,6 +131,8 @@ struct ec_bus {
 	u64 mailboxes_ns;
 	/** @some_mailboxes_ns: last poll of any */
 	u64 some_mailboxes_ns;
+	/** @line_watch: where the reading of error counters is; the monitor's */
+	struct ec_line_watch line_watch;
 	/** @vain_looks: polls in a row that found no message although an event was seen */
 	unsigned int vain_looks;
 	/** @sii_bytes: memory of all EEPROM images */

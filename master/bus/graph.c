@@ -132,6 +132,32 @@ struct ec_slave *ec_graph_parent(const struct ec_slave *s)
 	return s->graph.at[s->graph.upstream];
 }
 
+/**
+ * ec_graph_next_arrival() - where does a frame arrive next?
+ * @slave: slave of the list at which it arrives; the next one
+ * @port: by this port; the next one
+ *
+ * Context: As ec_graph_parent().
+ * Return: false: at the main device.
+ */
+bool ec_graph_next_arrival(struct ec_slave **slave, unsigned int *port)
+{
+	struct ec_slave *s = *slave, *next;
+	unsigned int step = (place[*port] + EC_MAX_PORT - place[s->graph.upstream]) % EC_MAX_PORT;
+
+	while (++step < EC_MAX_PORT) {
+		next = s->graph.at[port_at(s, step)];
+		if (!next)
+			continue;
+		*slave = next;
+		*port = next->graph.upstream;
+		return true;
+	}
+	*port = s->graph.parent_port;
+	*slave = ec_graph_parent(s);
+	return *slave;
+}
+
 /*
  * The branch behind a port that the frame passes before the processing unit: it ends
  * with slave @last, and is the largest one that fits in the time the frame was away.

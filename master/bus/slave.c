@@ -91,6 +91,7 @@ static void slave_release(struct kref *kref)
 	atomic_long_sub(s->eeprom.counted, &s->bus->sii_bytes);
 	kvfree(s->eeprom.data);
 	kvfree(s->eeprom.part);
+	kfree(s->lines);
 	kfree(s);
 }
 

@@ -250,6 +250,8 @@ struct ec_slave {
 	/* parts with an owner */
 	/** @ports: loop control: ports.c, the monitor's */
 	struct ec_ports ports;
+	/** @lines: its error counters, NULL: not read so far; the monitor's */
+	struct ec_line_errors *lines;
 	/** @graph: its neighbors */
 	struct ec_slave_graph graph;
 	/** @lost: if it was lost */

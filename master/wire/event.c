@@ -70,6 +70,8 @@ static const struct row kinds[] = {
 	     U("polls")),
 	KIND(PORT_KEPT, "port_kept", WARNING | SLAVE, SPECIAL, U("port"), U("reason"), U("losses"),
 	     U("period_s"), U("longest_wait_s"), U("vendor_id"), U("product_code"), U("slaves")),
+	KIND(LINE_ERRORS, "line_errors", WARNING, SPECIAL, U("port"), U("invalid_frames"),
+	     U("receiver_errors"), U("duration_s"), S("to_slave"), U("to_port"), U("to_master")),
 	/* only what fails has a line */
 	KIND(AL_STATE, "al_state", NONE | SLAVE, SPECIAL, AL("state"), AL("before"),
 	     U("slaves"), AL("lowest")),

@@ -76,6 +76,33 @@ static void about_port(struct ec_event_buf *t, const struct ec_event *e,
 		add(t, ", or 'ethercat slaves -p %u --let-in %u'", e->slave, e->arg[0]);
 }
 
+static void slave_with_name(struct ec_event_buf *t, u32 slave, const char *name)
+{
+	add(t, "slave %u", slave);
+	if (name)
+		add(t, " (%.30s)", name);
+}
+
+static void about_line(struct ec_event_buf *t, const struct ec_event *e,
+		       const struct ec_event_more *more)
+{
+	const u32 *a = e->arg;
+
+	if (a[1])
+		add(t, "%u CRC errors", a[1]);
+	if (a[2] || !a[1])
+		add(t, "%s%u receiver errors", a[1] ? ", " : "", a[2]);
+	add(t, " in %u s at port %u of ", a[3], a[0]);
+	slave_with_name(t, e->slave, more->name);
+	if (a[4] != EC_EVENT_NONE) {
+		add(t, ": cable to ");
+		slave_with_name(t, a[4], more->last);
+	} else {
+		add(t, a[6] ? ": cable to the main device" : ", where no slave is connected");
+	}
+	add(t, "; check that cable, its plugs and shielding");
+}
+
 static void about_back(struct ec_event_buf *t, const struct ec_event *e,
 		       const struct ec_event_more *more)
 {
@@ -350,6 +377,7 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 		{ EC_EVENT_SLAVE_LOST, about_place },
 		{ EC_EVENT_SLAVE_FOUND, about_place },
 		{ EC_EVENT_PORT_KEPT, about_port },
+		{ EC_EVENT_LINE_ERRORS, about_line },
 		{ EC_EVENT_SLAVE_BACK, about_back },
 		{ EC_EVENT_AL_STATE, about_al },
 		{ EC_EVENT_EMERGENCY, about_emergency },

@@ -193,7 +193,7 @@ static void event_each_kind_has_text_and_unique_name(struct kunit *test)
 			if (ec_event_kind(other))
 				KUNIT_EXPECT_STRNEQ(test, ec_event_kind(other)->name, k->name);
 	}
-	KUNIT_EXPECT_EQ(test, n, 49u);
+	KUNIT_EXPECT_EQ(test, n, 50u);
 }
 
 /* A record of any content, a buffer of any size. */
@@ -272,6 +272,12 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "slave 5: port 2 stays closed despite its link: another alias or identification than the group: 0x00000002/0x07d83052, 3 slaves; connect the right one, or 'ethercat slaves -p 5 --let-in 2'");
 	expect(test, E(PORT_KEPT, 5, 2, EC_PORT_BOOT),
 	       "slave 5: port 2 stays closed despite its link: a device in BOOT; switch it off and on, or 'ethercat slaves -p 5 --let-in 2'");
+	expect(test, E(LINE_ERRORS, 7, 1, 12, 0, 10, 8),
+	       "12 CRC errors in 10 s at port 1 of slave 7: cable to slave 8; check that cable, its plugs and shielding");
+	expect(test, E(LINE_ERRORS, 0, 0, 12, 3, 11, EC_EVENT_NONE, 0, 1),
+	       "12 CRC errors, 3 receiver errors in 11 s at port 0 of slave 0: cable to the main device; check that cable, its plugs and shielding");
+	expect(test, E(LINE_ERRORS, 7, 1, 0, 3, 10, EC_EVENT_NONE),
+	       "3 receiver errors in 10 s at port 1 of slave 7, where no slave is connected; check that cable, its plugs and shielding");
 	expect(test, E(GROUP, 4, 0, EC_CAUSE_NONE, 0, 2),
 	       "group 0: connected, 2 slave(s) from slave 4 on");
 	expect(test, E(GROUP, EC_EVENT_NO_SLAVE, 1, EC_CAUSE_NO_GROUP, 1, 2),
@@ -310,6 +316,9 @@ static void event_line_has_names_and_level(struct kunit *test)
 		{ E(SLAVE_FOUND, 1, 0, 2, 0, 2, 3, 1),
 		  "behind port 2 of slave 0 (EK1100): slave 1 (EL2008) connected",
 		  EC_LINE_INFO, false },
+		{ E(LINE_ERRORS, 7, 1, 12, 0, 10, 8),
+		  "12 CRC errors in 10 s at port 1 of slave 7 (EL2008): cable to slave 8 (EL3062); check that cable, its plugs and shielding",
+		  EC_LINE_WARN, false },
 		/* complete, no longer, while the application takes the slaves to PREOP */
 		{ E(WKC, EC_EVENT_NO_SLAVE, 1, 3, 2, 3, 0, 0, 0, 1),
 		  "domain 1: working counter 3 of 3, before 2", EC_LINE_INFO, false },

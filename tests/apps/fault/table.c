@@ -22,7 +22,7 @@ const struct cmd cmds[] = {
 	CMD(SLAVE, RSV2(ec_ioc_slave), .min = offsetof(struct ec_ioc_slave, identification)),
 	CMD(SLAVE_NAMES, RSV1(ec_ioc_slave_names)),
 	CMD(SLAVE_WHY, RSV1(ec_ioc_slave_why)),
-	CMD(PORT, RSV1(ec_ioc_port), .min = offsetof(struct ec_ioc_port, kept)),
+	CMD(PORT, RSV2(ec_ioc_port), .min = offsetof(struct ec_ioc_port, kept)),
 	CMD(ABSENT, RSV1(ec_ioc_absent)),
 	CMD(SM, RSV1(ec_ioc_sm)),
 	CMD(PDO, RSV2(ec_ioc_pdo)),

@@ -1,0 +1,93 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Cables that damage frames: the error counters of the ports, read all the time. */
+#ifndef EC_LINE_ERRORS_H
+#define EC_LINE_ERRORS_H
+
+#include <linux/types.h>
+#include "../wire/regs.h"
+
+struct ec_bus;
+struct ec_slave;
+
+#define EC_LINE_RX_BYTES	12	/* a write to one of these clears them all */
+
+/**
+ * struct ec_line_watch - where the reading of error counters is; the monitor's
+ * @next: ring position of the slave to be read next
+ * @turn_ns: when some were read (ktime)
+ * @period_ns: when the counts of the present period began (ktime)
+ * @links: changes of links that the monitor has seen
+ */
+struct ec_line_watch {
+	unsigned int next;
+	u64 turn_ns;
+	u64 period_ns;
+	u32 links;
+};
+
+/**
+ * struct ec_line_port - what a port has counted
+ * @crc: invalid frames in this period
+ * @phy: errors of the receiver
+ * @crc_new: invalid frames found by the last read: they count unless the link changes now
+ * @phy_new: likewise
+ * @crc_before: @crc of the period before
+ * @noise: a counter has grown in this period, for any reason
+ * @calm: periods since then
+ * @reported: its cable is reported, and has not been calm long enough since
+ */
+struct ec_line_port {
+	u16 crc;
+	u16 phy;
+	u16 crc_new;
+	u16 phy_new;
+	u16 crc_before;
+	bool noise;
+	u8 calm;
+	bool reported;
+};
+
+/**
+ * struct ec_line_errors - error counters of a slave
+ * @regs: registers 0x0300 to 0x0313 as read last, or after the master has cleared them
+ * @bytes: of them that the slave lets read together
+ * @known: @regs are valid
+ * @emptying: the reply to a write that clears them was lost
+ * @kept: they stay full after such a write
+ * @links: of struct ec_line_watch when they were read
+ * @dl: DL status that was known then
+ * @parent: device number of the neighbor towards the main device then, 0: none
+ * @read_ns: when they were read (ktime)
+ * @from_ns: when the counts of this period begin (ktime)
+ * @to_ns: and when they end so far
+ * @before_ns: duration of the period before
+ * @cleared: counts that the registers do not contain any more, as the master has cleared them
+ * @void_cleared: a user has cleared the registers: @cleared are 0; any thread sets it
+ * @port: counts of each port
+ */
+struct ec_line_errors {
+	u8 regs[EC_ERRORS_SIZE];
+	u8 bytes;
+	bool known;
+	bool emptying;
+	bool kept;
+	u32 links;
+	u16 dl;
+	u64 parent;
+	u64 read_ns;
+	u64 from_ns;
+	u64 to_ns;
+	u64 before_ns;
+	u32 cleared[EC_LINE_RX_BYTES];
+	bool void_cleared;
+	struct ec_line_port port[EC_MAX_PORT];
+};
+
+/* errors of a cable in 10 s, 0: none; module parameter line_errors */
+extern unsigned int ec_line_errors_limit;
+
+void ec_line_errors_look(struct ec_bus *bus, bool links_changed);
+void ec_line_errors_cleared(const struct ec_slave *s, unsigned int port, u32 cleared[3]);
+void ec_line_errors_written(struct ec_slave *s, u32 reg, u32 n);
+
+#endif
