@@ -12,7 +12,7 @@
 #include "../base/base.h"
 #include "border_table.h"
 #include "known_table.h"
-#include "line_errors.h"
+#include "line_watch.h"
 #include "owed.h"
 #include "workers.h"
 

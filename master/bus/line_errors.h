@@ -12,20 +12,6 @@ struct ec_slave;
 #define EC_LINE_RX_BYTES	12	/* a write to one of these clears them all */
 
 /**
- * struct ec_line_watch - where the reading of error counters is; the monitor's
- * @next: ring position of the slave to be read next
- * @turn_ns: when some were read (ktime)
- * @period_ns: when the counts of the present period began (ktime)
- * @links: changes of links that the monitor has seen
- */
-struct ec_line_watch {
-	unsigned int next;
-	u64 turn_ns;
-	u64 period_ns;
-	u32 links;
-};
-
-/**
  * struct ec_line_port - what a port has counted
  * @crc: invalid frames in this period
  * @phy: errors of the receiver

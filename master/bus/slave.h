@@ -19,6 +19,8 @@
 #include "../wire/regs.h"
 #include "../wire/sii.h"
 
+struct ec_line_errors;
+
 /* distance of the tries to read or configure a slave that failed; doubles each time */
 #define EC_RETRY_MIN_MS		250
 #define EC_RETRY_MAX_MS		60000
