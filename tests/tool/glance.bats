@@ -120,6 +120,16 @@ watch() {
 	[[ $(FAKE_BUS=empty err crc --watch 0.1) == *"Master0: no slaves" ]]
 }
 
+@test "crc adds what the master has cleared, up to 255" {
+	ports='d["slaves"][0]["ports"]'
+	out crc -p1 -j | json "$ports[0][\"phy_errors\"] == 0 and $ports[1][\"crc_errors\"] == 0"
+	FAKE_BUS=emptied out crc -p1 -j |
+		json "$ports[0][\"crc_errors\"] == 255 and $ports[0][\"phy_errors\"] == 7"
+	FAKE_BUS=emptied out crc -p1 -j |
+		json "$ports[0][\"forwarded_errors\"] == 2 and $ports[1][\"crc_errors\"] == 0"
+	[ "$(FAKE_BUS=emptied out reg_read -p1 0x300 12)" = "$(out reg_read -p1 0x300 12)" ]
+}
+
 @test "crc --watch goes on without a slave that does not reply" {
 	FAKE_BUS=mute run ethercat crc --watch 0.1
 	[ "$status" -eq 1 ]
