@@ -19,7 +19,7 @@
 
 #define TURN_NS		(900 * NSEC_PER_MSEC)	/* the monitor comes once a second at least */
 #define PERIOD_NS	(10ULL * NSEC_PER_SEC)	/* for which the limit is */
-#define SHORTEST_NS	(8ULL * NSEC_PER_SEC)	/* at the end of a round, a period ends after it */
+#define SHORTEST_NS	(8ULL * NSEC_PER_SEC)	/* after it the end of a round ends a period */
 #define ROUND_TURNS	5	/* turns to read all slaves of a small bus */
 #define TURN_SLAVES	10	/* most slaves of a turn, but */
 #define LONGEST_TURNS	60	/* a round has no more turns than that */
@@ -455,6 +455,7 @@ void ec_line_errors_cleared(const struct ec_slave *s, unsigned int port, u32 cle
  */
 void ec_line_errors_written(struct ec_slave *s, u32 reg, u32 n)
 {
+	/* zeros in it before the pointer */
 	struct ec_line_errors *e = smp_load_acquire(&s->lines);
 
 	if (e && reg < EC_REG_ERRORS + EC_LINE_RX_BYTES && reg + n > EC_REG_ERRORS)

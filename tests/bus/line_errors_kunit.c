@@ -418,13 +418,13 @@ static void figures(struct kunit *test, u32 n)
 	bus_exit(test);
 }
 
-static void line_errors_cost_one_frame_a_second(struct kunit *test)
+static void line_errors_cost_one_frame_each_second(struct kunit *test)
 {
 	figures(test, 3);
 	figures(test, 100);
 }
 
-static void line_errors_of_600_slaves_take_a_minute(struct kunit *test)
+static void line_errors_of_600_slaves_take_one_minute(struct kunit *test)
 {
 	figures(test, 600);
 }
@@ -483,8 +483,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(line_errors_full_counter_is_cleared, full_gen_params),
 	KUNIT_CASE(line_errors_of_other_device_are_not_counted),
 	KUNIT_CASE(line_errors_absent_registers_disturb_nothing),
-	KUNIT_CASE(line_errors_cost_one_frame_a_second),
-	KUNIT_CASE(line_errors_of_600_slaves_take_a_minute),
+	KUNIT_CASE(line_errors_cost_one_frame_each_second),
+	KUNIT_CASE(line_errors_of_600_slaves_take_one_minute),
 	KUNIT_CASE(line_errors_without_limit_are_not_read),
 	KUNIT_CASE(line_errors_beside_cycle_cost_no_frame_of_it),
 	{}

@@ -120,7 +120,7 @@ watch() {
 	[[ $(FAKE_BUS=empty err crc --watch 0.1) == *"Master0: no slaves" ]]
 }
 
-@test "crc adds what the master has cleared, up to 255" {
+@test "crc adds counts that the master has cleared, up to 255" {
 	ports='d["slaves"][0]["ports"]'
 	out crc -p1 -j | json "$ports[0][\"phy_errors\"] == 0 and $ports[1][\"crc_errors\"] == 0"
 	FAKE_BUS=emptied out crc -p1 -j |
