@@ -24,7 +24,7 @@
 #define TURN_SLAVES	10	/* most slaves of a turn, but */
 #define LONGEST_TURNS	60	/* a round has no more turns than that */
 #define CALM		6	/* periods without an error, then a cable is reported again */
-#define AFTER		3	/* periods in which damaged frames may show further on in the ring */
+#define AFTER		3	/* periods in which damaged frames may show further on */
 #define FULL		0xff
 #define MAX_LIMIT	250	/* above, a full counter would hide it */
 
