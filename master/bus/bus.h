@@ -13,7 +13,6 @@
 #include "border_table.h"
 #include "known_table.h"
 #include "line_watch.h"
-#include "owed.h"
 #include "workers.h"
 
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the present list of slaves is used */

@@ -46,7 +46,7 @@ static void address_add(struct scan *sc, struct ec_dg *dg, unsigned int i)
 }
 
 /* Slaves that got the address of another one get their own back. Returns how many. */
-static unsigned int give_back(struct scan *sc, const u16 *at, unsigned int n)
+static unsigned int address_give_back(struct scan *sc, const u16 *at, unsigned int n)
 {
 	const struct ec_dg *dg = sc->dg;
 	unsigned int i, k = 0;
@@ -149,7 +149,7 @@ int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan" :
 			      "no reply at its ring position, frames pass; power-cycle or replace the slave, then rescan");
 	}
-	if (give_back(sc, at, n))
+	if (address_give_back(sc, at, n))
 		return -EAGAIN;
 	if (ret == -ETIMEDOUT && sc->bus->n_slaves)
 		give_back_lost(sc, at, n);

@@ -102,7 +102,7 @@ static bool ports_as_known(const struct ec_trials *t)
 	return true;
 }
 
-static bool fits(const struct ec_trials *t)
+static bool trial_fits(const struct ec_trials *t)
 {
 	u32 bytes = 0, i;
 
@@ -130,7 +130,7 @@ int ec_trial_run(struct ec_trials *t, u16 station)
 	u8 dl[2] = { 0 }, ghost[2], own[2], up_dl[2] = { 0 }, any[1];
 	unsigned int n, i;
 
-	if (!fits(t))
+	if (!trial_fits(t))
 		return -ENOBUFS;
 	if (t->dl && !ports_as_known(t))
 		return -ESTALE;
