@@ -450,6 +450,28 @@ int ect_reg_exchange(struct ect_handle *h, uint64_t device, uint16_t address, vo
 int ect_reg_write_emergency(struct ect_handle *h, uint16_t position, uint16_t address,
 			    const void *data, size_t size);
 
+#define ECT_DATAGRAM_MAX	1486u	/* bytes of a datagram */
+
+/**
+ * ect_datagram() - send one datagram of any command
+ * @h: master, open for writing
+ * @command: number in ETG.1000.4, 0 (NOP) to 14 (FRMW)
+ * @address: logical address; otherwise register times 65536, plus the station address or the
+ *	negative ring position
+ * @data: @size bytes to send; afterwards as they returned
+ * @size: bytes, 1 to %ECT_DATAGRAM_MAX
+ * @working_counter: result
+ *
+ * It is sent once, also if it is lost. While an application runs the bus, a write to all slaves, to
+ * a logical address or to registers that run the bus needs CAP_SYS_ADMIN.
+ *
+ * Context: The thread of the handle; waits for the bus.
+ * Return: 0 when it has returned, -ETIMEDOUT if it was lost, -EPERM, -EINVAL, or another negative
+ * errno.
+ */
+int ect_datagram(struct ect_handle *h, uint8_t command, uint32_t address, void *data, size_t size,
+		 uint16_t *working_counter);
+
 #ifdef __cplusplus
 }
 #endif

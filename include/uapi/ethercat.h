@@ -78,6 +78,7 @@
 #define EC_IOC_REG_READ		EC_IOC_RW(0x22, struct ec_ioc_reg)
 #define EC_IOC_REG_WRITE	EC_IOC_RW(0x23, struct ec_ioc_reg)
 #define EC_IOC_REG_RDWR		EC_IOC_RW(0x32, struct ec_ioc_reg)	/* data: in, out */
+#define EC_IOC_DATAGRAM	EC_IOC_RW(0x38, struct ec_ioc_datagram)	/* data: in, out */
 #define EC_IOC_STATE		EC_IOC_W(0x24, struct ec_ioc_state)
 #define EC_IOC_RESCAN		EC_IOC_N(0x25)
 #define EC_IOC_LET_IN		EC_IOC_W(0x33, struct ec_ioc_let_in)

@@ -337,6 +337,17 @@ struct ec_ioc_reg {
 
 #define EC_REG_FLAG_EMERGENCY	1	/* write by ring position, unscanned bus */
 
+/* any EtherCAT command; what slaves do not change of the data stays */
+struct ec_ioc_datagram {
+	__u32 flags;
+	__u32 address;		/* in: logical, or position or station and, from bit 16, register */
+	__u8 command;		/* in: of ETG.1000.4, 0 NOP to 14 FRMW */
+	__u8 reserved;
+	__u16 working_counter;	/* out */
+	__u32 size;		/* in, bytes, 1..1486 */
+	__u64 data;
+};
+
 struct ec_ioc_state {
 	__u32 flags;
 	__u32 timeout_ms;	/* in: of each transition on the way to it, 0: the usual limits */

@@ -54,6 +54,22 @@ int ect_reg_exchange(struct ect_handle *h, uint64_t device, uint16_t address, vo
 	return reg_transfer(h, EC_IOC_REG_RDWR, 0, ect_address(device), address, data, size);
 }
 
+int ect_datagram(struct ect_handle *h, uint8_t command, uint32_t address, void *data, size_t size,
+		 uint16_t *working_counter)
+{
+	struct ec_ioc_datagram d = {
+		.address = address,
+		.command = command,
+		.size = size > UINT32_MAX ? UINT32_MAX : (u32)size,
+		.data = (uintptr_t)data,
+	};
+	int ret = ect_command(h, EC_IOC_DATAGRAM, &d);
+
+	if (!ret)
+		*working_counter = d.working_counter;
+	return ret;
+}
+
 #define ERRORS_TRIES	4	/* attempts of a read that changes nothing */
 
 /* counts of each port that the registers do not contain any more: the master has cleared them */

@@ -39,6 +39,7 @@
 #define EC_MAX_FOE_SIZE		(15 * 1024 * 1024)	/* file of a request */
 #define EC_MAX_VOE_SIZE		1474	/* bytes; one message in one datagram */
 #define EC_MAX_REG_SIZE		1024	/* bytes per register access */
+#define EC_MAX_DATAGRAM_SIZE	1486	/* bytes: the only datagram of a frame */
 #define EC_MAX_SII_BYTES	(512 * 1024)	/* larger EEPROMs are cut */
 #define EC_MAX_SII_TOTAL	(64 * 1024 * 1024)	/* EEPROMs of all slaves of a master */
 

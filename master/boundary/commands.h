@@ -63,6 +63,8 @@ CMD(EC_IOC_REG_WRITE, ec_ioc_reg_write, F_WRITE, IN(ec_ioc_reg, EC_MAX_REG_SIZE)
 	FLAGS(EC_REG_FLAG_EMERGENCY))
 CMD(EC_IOC_REG_RDWR, ec_ioc_reg_rdwr, F_WRITE, INOUT(ec_ioc_reg, EC_MAX_REG_SIZE),
 	RSV2(ec_ioc_reg))
+CMD(EC_IOC_DATAGRAM, ec_ioc_datagram, F_WRITE, INOUT(ec_ioc_datagram, EC_MAX_DATAGRAM_SIZE),
+	RSV1(ec_ioc_datagram))
 CMD(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe), OUT(ec_ioc_soe, EC_MAX_SOE_SIZE),
 	RSV2(ec_ioc_soe))
 CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),

@@ -10,6 +10,7 @@
 #include "cdev.h"
 
 struct ec_config;
+struct ec_dg;
 struct ec_domain;
 struct ec_session;
 struct ec_slave;
@@ -53,6 +54,7 @@ int ec_ioc_wait_pdos(struct ec_call *call, struct ec_slave *slave);
 int ec_ioc_pause(struct ec_call *call);
 void ec_ioc_record(struct ec_call *call, const struct ec_startup *what);
 int ec_ioc_refuse_reserved(struct ec_call *call);
+int ec_ioc_may_write(struct ec_call *call, const struct ec_dg *dg);
 
 int ec_ioc_receive(struct ec_file *f);
 int ec_ioc_send(struct ec_file *f, const struct ec_ioc_send *what);

@@ -56,7 +56,7 @@ static int reg_access(struct ec_call *call, u8 cmd)
 	ret = reg_address(call, &dg, cmd, &position);
 	if (ret)
 		return ret;
-	ret = ec_xfer(&m->links, &dg, 1);
+	ret = ec_ioc_may_write(call, &dg) ?: ec_xfer(&m->links, &dg, 1);
 	switch (ret) {
 	case 0:
 		break;
@@ -65,6 +65,7 @@ static int reg_access(struct ec_call *call, u8 cmd)
 				 "no reply to register access 0x%04x at slave %u; check the cables",
 				 i->address, position);
 	case -EINTR:
+	case -EPERM:
 		return ret;
 	case -ENODEV:
 	case -ENETDOWN:

@@ -273,6 +273,27 @@ static int reg_rdwr(struct ec_ioc_reg *x)
 	return reg_read(x);
 }
 
+/* three slaves whose registers count up from 0x40 */
+static int datagram(struct ec_ioc_datagram *x)
+{
+	static const __u8 per_slave[] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 3, 0, 0, 0, 1, 1 };
+	static const __u8 single[] = { 0, 1, 1, 3, 1, 1, 3 };
+	__u8 *data = (__u8 *)(uintptr_t)x->data;
+	char what[64];
+
+	if (!x->size || x->size > 1486)
+		return fake_fail(EINVAL, "a datagram has 1 to 1486 bytes");
+	if (fake_bus("app") && x->command == 8)
+		return fake_fail(EPERM, "process 7 (demo) runs the bus");
+	snprintf(what, sizeof(what), "datagram %u 0x%08x ", x->command, x->address);
+	fake_hex(what, data, x->size);
+	x->working_counter = x->command < 7 ? single[x->command] : 3 * per_slave[x->command];
+	for (__u32 i = 0; x->working_counter != 0 && i < x->size; i++)
+		if (x->command != 2 && x->command != 5 && x->command != 8)
+			data[i] = (__u8)(0x40 + i);
+	return 0;
+}
+
 /* with PDOs, others than those the slave has: see fake_mbox.c */
 static int sii_pdos(struct ec_ioc_sii *x)
 {
@@ -456,6 +477,8 @@ int fake_slave_command(unsigned long request, void *arg)
 		return reg_write(arg);
 	case EC_IOC_REG_RDWR:
 		return reg_rdwr(arg);
+	case EC_IOC_DATAGRAM:
+		return datagram(arg);
 	case EC_IOC_STATE:
 		return request_state(arg);
 	default:

@@ -105,6 +105,7 @@ static void devices(void)
 {
 	struct ect_handle *h = opened(ECT_OPEN_WRITE);
 	struct ect_slave s = { .struct_size = sizeof(s) }, again = s;
+	uint16_t wkc = 0;
 	uint8_t data[4];
 
 	CHECK(!ect_slave_at(h, 2, &s) && s.device && s.device != s.position);
@@ -113,6 +114,9 @@ static void devices(void)
 	CHECK(ect_slave_at(h, 65536, &again) == -EINVAL && strstr(ect_reason(h), "65535"));
 	CHECK(!ect_reg_read(h, s.device, 0x130, data, 2) && data[0] == 0x12);
 	CHECK(ect_reg_read(h, s.device, 0xfffe, data, 4) == -EINVAL);
+	CHECK(!ect_datagram(h, 7, 0x130u << 16, data, 2, &wkc) && wkc == 3 && data[1] == 0x41);
+	CHECK(ect_datagram(h, 7, 0, data, 0, &wkc) == -EINVAL && wkc == 3);
+	CHECK(ect_datagram(h, 7, 0, data, (size_t)1 << 32, &wkc) == -EINVAL);
 	bus("moved");
 	CHECK(ect_reg_read(h, s.device, 0x130, data, 2) == -ENODEV);
 	CHECK(strstr(ect_reason(h), "EL7201"));

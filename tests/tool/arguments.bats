@@ -347,6 +347,8 @@ for o in d["options"]:
 	[ "$(complete_line ethercat upload -p "")" = "0 1 2" ]
 	[ "$(complete_line ethercat slaves --alias "")" = "1001" ]
 	[ "$(complete_line ethercat -p2 states S)" = "SAFEOP" ]
+	[ "$(complete_line ethercat datagram FR)" = "FRMW" ]
+	[ -z "$(complete_line ethercat datagram FRMW "")" ]
 	[[ " $(complete_line ethercat reg_write -) " == *" --emergency "* ]]
 	[[ " $(complete_line ethercat upload -t u) " == *" uint24 "* ]]
 	[ "$(FAKE_BUS=app complete_line ethercat data -d "")" = "0 1" ]

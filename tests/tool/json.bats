@@ -12,7 +12,8 @@ load common
 		"sii_read -p2" "sii_read -v -p2" "reg_read -p2 0x130 2" \
 		"reg_write -p2 -tuint8 0x40 1" rescan "debug 1" graph "graph dc" "graph crc" crc \
 		"graph --tree" "graph crc --tree" dc "dc -v" "crc --watch 0.1" \
-		"crc reset" "latch -p2" "latch -p2 single" cycle "cycle -v" "cycle -r" "ip -p2" "ip -p2 name a"; do
+		"crc reset" "latch -p2" "datagram BRD 0 2" \
+		"datagram BWR 0 -t uint8 1" "latch -p2 single" cycle "cycle -v" "cycle -r" "ip -p2" "ip -p2 name a"; do
 		out $c --json | json 'isinstance(d, dict)' || { echo "$c"; return 1; }
 	done
 }

@@ -85,6 +85,10 @@ _ethercat()
 		*)
 			case $cmd in
 			"")	w=$(_ethercat_values command) ;;
+			datagram)
+				w=
+				[ "$prev" != datagram ] ||
+					w="NOP APRD APWR APRW FPRD FPWR FPRW BRD BWR BRW LRD LWR LRW ARMW FRMW" ;;
 			states)	w="INIT PREOP BOOT SAFEOP OP" ;;
 			graph)	w="DC CRC" ;;
 			why)	w=$(_ethercat_values position "$master") ;;

@@ -57,6 +57,7 @@ const struct cmd cmds[] = {
 	CMD(REG_READ, BUS, RSV2(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(REG_WRITE, BUS, RSV2(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(REG_RDWR, BUS, RSV2(ec_ioc_reg), DATA(ec_ioc_reg)),
+	CMD(DATAGRAM, BUS, RSV1(ec_ioc_datagram), DATA(ec_ioc_datagram)),
 	CMD(SOE_READ, BUS, RSV2(ec_ioc_soe), DATA(ec_ioc_soe)),
 	CMD(SOE_WRITE, BUS, RSV2(ec_ioc_soe), DATA(ec_ioc_soe)),
 	/* their data are not copied before the slave has been asked: check_foe() */
