@@ -124,6 +124,8 @@
 #define EC_HAVE_GROUPS
 /* ecrt_slave_config_replay() and the next ones: what a slave gets that returns */
 #define EC_HAVE_REPLAY
+/* ecrt_master_create_datagram_request() and its requests: any EtherCAT command */
+#define EC_HAVE_DATAGRAM_REQUESTS
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -180,6 +182,33 @@ typedef struct ec_voe_handler ec_voe_handler_t;
 
 struct ec_reg_request;
 typedef struct ec_reg_request ec_reg_request_t;
+
+struct ec_datagram_request;
+typedef struct ec_datagram_request ec_datagram_request_t;
+
+/* commands of EtherCAT (ETG.1000.4) */
+typedef enum {
+	EC_DATAGRAM_NOP,
+	EC_DATAGRAM_APRD,
+	EC_DATAGRAM_APWR,
+	EC_DATAGRAM_APRW,
+	EC_DATAGRAM_FPRD,
+	EC_DATAGRAM_FPWR,
+	EC_DATAGRAM_FPRW,
+	EC_DATAGRAM_BRD,
+	EC_DATAGRAM_BWR,
+	EC_DATAGRAM_BRW,
+	EC_DATAGRAM_LRD,
+	EC_DATAGRAM_LWR,
+	EC_DATAGRAM_LRW,
+	EC_DATAGRAM_ARMW,
+	EC_DATAGRAM_FRMW
+} ec_datagram_command_t;
+
+/* address of a datagram: a register of the slave with a station address, at a ring position, of all */
+#define EC_DATAGRAM_STATION(STATION, REG) ((uint32_t)(REG) << 16 | ((STATION) & 0xffffU))
+#define EC_DATAGRAM_POSITION(POSITION, REG) EC_DATAGRAM_STATION(-(uint32_t)(POSITION), REG)
+#define EC_DATAGRAM_ALL(REG) EC_DATAGRAM_STATION(0U, REG)
 
 /* state of the whole bus */
 typedef struct {
@@ -3282,6 +3311,76 @@ EC_PUBLIC_API int ecrt_reg_request_read(ec_reg_request_t *req,
  */
 EC_PUBLIC_API int ecrt_reg_request_readwrite(ec_reg_request_t *req,
 		uint16_t address, size_t size);
+
+/**
+ * ecrt_master_create_datagram_request() - create a request that sends datagrams
+ * @master: a reserved master, not active
+ * @size: buffer size, 1 to 1486 bytes
+ *
+ * Extension (%EC_HAVE_DATAGRAM_REQUESTS). For EtherCAT commands that no other function has. Each
+ * request has one datagram at a time; several requests are sent side by side.
+ * ecrt_master_deactivate() and ecrt_release_master() free it.
+ *
+ * Context: Process. May sleep.
+ * Return: the request, or NULL: invalid size, no memory, not reserved, active, too many.
+ */
+EC_PUBLIC_API ec_datagram_request_t *ecrt_master_create_datagram_request(
+		ec_master_t *master, size_t size);
+
+/**
+ * ecrt_datagram_request_data() - get the buffer of a request
+ * @req: request
+ *
+ * Extension (%EC_HAVE_DATAGRAM_REQUESTS).
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: the address, which does not change; NULL when @req is NULL.
+ */
+EC_PUBLIC_API uint8_t *ecrt_datagram_request_data(const ec_datagram_request_t *req);
+
+/**
+ * ecrt_datagram_request_send() - start sending the buffer as a datagram
+ * @req: request that is not BUSY, of an active master
+ * @command: EC_DATAGRAM_*
+ * @address: logical address for LRD, LWR, LRW; otherwise as by EC_DATAGRAM_STATION(),
+ *	EC_DATAGRAM_POSITION() or EC_DATAGRAM_ALL()
+ * @size: bytes
+ *
+ * Extension (%EC_HAVE_DATAGRAM_REQUESTS). The datagram is sent once, beside the cycle. The master
+ * does not check what the datagram changes: a write to process data, to registers that
+ * the master sets, or to the clocks can stop the slaves.
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: 0; %-EBUSY; %-ENOBUFS larger than the buffer; %-EINVAL unknown command, @size is 0, not
+ * active, or @req is NULL.
+ */
+EC_PUBLIC_API int ecrt_datagram_request_send(ec_datagram_request_t *req,
+		ec_datagram_command_t command, uint32_t address, size_t size);
+
+/**
+ * ecrt_datagram_request_state() - get the state of a request
+ * @req: request
+ *
+ * Extension (%EC_HAVE_DATAGRAM_REQUESTS). SUCCESS: the datagram has returned, with any working
+ * counter, and its data are in the buffer. ERROR: it was lost, or there is no link.
+ *
+ * Context: One caller at a time. RT-safe, no system call.
+ * Return: %EC_REQUEST_UNUSED before the first start; BUSY, SUCCESS or ERROR.
+ */
+EC_PUBLIC_API ec_request_state_t ecrt_datagram_request_state(
+		const ec_datagram_request_t *req);
+
+/**
+ * ecrt_datagram_request_working_counter() - get the working counter of a request
+ * @req: request of which ecrt_datagram_request_state() has returned SUCCESS
+ *
+ * Extension (%EC_HAVE_DATAGRAM_REQUESTS). With two links it is the sum of both.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation, no system call.
+ * Return: working counter; 0 in other states, or @req is NULL.
+ */
+EC_PUBLIC_API uint16_t ecrt_datagram_request_working_counter(
+		const ec_datagram_request_t *req);
 
 #ifdef __cplusplus
 }

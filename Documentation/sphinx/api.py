@@ -21,6 +21,7 @@ GROUPS = (
     ("FoE request", "ecrt_foe_request_"),
     ("VoE handler", "ecrt_voe_handler_"),
     ("Register request", "ecrt_reg_request_"),
+    ("Datagram request", "ecrt_datagram_request_"),
     ("Master", "ecrt_master_"),
     ("Opening and versions", "ecrt_"),
     ("Data", "EC_"),
@@ -28,7 +29,7 @@ GROUPS = (
 )
 ORDER = ("Opening and versions", "Master", "Slave configuration", "Domain", "SDO request",
          "Request of SDO information", "SoE request", "FoE request", "VoE handler",
-         "Register request", "Data", "Types")
+         "Register request", "Datagram request", "Data", "Types")
 
 HEAD = """.. SPDX-License-Identifier: GPL-2.0-only
 

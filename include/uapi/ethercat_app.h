@@ -170,6 +170,14 @@ struct ec_ioc_sc_request {
 	__u32 reserved;
 };
 
+/* a request of no slave configuration: datagrams of any command */
+struct ec_ioc_datagram_request {
+	__u32 flags;
+	__u32 size;		/* in: buffer size, bytes, 1..1486 */
+	__u32 index;		/* out: in the session */
+	__u32 reserved;
+};
+
 struct ec_ioc_sc_emerg {
 	__u32 flags;
 	__u32 config;

@@ -42,13 +42,13 @@
 struct ec_request_record {
 	/* application */
 	__u32 start;		/* differs from the last value, not 0 */
-	__u32 size;		/* bytes to write; registers: also to read */
+	__u32 size;		/* bytes to write; registers, datagrams: also to read */
 	__u32 timeout_ms;	/* limit of the start; 0: unlimited. Not for VoE */
 	__u16 index;		/* object, or type of a list; register address; IDN; VoE: type */
-	__u8 subindex;		/* SoE: drive */
-	__u8 op;		/* EC_REQUEST_OP_* */
+	__u8 subindex;		/* SoE: drive; datagram: command */
+	__u8 op;		/* EC_REQUEST_OP_*; datagram: EC_REQUEST_OP_READWRITE */
 	__u32 flags;		/* SDO: EC_SDO_FLAG_COMPLETE; SDO information: EC_SDO_INFO_* */
-	__u32 vendor_id;	/* VoE; FoE: password */
+	__u32 vendor_id;	/* VoE; FoE: password; datagram: address */
 	/* kernel */
 	__u32 done;		/* @start of the last finished request */
 	__s32 result;		/* 0 or -errno */
@@ -56,7 +56,7 @@ struct ec_request_record {
 	__u32 abort_code;	/* of the slave: SDO abort code, SoE or FoE error code */
 	__u32 data;		/* offset in the area */
 	__u32 got_vendor_id;	/* VoE: of the last received message */
-	__u16 got_type;
+	__u16 got_type;		/* likewise; datagram: working counter */
 	__u16 reserved;
 	__u32 cancel;		/* application: equal to @start: end this request */
 	__u32 progress;		/* FoE: bytes so far; the application sets 0 before @start */

@@ -35,12 +35,12 @@
  * @size: of them used
  * @timeout_ms: of a start, 0: unlimited
  * @index16: object, IDN, register, type of a VoE message
- * @subindex: or drive
+ * @subindex: or drive; command of a datagram
  * @op: EC_REQUEST_OP_* of the last start
  * @flags: EC_SDO_FLAG_COMPLETE; of SDO information EC_SDO_INFO_*
- * @vendor_id: of a VoE message; password of a file
+ * @vendor_id: of a VoE message; password of a file; address of a datagram
  * @got_vendor_id: of the VoE message read last
- * @got_type: likewise
+ * @got_type: likewise; working counter of a datagram
  * @start: number of the last start
  * @state: as last seen
  * @rec: record in shared memory, NULL before activation
@@ -68,6 +68,10 @@ struct ec_app_request {
 };
 
 struct ec_reg_request {
+	struct ec_app_request r;
+};
+
+struct ec_datagram_request {
 	struct ec_app_request r;
 };
 
@@ -132,6 +136,7 @@ int ec_give(const ec_master_t *m, unsigned int cmd, void *arg);
 
 /* request.c: for all kinds of requests */
 void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t object, size_t size);
+void *ec_app_request_create_datagram(ec_master_t *m, size_t object, size_t size);
 ec_request_state_t ec_app_request_state(struct ec_app_request *r);
 int ec_app_request_start(struct ec_app_request *r, __u8 op, size_t size);
 void ec_app_request_give(struct ec_app_request *r, __u8 op, size_t size);

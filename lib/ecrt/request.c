@@ -7,6 +7,46 @@
  */
 #include "ecrt_int.h"
 
+static void request_free(struct ec_app_request *r)
+{
+	if (r)
+		ec_free(r->data);
+	ec_free(r);
+}
+
+static struct ec_app_request *request_alloc(size_t object, size_t size)
+{
+	struct ec_app_request *r = ec_zalloc(object);
+
+	if (!r)
+		return NULL;
+	r->data = ec_zalloc(size ? size : 1);
+	if (!r->data) {
+		request_free(r);
+		return NULL;
+	}
+	r->room = size;
+	r->size = size;
+	return r;
+}
+
+/* The request, which the kernel has under a number; NULL: it refused it with @err. */
+static void *request_keep(ec_master_t *m, struct ec_app_request *r, unsigned int index, int err)
+{
+	struct ec_app_request **list;
+
+	if (err) {
+		request_free(r);
+		return ec_no_handle(err);
+	}
+	list = ec_request_list(m);
+	r->master = m;
+	r->index = index;
+	r->next = *list;
+	*list = r;
+	return r;
+}
+
 /**
  * ec_app_request_create() - a request and its buffer, set to 0
  * @sc: slave configuration
@@ -22,31 +62,38 @@ void *ec_app_request_create(ec_slave_config_t *sc, __u32 kind, size_t object, si
 	struct ec_ioc_sc_request arg = {
 		.kind = kind, .config = ec_sc_index(sc), .size = ec_u32(size),
 	};
-	struct ec_app_request *r, **list;
+	struct ec_app_request *r;
 	int ret;
 
 	if (!sc)
 		return ec_no_handle(-EINVAL);
-	r = ec_zalloc(object);
-	if (r)
-		r->data = ec_zalloc(size ? size : 1);
-	ret = r && r->data ?
-	      ec_do_sc(sc, EC_IOC_SC_REQUEST, &arg, "create a request of %zu bytes", size) :
-	      ec_fail_sc(sc, -ENOMEM, "create a request of %zu bytes", size);
-	if (ret) {
-		if (r)
-			ec_free(r->data);
-		ec_free(r);
-		return ec_no_handle(ret);
-	}
-	list = ec_request_list(ec_sc_master(sc));
-	r->master = ec_sc_master(sc);
-	r->index = arg.index;
-	r->room = size;
-	r->size = size;
-	r->next = *list;
-	*list = r;
-	return r;
+	r = request_alloc(object, size);
+	ret = r ? ec_do_sc(sc, EC_IOC_SC_REQUEST, &arg, "create a request of %zu bytes", size) :
+		  ec_fail_sc(sc, -ENOMEM, "create a request of %zu bytes", size);
+	return request_keep(ec_sc_master(sc), r, arg.index, ret);
+}
+
+/**
+ * ec_app_request_create_datagram() - create a request for datagrams, and its buffer, set to 0
+ * @m: master
+ * @object: as of ec_app_request_create()
+ * @size: of the buffer
+ *
+ * Return: as ec_app_request_create().
+ */
+void *ec_app_request_create_datagram(ec_master_t *m, size_t object, size_t size)
+{
+	struct ec_ioc_datagram_request arg = { .size = ec_u32(size) };
+	struct ec_app_request *r;
+	int ret;
+
+	if (!m)
+		return ec_no_handle(-EINVAL);
+	r = request_alloc(object, size);
+	ret = r ? ec_do(m, EC_IOC_DATAGRAM_REQUEST, &arg, "create a datagram request of %zu bytes",
+			size) :
+		  ec_fail(m, -ENOMEM, "create a datagram request of %zu bytes", size);
+	return request_keep(m, r, arg.index, ret);
 }
 
 /* The session has ended, and its requests with it. */
@@ -56,8 +103,7 @@ void ec_app_requests_free(ec_master_t *m)
 
 	while ((r = *list)) {
 		*list = r->next;
-		ec_free(r->data);
-		ec_free(r);
+		request_free(r);
 	}
 }
 
@@ -204,6 +250,7 @@ uint8_t *function(type req) \
 EXPORT_SYMBOL_GPL(function)
 
 DEFINE_DATA(const ec_reg_request_t *, ecrt_reg_request_data);
+DEFINE_DATA(const ec_datagram_request_t *, ecrt_datagram_request_data);
 DEFINE_DATA(const ec_sdo_request_t *, ecrt_sdo_request_data);
 DEFINE_DATA(const ec_sdo_info_request_t *, ecrt_sdo_info_request_data);
 DEFINE_DATA(const ec_soe_request_t *, ecrt_soe_request_data);
@@ -232,6 +279,7 @@ ec_request_state_t function(type req) \
 EXPORT_SYMBOL_GPL(function)
 
 DEFINE_STATE(const ec_reg_request_t *, ecrt_reg_request_state);
+DEFINE_STATE(const ec_datagram_request_t *, ecrt_datagram_request_state);
 DEFINE_STATE(EC_IN_KERNEL ec_sdo_request_t *, ecrt_sdo_request_state);
 DEFINE_STATE(EC_IN_KERNEL ec_soe_request_t *, ecrt_soe_request_state);
 DEFINE_STATE(const ec_sdo_info_request_t *, ecrt_sdo_info_request_state);
@@ -309,3 +357,29 @@ int ecrt_reg_request_readwrite(ec_reg_request_t *req, uint16_t address, size_t s
 	return start_reg(req, EC_REQUEST_OP_READWRITE, address, size);
 }
 EXPORT_SYMBOL_GPL(ecrt_reg_request_readwrite);
+
+/* datagrams ------------------------------------------------------------------*/
+
+ec_datagram_request_t *ecrt_master_create_datagram_request(ec_master_t *master, size_t size)
+{
+	return ec_app_request_create_datagram(master, sizeof(ec_datagram_request_t), size);
+}
+EXPORT_SYMBOL_GPL(ecrt_master_create_datagram_request);
+
+int ecrt_datagram_request_send(ec_datagram_request_t *req, ec_datagram_command_t command,
+			       uint32_t address, size_t size)
+{
+	if (!req || !size || (unsigned int)command > EC_DATAGRAM_FRMW)
+		return -EINVAL;
+	/* one that is busy has command and address already */
+	req->r.subindex = (__u8)command;
+	req->r.vendor_id = address;
+	return ec_app_request_start(&req->r, EC_REQUEST_OP_READWRITE, size);
+}
+EXPORT_SYMBOL_GPL(ecrt_datagram_request_send);
+
+uint16_t ecrt_datagram_request_working_counter(const ec_datagram_request_t *req)
+{
+	return req && req->r.state == EC_REQUEST_SUCCESS ? req->r.got_type : 0;
+}
+EXPORT_SYMBOL_GPL(ecrt_datagram_request_working_counter);

@@ -105,6 +105,7 @@ CMD(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, CONFIG(ec_ioc_sc_timeout),
 	RSV1(ec_ioc_sc_timeout), FLAGS(EC_SC_TIMEOUT_REPLY))
 CMD(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, CONFIG(ec_ioc_sc_request),
 	RSV1(ec_ioc_sc_request))
+CMD(EC_IOC_DATAGRAM_REQUEST, ec_ioc_datagram_request, F_WRITE, IDLE, RSV1(ec_ioc_datagram_request))
 CMD(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, CONFIG(ec_ioc_sc_emerg), RSV1(ec_ioc_sc_emerg))
 CMD(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, CONFIG(ec_ioc_sc_ip),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))

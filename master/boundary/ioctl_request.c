@@ -16,11 +16,20 @@ static const u32 limits[] = {
 	[EC_REQUEST_SDO_INFO] = EC_MAX_SDO_SIZE,
 };
 
+static int add(struct ec_call *call, u32 config, u32 kind, u32 size, u32 *index)
+{
+	int ret = ec_requests_add(call->session, config, kind, size, index);
+
+	if (ret == -ENOSPC)
+		ec_refuse(call, ret, "at most %u requests with %u bytes together", EC_MAX_REQUESTS,
+			  EC_MAX_REQUEST_BYTES);
+	return ret;
+}
+
 int ec_ioc_sc_request(struct ec_call *call)
 {
 	struct ec_ioc_sc_request *i = call->arg;
 	u32 limit;
-	int ret;
 
 	if (i->kind >= ARRAY_SIZE(limits))
 		return ec_refuse(call, -EINVAL, "%u is no kind of request", i->kind);
@@ -28,11 +37,17 @@ int ec_ioc_sc_request(struct ec_call *call)
 	if (i->size > limit)
 		return ec_refuse(call, -EINVAL, "size must be at most %u bytes, not %u", limit,
 				 i->size);
-	ret = ec_requests_add(call->session, i->config, i->kind, i->size, &i->index);
-	if (ret == -ENOSPC)
-		ec_refuse(call, ret, "at most %u requests with %u bytes together", EC_MAX_REQUESTS,
-			  EC_MAX_REQUEST_BYTES);
-	return ret;
+	return add(call, i->config, i->kind, i->size, &i->index);
+}
+
+int ec_ioc_datagram_request(struct ec_call *call)
+{
+	struct ec_ioc_datagram_request *i = call->arg;
+
+	if (!i->size || i->size > EC_MAX_DATAGRAM_SIZE)
+		return ec_refuse(call, -EINVAL, "a datagram has 1 to %u bytes, not %u",
+				 EC_MAX_DATAGRAM_SIZE, i->size);
+	return add(call, EC_UAPI_NONE32, EC_REQUEST_DATAGRAM, i->size, &i->index);
 }
 
 int ec_ioc_sc_emerg(struct ec_call *call)

@@ -47,6 +47,13 @@ static struct ec_session *request_session_of(const struct ec_requests *rq)
 	return s && s->requests == rq && !READ_ONCE(rq->sessions->base->stopping) ? s : NULL;
 }
 
+/* The slave of a request queue now, or NULL. */
+static struct ec_slave *lane_slave(const struct ec_session *s, const struct ec_lane *lane)
+{
+	lockdep_assert_held(s->wanted.lock);
+	return lane->config == EC_UAPI_NONE32 ? NULL : s->wanted.configs[lane->config]->slave;
+}
+
 /* begin and end of a request ------------------------------------------------*/
 
 static void request_finish(struct ec_request *r)
@@ -138,7 +145,7 @@ static bool request_look(struct ec_requests *rq)
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_lanes; i++) {
 		struct ec_lane *lane = &rq->lanes[i];
-		bool there = s->wanted.configs[lane->config]->slave, todo = false;
+		bool there = lane->config == EC_UAPI_NONE32 || lane_slave(s, lane), todo = false;
 		struct ec_request *r;
 
 		list_for_each_entry(r, &lane->requests, list) {
@@ -187,11 +194,11 @@ static void watch_work(struct work_struct *work)
 
 /*
  * Can the request begin now? While the master configures the slave, it passes INIT:
- * the request waits. With a slave that is to stay in INIT it fails.
+ * the request waits. With a slave that is to stay in INIT it fails. A datagram has no slave.
  */
 static bool ready(const struct ec_slave *s, const struct ec_request *r)
 {
-	if (r->kind == EC_REQUEST_REG || READ_ONCE(s->note.error) != EC_SLAVE_OK)
+	if (!s || r->kind == EC_REQUEST_REG || READ_ONCE(s->note.error) != EC_SLAVE_OK)
 		return true;
 	if (READ_ONCE(s->al.requested) > EC_AL_PREOP && READ_ONCE(s->work.reconfigure))
 		return false;
@@ -209,12 +216,13 @@ static struct ec_request *request_take(struct ec_lane *lane, struct ec_slave **s
 
 	mutex_lock(&rq->sessions->lock);
 	s = request_session_of(rq);
-	*slave = s ? s->wanted.configs[lane->config]->slave : NULL;
-	if (!*slave || (*slave)->stop.gone) {
+	*slave = s ? lane_slave(s, lane) : NULL;
+	if (*slave && (*slave)->stop.gone)
 		*slave = NULL;
+	if (!s || (!*slave && lane->config != EC_UAPI_NONE32))
 		goto out;
-	}
-	ec_slave_ref(*slave);
+	if (*slave)
+		ec_slave_ref(*slave);
 	mutex_lock(&rq->lock);
 	list_for_each_entry(r, &lane->requests, list) {
 		if (r->phase != EC_REQUEST_PENDING || !ready(*slave, r))
@@ -226,7 +234,7 @@ static struct ec_request *request_take(struct ec_lane *lane, struct ec_slave **s
 	}
 	if (oldest) {
 		oldest->phase = EC_REQUEST_RUNNING;
-		oldest->recorded = ec_request_writes(oldest) &&
+		oldest->recorded = *slave && ec_request_writes(oldest) &&
 				   ec_replay_is_open(&s->wanted, *slave);
 	}
 	mutex_unlock(&rq->lock);
@@ -269,7 +277,7 @@ static void lane_work(struct work_struct *work)
 	do {
 		r = request_take(lane, &slave);
 		if (r) {
-			ec_request_run(r, slave);
+			ec_request_run(r, slave, rq->sessions->links);
 			if (r->recorded && !r->res.err)
 				request_record(rq, r, slave);
 			mutex_lock(&rq->lock);
@@ -296,7 +304,7 @@ int ec_requests_begin(struct ec_session *s)
 	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
-	if (!s->wanted.n_configs)
+	if (!s->wanted.n_configs && !s->n_specs)
 		return 0;
 	rq = kzalloc(sizeof(*rq), GFP_KERNEL_ACCOUNT);
 	if (!rq)

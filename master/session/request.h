@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * Requests of the application that run beside its cycle: SDOs, registers, IDNs,
- * VoE messages, files, the object dictionary.
+ * VoE messages, files, the object dictionary, datagrams.
  *
  * Their records are in memory that the application has mapped. It starts a request
  * there, and reports the start with its next send; for a kernel cycle it counts the

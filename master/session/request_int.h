@@ -28,7 +28,7 @@ enum ec_request_phase {
  * @got: bytes read
  * @code: of the slave: SDO abort code, SoE or FoE error code
  * @vendor: VoE: of the message read
- * @type: likewise
+ * @type: likewise; datagram: working counter
  */
 struct ec_request_result {
 	int err;
@@ -88,15 +88,15 @@ struct ec_request {
  * struct ec_lane - request queue: requests that are executed one after the other
  * @work: executes them
  * @rq: all request queues
- * @config: number of the configuration they belong to
+ * @config: number of the configuration they belong to; %EC_UAPI_NONE32: datagrams, of none
  * @requests: of this queue
  * @emerg: ring of emergencies of the configuration
  * @voe: the configuration has VoE handlers
  * @files: queue of its files, or NULL
  *
  * First one queue for each configuration, with @emerg, @voe and @files. Then one for each VoE
- * handler, so that a handler that waits for a message does not delay other requests, and one
- * for the files of each configuration, which take long.
+ * handler, so that a handler that waits for a message does not delay other requests, one for the
+ * files of each configuration, which take long, and one for each datagram.
  */
 struct ec_lane {
 	struct work_struct work;

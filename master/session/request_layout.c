@@ -20,7 +20,7 @@ static size_t buf_bytes(const struct ec_request_spec *spec)
 /**
  * ec_requests_add() - one more request
  * @s: session, not active
- * @config: configuration in it
+ * @config: configuration in it; %EC_UAPI_NONE32 for a datagram
  * @kind: EC_REQUEST_*
  * @size: bytes of its data at most
  * @index: result: its number
@@ -62,12 +62,12 @@ static size_t data_offset(const struct ec_session *s)
  * @s: session
  *
  * Context: Process, session lock held.
- * Return: bytes; 0 without configuration.
+ * Return: bytes; 0 without configuration and request.
  */
 size_t ec_requests_bytes(const struct ec_session *s)
 {
 	lockdep_assert_held(s->wanted.lock);
-	return s->wanted.n_configs ? data_offset(s) + s->request_bytes : 0;
+	return s->wanted.n_configs || s->n_specs ? data_offset(s) + s->request_bytes : 0;
 }
 
 static void init(struct ec_requests *rq, struct ec_lane *lane, u32 config)
@@ -134,6 +134,31 @@ void ec_requests_describe(const struct ec_session *s)
 	mutex_unlock(&rq->lock);
 }
 
+/* Has the request a queue of its own, or one of its kind? */
+static bool apart(u32 kind)
+{
+	return kind == EC_REQUEST_VOE || kind == EC_REQUEST_FOE || kind == EC_REQUEST_DATAGRAM;
+}
+
+/* The queue of a request; @own is the next one that is free. */
+static struct ec_lane *lane_of(struct ec_requests *rq, const struct ec_request_spec *spec,
+			       struct ec_lane **own)
+{
+	struct ec_lane *lane = spec->config == EC_UAPI_NONE32 ? NULL : &rq->lanes[spec->config];
+
+	if (!apart(spec->kind))
+		return lane;
+	if (spec->kind == EC_REQUEST_VOE)
+		lane->voe = true;
+	if (spec->kind == EC_REQUEST_FOE) {
+		if (lane->files)
+			return lane->files;
+		lane->files = *own;
+	}
+	init(rq, *own, spec->config);
+	return (*own)++;
+}
+
 /**
  * ec_requests_lay_out() - give each request its memory and its request queue
  * @s: session with @shared
@@ -153,19 +178,9 @@ void ec_requests_lay_out(struct ec_session *s, struct ec_requests *rq)
 	lockdep_assert_held(s->wanted.lock);
 	for (i = 0; i < s->n_specs; i++, rec++) {
 		const struct ec_request_spec *spec = &s->specs[i];
-		struct ec_lane *lane = &rq->lanes[spec->config];
+		struct ec_lane *lane = lane_of(rq, spec, &own);
 		struct ec_request *r = &rq->reqs[i];
 
-		if (spec->kind == EC_REQUEST_VOE)
-			lane->voe = true;
-		if (spec->kind == EC_REQUEST_FOE && lane->files) {
-			lane = lane->files;
-		} else if (spec->kind == EC_REQUEST_VOE || spec->kind == EC_REQUEST_FOE) {
-			if (spec->kind == EC_REQUEST_FOE)
-				lane->files = own;
-			lane = own++;
-			init(rq, lane, spec->config);
-		}
 		r->rec = rec;
 		r->kind = spec->kind;
 		r->cap = spec->size;
@@ -191,7 +206,7 @@ unsigned int ec_requests_lanes(const struct ec_session *s)
 
 	lockdep_assert_held(s->wanted.lock);
 	for (i = 0; i < s->n_specs; i++)
-		n += s->specs[i].kind == EC_REQUEST_VOE || s->specs[i].kind == EC_REQUEST_FOE;
+		n += apart(s->specs[i].kind);
 	return n;
 }
 

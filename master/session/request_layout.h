@@ -5,6 +5,9 @@
 
 #include <linux/types.h>
 
+/* kind of struct ec_ioc_datagram_request, which is none of struct ec_ioc_sc_request */
+#define EC_REQUEST_DATAGRAM	6
+
 struct ec_requests;
 struct ec_session;
 

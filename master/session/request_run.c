@@ -4,6 +4,7 @@
 #include "../mailbox/coe.h"
 #include "../mailbox/foe.h"
 #include "request_int.h"
+#include "request_layout.h"
 #include "request_run.h"
 #include "../bus/slave.h"
 #include "../mailbox/soe.h"
@@ -22,6 +23,7 @@ static const u8 ops[] = {
 			   BIT(EC_REQUEST_OP_READ_NOW),
 	[EC_REQUEST_FOE] = BIT(EC_REQUEST_OP_READ) | BIT(EC_REQUEST_OP_WRITE),
 	[EC_REQUEST_SDO_INFO] = BIT(EC_REQUEST_OP_READ),
+	[EC_REQUEST_DATAGRAM] = BIT(EC_REQUEST_OP_READWRITE),
 };
 
 /* The meaning of the flags depends on the kind. */
@@ -67,6 +69,8 @@ int ec_request_accept(struct ec_request *r, u32 flags, u32 size)
 	else if (size > r->cap ||
 		 (!size && r->kind != EC_REQUEST_VOE && r->kind != EC_REQUEST_FOE))
 		return -EINVAL;
+	if (r->kind == EC_REQUEST_DATAGRAM && r->sub > EC_CMD_FRMW)
+		return -EINVAL;
 	if (ec_request_is_file(r) && !ec_foe_name_len((char *)r->buf, EC_FOE_NAME))
 		return -EINVAL;
 	r->size = size;
@@ -95,6 +99,17 @@ static void run_reg(struct ec_request *r, struct ec_slave *s)
 		r->res.err = ec_xfer_fpwr(s->bus->links, s->station, r->index, r->buf, r->size);
 	else
 		r->res.err = ec_xfer_fprd(s->bus->links, s->station, r->index, r->buf, r->size);
+}
+
+/* Sent once, as it is: only the application knows what it does. */
+static void run_datagram(struct ec_request *r, struct ec_links *l)
+{
+	struct ec_dg dg = EC_DG(r->sub, r->vendor & 0xffff, r->vendor >> 16, r->size, r->buf);
+
+	dg.repeat = false;
+	r->res.err = ec_xfer(l, &dg, 1);
+	r->res.got = r->size;
+	r->res.type = dg.wkc;
 }
 
 static void run_sdo(struct ec_request *r, struct ec_slave *s, const struct ec_mbox_limit *l)
@@ -189,11 +204,12 @@ static void run_foe(struct ec_request *r, struct ec_slave *s, const struct ec_mb
 /**
  * ec_request_run() - execute a request
  * @r: request that ec_request_accept() has accepted; @res is set
- * @s: its slave
+ * @s: its slave; NULL for a datagram
+ * @l: way to the slaves
  *
  * Context: Process. Waits for bus traffic.
  */
-void ec_request_run(struct ec_request *r, struct ec_slave *s)
+void ec_request_run(struct ec_request *r, struct ec_slave *s, struct ec_links *l)
 {
 	struct ec_mbox_limit limit = { .begin_ns = ec_request_begin_ns(r), .cancel = &r->stop };
 
@@ -216,6 +232,9 @@ void ec_request_run(struct ec_request *r, struct ec_slave *s)
 		break;
 	case EC_REQUEST_SDO_INFO:
 		run_info(r, s, &limit);
+		break;
+	case EC_REQUEST_DATAGRAM:
+		run_datagram(r, l);
 		break;
 	}
 }

@@ -5,10 +5,11 @@
 
 #include <linux/types.h>
 
+struct ec_links;
 struct ec_request;
 struct ec_slave;
 
 int ec_request_accept(struct ec_request *r, u32 flags, u32 size);
-void ec_request_run(struct ec_request *r, struct ec_slave *s);
+void ec_request_run(struct ec_request *r, struct ec_slave *s, struct ec_links *l);
 
 #endif

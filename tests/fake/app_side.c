@@ -312,6 +312,9 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SC_REQUEST:
 		((struct ec_ioc_sc_request *)arg)->index = fake.requests++;
 		break;
+	case EC_IOC_DATAGRAM_REQUEST:
+		((struct ec_ioc_datagram_request *)arg)->index = fake.requests++;
+		break;
 	case EC_IOC_REG_ENTRY:
 		return reg_entry(arg);
 	case EC_IOC_SDO_UPLOAD:

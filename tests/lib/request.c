@@ -42,6 +42,11 @@ static void nobody(void)
 	CHECK(ecrt_sdo_request_index_complete(NULL, 0) == -EINVAL);
 	CHECK(ecrt_sdo_request_write_with_size(NULL, 1) == -EINVAL);
 	CHECK(ecrt_reg_request_state(NULL) == EC_REQUEST_ERROR);
+	CHECK(!ecrt_master_create_datagram_request(NULL, 1) && errno == EINVAL);
+	CHECK(!ecrt_datagram_request_data(NULL));
+	CHECK(ecrt_datagram_request_send(NULL, EC_DATAGRAM_NOP, 0, 1) == -EINVAL);
+	CHECK(ecrt_datagram_request_state(NULL) == EC_REQUEST_ERROR);
+	CHECK(!ecrt_datagram_request_working_counter(NULL));
 	CHECK(ecrt_slave_config_emerg_size(NULL, 1) == -EINVAL);
 	CHECK(ecrt_slave_config_emerg_pop(NULL, b) == -EINVAL);
 	CHECK(ecrt_slave_config_emerg_clear(NULL) == -EINVAL);
@@ -184,6 +189,40 @@ static void reg(ec_reg_request_t *r)
 	CHECK(!memcmp(ecrt_reg_request_data(r), "ok", 2));
 }
 
+/* @r is of request 3, 2 bytes */
+static void datagram(ec_datagram_request_t *r)
+{
+	struct ec_request_record *rec = fake_request(fake.area, 3);
+	unsigned int calls = fake.calls;
+
+	CHECK(ecrt_datagram_request_state(r) == EC_REQUEST_UNUSED);
+	CHECK(ecrt_datagram_request_send(r, EC_DATAGRAM_BRD, 0, 0) == -EINVAL);
+	CHECK(ecrt_datagram_request_send(r, EC_DATAGRAM_BRD, 0, 3) == -ENOBUFS);
+	CHECK(ecrt_datagram_request_send(r, (ec_datagram_command_t)15, 0, 1) == -EINVAL);
+	CHECK(ecrt_datagram_request_send(r, (ec_datagram_command_t)-1, 0, 1) == -EINVAL);
+	CHECK(!rec->start);
+	memcpy(ecrt_datagram_request_data(r), "ab", 2);
+	CHECK(!ecrt_datagram_request_send(r, EC_DATAGRAM_FRMW, EC_DATAGRAM_STATION(0x1001, 0x910),
+					  2));
+	CHECK(rec->subindex == 14 && rec->vendor_id == 0x09101001 && rec->size == 2);
+	CHECK(rec->op == EC_REQUEST_OP_READWRITE && !rec->flags && !rec->timeout_ms);
+	CHECK(!memcmp(fake.area + rec->data, "ab", 2));
+	CHECK(ecrt_datagram_request_send(r, EC_DATAGRAM_NOP, 0, 2) == -EBUSY);
+	CHECK(rec->subindex == 14 && ecrt_datagram_request_state(r) == EC_REQUEST_BUSY);
+	rec->got_type = 7;
+	CHECK(!ecrt_datagram_request_working_counter(r));
+	done(rec, 0, "xy");
+	CHECK(ecrt_datagram_request_state(r) == EC_REQUEST_SUCCESS);
+	CHECK(ecrt_datagram_request_working_counter(r) == 7);
+	CHECK(!memcmp(ecrt_datagram_request_data(r), "xy", 2));
+	CHECK(!ecrt_datagram_request_send(r, EC_DATAGRAM_APRD, EC_DATAGRAM_POSITION(2, 0x130), 1));
+	CHECK(rec->vendor_id == 0x0130fffe && rec->size == 1);
+	done(rec, -ETIMEDOUT, "");
+	CHECK(ecrt_datagram_request_state(r) == EC_REQUEST_ERROR);
+	CHECK(!ecrt_datagram_request_working_counter(r) && fake.calls == calls);
+	CHECK(EC_DATAGRAM_ALL(0x120) == 0x01200000);
+}
+
 static void emergencies(ec_slave_config_t *sc)
 {
 	struct ec_emerg_ring *r = ring(5);
@@ -215,16 +254,18 @@ void requests(void)
 	ec_reg_request_t *r = ecrt_slave_config_create_reg_request(sc, 2);
 	ec_sdo_request_t *c =
 		ecrt_slave_config_create_sdo_request_complete(sc, 0x1c12, 16);
+	ec_datagram_request_t *d = ecrt_master_create_datagram_request(m, 2);
 	const uint8_t *data = ecrt_sdo_request_data(s);
 	uint8_t b[8];
 
 	nobody();
-	CHECK(s && r && c && ecrt_sdo_request_data_size(s) == 4);
+	CHECK(s && r && c && d && ecrt_sdo_request_data_size(s) == 4);
 	CHECK(data && !EC_READ_U32(data));
 	CHECK(!ecrt_sdo_request_timeout(s, 500));
 	CHECK(ecrt_sdo_request_read(s) == -EINVAL);	/* not active */
 	CHECK(ecrt_sdo_request_cancel(s) == -EINVAL);
 	CHECK(ecrt_reg_request_read(r, 0, 2) == -EINVAL);
+	CHECK(ecrt_datagram_request_send(d, EC_DATAGRAM_BRD, 0, 2) == -EINVAL);
 	CHECK(!ecrt_slave_config_emerg_size(sc, 2));
 	CHECK(ecrt_slave_config_emerg_pop(sc, b) == -ENOENT);
 	CHECK(ecrt_slave_config_emerg_overruns(sc) == 0);
@@ -237,6 +278,7 @@ void requests(void)
 	sdo(m, s);
 	CHECK(ecrt_sdo_request_data(s) == data);
 	reg(r);
+	datagram(d);
 	complete(c);
 	cancel(m, c);
 	emergencies(sc);

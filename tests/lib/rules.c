@@ -171,6 +171,8 @@ static void config_prints(int err)
 	refuse(EC_IOC_SC_REQUEST, -err);
 	EXPECT(1, 0, ecrt_slave_config_create_sdo_request(sc, 1, 1, 1) != NULL);
 	EXPECT(1, 0, ecrt_slave_config_create_reg_request(sc, 1) != NULL);
+	refuse(EC_IOC_DATAGRAM_REQUEST, -err);
+	EXPECT(1, 0, ecrt_master_create_datagram_request(m, 1) != NULL);
 	refuse(EC_IOC_SC_FLAG, -err);
 	EXPECT(1, err, ecrt_slave_config_flag(sc, "a", 1));
 	refuse(EC_IOC_SC_TIMEOUT, -err);

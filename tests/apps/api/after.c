@@ -73,6 +73,7 @@ static void slave(void)
 	IS(errno, EBUSY);
 	errno = 0;
 	YES(!CALL(ecrt_slave_config_create_reg_request)(b.motor, 4));
+	YES(!CALL(ecrt_master_create_datagram_request)(b.m, 4));
 	IS(errno, EBUSY);
 }
 

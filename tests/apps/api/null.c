@@ -176,6 +176,11 @@ static void requests(void)
 	IS(ecrt_reg_request_write(NULL, 1, 1), -EINVAL);
 	IS(ecrt_reg_request_read(NULL, 1, 1), -EINVAL);
 	IS(ecrt_reg_request_readwrite(NULL, 1, 1), -EINVAL);
+	YES(!ecrt_master_create_datagram_request(NULL, 4));
+	YES(!ecrt_datagram_request_data(NULL));
+	IS(ecrt_datagram_request_state(NULL), EC_REQUEST_ERROR);
+	IS(ecrt_datagram_request_send(NULL, EC_DATAGRAM_BRD, 0, 1), -EINVAL);
+	IS(ecrt_datagram_request_working_counter(NULL), 0);
 	IS(ecrt_sdo_request_index_complete(NULL, 1), -EINVAL);
 	IS(ecrt_sdo_request_write_with_size(NULL, 1), -EINVAL);
 	IS(ecrt_soe_request_idn(NULL, 0, 1), -EINVAL);

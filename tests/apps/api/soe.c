@@ -11,6 +11,7 @@ static ec_soe_request_t *soe, *small, *lost;
 static ec_voe_handler_t *voe, *other, *without;
 static ec_sdo_request_t *whole;
 static ec_reg_request_t *reg;
+static ec_datagram_request_t *datagram;
 
 /* of a master that is only open, or reserved */
 static void at_once(void)
@@ -81,7 +82,10 @@ static void before(void)
 	without = CALL(ecrt_slave_config_create_voe_handler)(b.out, 4);
 	whole = CALL(ecrt_slave_config_create_sdo_request_complete)(b.motor, 0x1018, 32);
 	reg = CALL(ecrt_slave_config_create_reg_request)(b.motor, 4);
-	NEED(soe && small && lost && voe && other && without && whole && reg);
+	datagram = CALL(ecrt_master_create_datagram_request)(b.m, 4);
+	NEED(soe && small && lost && voe && other && without && whole && reg && datagram);
+	SAYS(CALL(ecrt_master_create_datagram_request)(b.m, 0) != NULL, 0);
+	SAYS(CALL(ecrt_master_create_datagram_request)(b.m, 1487) != NULL, 0);
 	SAYS(CALL(ecrt_slave_config_create_soe_request)(b.motor, 8, 91, 8) != NULL, 0);
 
 	IS(CALL(ecrt_soe_request_state)(soe), EC_REQUEST_UNUSED);
@@ -277,6 +281,35 @@ static void readwrite(void)
 	SILENT(CALL(ecrt_reg_request_readwrite)(reg, 0x0420, 0), -EINVAL);
 }
 
+static ec_request_state_t datagram_done(ec_datagram_command_t command, uint32_t address)
+{
+	IS(CALL(ecrt_datagram_request_send)(datagram, command, address, 2), 0);
+	SILENT(CALL(ecrt_datagram_request_send)(datagram, command, address, 2), -EBUSY);
+	for (int i = 0; i < WAIT_CYCLES &&
+	     CALL(ecrt_datagram_request_state)(datagram) == EC_REQUEST_BUSY; i++)
+		bench_cycle(&b, 1);
+	return CALL(ecrt_datagram_request_state)(datagram);
+}
+
+/* as the register above, by the ring position */
+static void datagrams(void)
+{
+	uint8_t *data = CALL(ecrt_datagram_request_data)(datagram);
+
+	NEED(b.data);
+	EC_WRITE_U16(data, 3333);
+	IS(datagram_done(EC_DATAGRAM_APRW, EC_DATAGRAM_POSITION(MOTOR, 0x0420)),
+	   EC_REQUEST_SUCCESS);
+	IS(CALL(ecrt_datagram_request_working_counter)(datagram), 3);
+	IS(EC_READ_U16(data), 2222);
+	IS(datagram_done(EC_DATAGRAM_APRD, EC_DATAGRAM_POSITION(MOTOR, 0x0420)),
+	   EC_REQUEST_SUCCESS);
+	IS(CALL(ecrt_datagram_request_working_counter)(datagram), 1);
+	IS(EC_READ_U16(data), 3333);
+	SILENT(CALL(ecrt_datagram_request_send)(datagram, EC_DATAGRAM_BRD, 0, 5), -ENOBUFS);
+	SILENT(CALL(ecrt_datagram_request_send)(datagram, EC_DATAGRAM_BRD, 0, 0), -EINVAL);
+}
+
 static void end(void) { bench_down(&b); }
 
 const struct api_case soe_cases[] = {
@@ -286,6 +319,7 @@ const struct api_case soe_cases[] = {
 	{ "VoE messages", voe_messages },
 	{ "whole objects", whole_objects },
 	{ "registers, written and read", readwrite },
+	{ "datagrams", datagrams },
 	{ "release", end },
 	{ NULL, NULL },
 };

@@ -98,6 +98,7 @@ const struct cmd cmds[] = {
 	CMD(RECEIVE, APP, .cyclic = true),
 	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_ALL),
 	CMD(SC_REQUEST, APP, RSV1(ec_ioc_sc_request)),
+	CMD(DATAGRAM_REQUEST, APP, RSV1(ec_ioc_datagram_request)),
 	CMD(SC_EMERG, APP, RSV1(ec_ioc_sc_emerg)),
 	CMD(SC_OVERLAP, APP, RSV1(ec_ioc_sc_overlap)),
 	CMD(SC_REPLAY, APP, RSV1(ec_ioc_sc_replay),
