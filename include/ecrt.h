@@ -126,6 +126,8 @@
 #define EC_HAVE_REPLAY
 /* ecrt_master_create_datagram_request() and its requests: any EtherCAT command */
 #define EC_HAVE_DATAGRAM_REQUESTS
+/* ecrt_slave_config_command(): commands for every transition */
+#define EC_HAVE_TRANSITION_COMMANDS
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -205,7 +207,7 @@ typedef enum {
 	EC_DATAGRAM_FRMW
 } ec_datagram_command_t;
 
-/* address of a datagram: a register of the slave with a station address, at a ring position, of all */
+/* address of a datagram: a register of one slave, by station address or ring position, or of all */
 #define EC_DATAGRAM_STATION(STATION, REG) ((uint32_t)(REG) << 16 | ((STATION) & 0xffffU))
 #define EC_DATAGRAM_POSITION(POSITION, REG) EC_DATAGRAM_STATION(-(uint32_t)(POSITION), REG)
 #define EC_DATAGRAM_ALL(REG) EC_DATAGRAM_STATION(0U, REG)
@@ -2000,6 +2002,64 @@ EC_PUBLIC_API int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc,
 EC_PUBLIC_API int ecrt_slave_config_idn(ec_slave_config_t *sc,
 		uint8_t drive_no, uint16_t idn, ec_al_state_t state,
 		const uint8_t *data, size_t size);
+
+/* step from one AL state to another */
+typedef enum {
+	EC_STEP_IP = 0x12,	/* INIT to PREOP */
+	EC_STEP_PS = 0x24,	/* PREOP to SAFEOP */
+	EC_STEP_SO = 0x48,	/* SAFEOP to OP */
+	EC_STEP_OS = 0x84,
+	EC_STEP_OP = 0x82,	/* OP to PREOP */
+	EC_STEP_OI = 0x81,
+	EC_STEP_SP = 0x42,
+	EC_STEP_SI = 0x41,
+	EC_STEP_PI = 0x21,
+	EC_STEP_IB = 0x13,	/* INIT to BOOT */
+	EC_STEP_BI = 0x31
+} ec_step_t;
+
+typedef enum {
+	EC_COMMAND_SDO,
+	EC_COMMAND_REG,
+	EC_COMMAND_IDN
+} ec_command_kind_t;
+
+/* what a slave gets before a step, or what must be read then */
+typedef struct {
+	ec_command_kind_t kind;
+	uint16_t index;		/* object, register or IDN */
+	uint8_t subindex;	/* or drive */
+	uint8_t complete;	/* not 0: SDO of the whole object */
+	size_t size;		/* of each value, bytes */
+	const uint8_t *data;	/* value to write, little-endian; NULL: nothing is written */
+	const uint8_t *expect;	/* value to read afterwards; NULL: nothing is read */
+	const uint8_t *mask;	/* bits of it that are compared; NULL: all */
+	uint32_t timeout_ms;	/* until it must be read, at most 60000; 0: one attempt */
+} ec_command_t;
+
+/**
+ * ecrt_slave_config_command() - add a command to a step of a slave
+ * @sc: slave configuration
+ * @step: before the master requests its AL state
+ * @command: what is written, what must be read, or both; copied
+ *
+ * Extension (%EC_HAVE_TRANSITION_COMMANDS), for what an ENI file calls InitCmd. The commands of a
+ * step are executed in the order of the calls, those of PS and SO after the startup SDOs and IDNs,
+ * each time that the slave makes the step. A command that fails on the way up stops the slave in
+ * the state before, and the reason names it; on the way down it is reported and the slave goes
+ * down. There is no mailbox in INIT and BOOT: IP, IB and BI allow registers only. Steps down are
+ * those made while the master is active; after ecrt_master_deactivate() and ecrt_release_master()
+ * the slave has no configuration.
+ *
+ * What the master writes itself is refused: station address, DL and AL control, event mask, FMMUs,
+ * SyncManagers, clocks and SYNC signals, and objects of PDOs, for which ecrt_slave_config_sdo()
+ * exists.
+ *
+ * Context: Process. May sleep. Before activation.
+ * Return: 0; %-EINVAL; %-ENOSPC more than 1024; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_slave_config_command(ec_slave_config_t *sc,
+		ec_step_t step, const ec_command_t *command);
 
 /**
  * ecrt_slave_config_emerg_size() - set the number of emergencies to keep

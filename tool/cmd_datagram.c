@@ -29,8 +29,6 @@ static const struct {
 	{ "ARMW", ONE | RING | READS | WRITES }, { "FRMW", ONE | READS | WRITES },
 };
 
-#define N_COMMANDS	(sizeof(commands) / sizeof(commands[0]))
-
 struct datagram {
 	u8 command;
 	unsigned int flags;
@@ -42,7 +40,7 @@ struct datagram {
 
 static int find_command(const char *text, struct datagram *d)
 {
-	for (d->command = 0; d->command < N_COMMANDS; d->command++)
+	for (d->command = 0; d->command < ARRAY_SIZE(commands); d->command++)
 		if (!strcasecmp(text, commands[d->command].name)) {
 			d->flags = commands[d->command].flags;
 			return 0;
@@ -133,7 +131,7 @@ static int show(const struct dev *dev, const struct datagram *d, uint16_t wkc)
 	return 0;
 }
 
-static int send(const struct tool *t, struct datagram *d)
+static int transfer(const struct tool *t, struct datagram *d)
 {
 	uint16_t wkc = 0;
 	struct dev dev;
@@ -171,7 +169,7 @@ static int run(struct tool *t, int argc, char **argv)
 	if (n > 1)
 		ret = usage_error("unexpected argument '%s'", arg[1]);
 	else
-		ret = get_size(n ? *arg : NULL, &d) || send(t, &d);
+		ret = get_size(n ? *arg : NULL, &d) || transfer(t, &d);
 	free(d.data);
 	return ret;
 }

@@ -124,6 +124,7 @@
 #define EC_IOC_SC_REPLAY	EC_IOC_W(0x57, struct ec_ioc_sc_replay)
 #define EC_IOC_HOLD		EC_IOC_RW(0x58, struct ec_ioc_hold)
 #define EC_IOC_DATAGRAM_REQUEST	EC_IOC_RW(0x59, struct ec_ioc_datagram_request)
+#define EC_IOC_SC_COMMAND	EC_IOC_W(0x5a, struct ec_ioc_sc_command)
 #define EC_IOC_CYCLE		EC_IOC_W(0x60, struct ec_ioc_cycle)
 #define EC_IOC_WAIT		EC_IOC_RW(0x61, struct ec_ioc_wait)
 #define EC_IOC_DIVISION		EC_IOC_W(0x62, struct ec_ioc_division)

@@ -178,6 +178,26 @@ struct ec_ioc_sc_idn {
 	__u64 data;
 };
 
+/* struct ec_ioc_sc_command.flags; without WRITE and CHECK it does nothing and is refused */
+#define EC_COMMAND_FLAG_WRITE	1
+#define EC_COMMAND_FLAG_CHECK	2	/* read until it is as expected */
+#define EC_COMMAND_FLAG_COMPLETE 4	/* SDO: whole object */
+
+/* a command of the application before a transition of a slave is requested */
+struct ec_ioc_sc_command {
+	__u32 flags;
+	__u32 config;		/* in */
+	__u8 from;		/* in: AL state */
+	__u8 to;		/* in: AL state */
+	__u8 kind;		/* in: EC_REQUEST_SDO, EC_REQUEST_REG or EC_REQUEST_SOE */
+	__u8 subindex;		/* in: or drive */
+	__u16 index;		/* in: object, register or IDN */
+	__u16 reserved;
+	__u32 timeout_ms;	/* in: limit of CHECK, at most 60000 */
+	__u32 size;		/* in: of @data, which has the value to write (WRITE), the value */
+	__u64 data;		/* expected and its mask (CHECK), of the same size each */
+};
+
 struct ec_ioc_sc_ip {
 	__u32 flags;
 	__u32 config;		/* in */

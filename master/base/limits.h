@@ -21,6 +21,7 @@
 #define EC_MAX_SC_PDOS		1024	/* PDOs one configuration may hold */
 #define EC_MAX_SC_SDOS		1024	/* startup SDOs of one configuration */
 #define EC_MAX_SC_IDNS		1024	/* startup IDNs of one configuration */
+#define EC_MAX_SC_COMMANDS	1024	/* commands for transitions of one configuration */
 #define EC_MAX_SC_REGS		16	/* startup registers of one configuration */
 #define EC_MAX_SC_FLAGS		64	/* named numbers of one configuration */
 #define EC_MAX_SC_WRITES	512	/* values of the application kept for one configuration, */

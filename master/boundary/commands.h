@@ -106,6 +106,9 @@ CMD(EC_IOC_SC_TIMEOUT, ec_ioc_sc_timeout, F_WRITE, CONFIG(ec_ioc_sc_timeout),
 CMD(EC_IOC_SC_REQUEST, ec_ioc_sc_request, F_WRITE, CONFIG(ec_ioc_sc_request),
 	RSV1(ec_ioc_sc_request))
 CMD(EC_IOC_DATAGRAM_REQUEST, ec_ioc_datagram_request, F_WRITE, IDLE, RSV1(ec_ioc_datagram_request))
+CMD(EC_IOC_SC_COMMAND, ec_ioc_sc_command, F_WRITE, CONFIG(ec_ioc_sc_command),
+	IN(ec_ioc_sc_command, 3 * EC_MAX_SDO_SIZE), RSV1(ec_ioc_sc_command),
+	FLAGS(EC_COMMAND_FLAG_WRITE | EC_COMMAND_FLAG_CHECK | EC_COMMAND_FLAG_COMPLETE))
 CMD(EC_IOC_SC_EMERG, ec_ioc_sc_emerg, F_WRITE, CONFIG(ec_ioc_sc_emerg), RSV1(ec_ioc_sc_emerg))
 CMD(EC_IOC_SC_IP, ec_ioc_sc_ip, F_WRITE, CONFIG(ec_ioc_sc_ip),
 	RSV(FIELD(ec_ioc_sc_ip, params.reserved)))

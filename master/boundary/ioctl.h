@@ -54,6 +54,7 @@ int ec_ioc_wait_pdos(struct ec_call *call, struct ec_slave *slave);
 int ec_ioc_pause(struct ec_call *call);
 void ec_ioc_record(struct ec_call *call, const struct ec_startup *what);
 int ec_ioc_refuse_reserved(struct ec_call *call);
+const char *ec_ioc_runs_bus(u16 address, u32 bytes);
 int ec_ioc_may_write(struct ec_call *call, const struct ec_dg *dg);
 
 int ec_ioc_receive(struct ec_file *f);

@@ -25,11 +25,27 @@ static const struct {
 	{ EC_REG_DC_RECV(0), EC_REG_DC_LATCH0_CTRL - 1, "distributed clock" },
 };
 
-/* Why a datagram may change how the bus runs; NULL: it does not. */
-static const char *write_risk(const struct ec_dg *dg)
+/**
+ * ec_ioc_runs_bus() - find registers that run the bus
+ * @address: first register
+ * @bytes: how many
+ *
+ * Context: Any.
+ * Return: what they are, or NULL: none of them does.
+ */
+const char *ec_ioc_runs_bus(u16 address, u32 bytes)
 {
 	unsigned int i;
 
+	for (i = 0; i < ARRAY_SIZE(runs_bus); i++)
+		if (address <= runs_bus[i].last && address + bytes > runs_bus[i].first)
+			return runs_bus[i].name;
+	return NULL;
+}
+
+/* Why a datagram may change how the bus runs; NULL: it does not. */
+static const char *write_risk(const struct ec_dg *dg)
+{
 	if (!ec_cmd_writes(dg->cmd))
 		return NULL;
 	switch (dg->cmd) {
@@ -42,10 +58,7 @@ static const char *write_risk(const struct ec_dg *dg)
 	case EC_CMD_LRW:
 		return "a logical address";
 	}
-	for (i = 0; i < ARRAY_SIZE(runs_bus); i++)
-		if (dg->ado <= runs_bus[i].last && dg->ado + dg->len > runs_bus[i].first)
-			return runs_bus[i].name;
-	return NULL;
+	return ec_ioc_runs_bus(dg->ado, dg->len);
 }
 
 /**

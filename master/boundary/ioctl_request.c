@@ -16,7 +16,7 @@ static const u32 limits[] = {
 	[EC_REQUEST_SDO_INFO] = EC_MAX_SDO_SIZE,
 };
 
-static int add(struct ec_call *call, u32 config, u32 kind, u32 size, u32 *index)
+static int request_add(struct ec_call *call, u32 config, u32 kind, u32 size, u32 *index)
 {
 	int ret = ec_requests_add(call->session, config, kind, size, index);
 
@@ -37,7 +37,7 @@ int ec_ioc_sc_request(struct ec_call *call)
 	if (i->size > limit)
 		return ec_refuse(call, -EINVAL, "size must be at most %u bytes, not %u", limit,
 				 i->size);
-	return add(call, i->config, i->kind, i->size, &i->index);
+	return request_add(call, i->config, i->kind, i->size, &i->index);
 }
 
 int ec_ioc_datagram_request(struct ec_call *call)
@@ -47,7 +47,7 @@ int ec_ioc_datagram_request(struct ec_call *call)
 	if (!i->size || i->size > EC_MAX_DATAGRAM_SIZE)
 		return ec_refuse(call, -EINVAL, "a datagram has 1 to %u bytes, not %u",
 				 EC_MAX_DATAGRAM_SIZE, i->size);
-	return add(call, EC_UAPI_NONE32, EC_REQUEST_DATAGRAM, i->size, &i->index);
+	return request_add(call, EC_UAPI_NONE32, EC_REQUEST_DATAGRAM, i->size, &i->index);
 }
 
 int ec_ioc_sc_emerg(struct ec_call *call)

@@ -52,11 +52,25 @@ static void in_init(struct ec_slave *s)
 	s->work.clean = !ret;
 }
 
+/*
+ * Commands of the application for a step down. Their failure is reported; the slave goes down
+ * nevertheless. Only of a slave that the master has brought to its state.
+ */
+static void run_down(struct ec_slave *s, u8 to)
+{
+	const struct ec_config *c = ec_setup_of(s)->active_config;
+	u8 from = READ_ONCE(s->al.status) & EC_AL_STATE_MASK;
+
+	if (c && s->work.ours)
+		ec_startup_run(s, c, EC_TRANSITION(from, to));
+}
+
 /* Any state to INIT (ETG.1000.6 clause 6.4.1). */
 static struct ec_result to_init(struct ec_slave *s)
 {
 	int ret;
 
+	run_down(s, EC_AL_INIT);
 	hold_mailbox(s);
 	ec_apply_op_only_off(s);
 	ret = ec_apply_set(s, EC_AL_INIT);
@@ -98,7 +112,9 @@ static void has_left_init(struct ec_slave *s, u8 state)
 /* From INIT to PREOP or BOOT with the mailbox of that state. */
 static struct ec_result leave_init(struct ec_slave *s, u8 state)
 {
+	const struct ec_config *c = ec_setup_of(s)->active_config;
 	bool boot = state == EC_AL_BOOT;
+	struct ec_result r = { 0 };
 	int ret;
 
 	if (boot && !(s->info.boot.rx_size && s->info.boot.tx_size))
@@ -106,6 +122,10 @@ static struct ec_result leave_init(struct ec_slave *s, u8 state)
 				      "BOOT not possible: no bootstrap mailbox in the SII");
 	s->work.ours = false;
 	ec_replay_forget(s);
+	if (c)
+		r = ec_startup_run(s, c, EC_TRANSITION(EC_AL_INIT, state));
+	if (r.err)
+		return ec_apply_report(s, state, r);
 	ret = ec_apply_set_by(s, state, ec_leave_init);
 	/* any AL status code may be due to the event of SM1: try again without */
 	if (ret == -EPROTO && !s->mbox.strict && ec_mbox_present(&s->mbox)) {
@@ -132,8 +152,10 @@ static void back_in_preop(struct ec_slave *s)
 
 static struct ec_result step_down(struct ec_slave *s, u8 want)
 {
-	int ret = ec_apply_op_only_off(s) ?: ec_apply_set(s, want);
+	int ret;
 
+	run_down(s, want);
+	ret = ec_apply_op_only_off(s) ?: ec_apply_set(s, want);
 	/* process data have ended before a slow slave was down: it did not refuse anything */
 	if (ret == -EPROTO && READ_ONCE(s->al.code) == EC_AL_CODE_SM_WATCHDOG)
 		ret = ec_apply_set(s, want);
@@ -192,6 +214,14 @@ static int start_clean(struct ec_slave *s)
 	return 0;
 }
 
+/* The configuration has commands from INIT on. */
+static bool needs_init(const struct ec_slave *s)
+{
+	const struct ec_config *c = ec_setup_of(s)->active_config;
+
+	return c && ec_startup_has(c, EC_TRANSITION_IP);
+}
+
 /* One step towards the requested state. @there: result: it is in that state. */
 static struct ec_result apply_step(struct ec_slave *s, bool *there)
 {
@@ -212,7 +242,7 @@ static struct ec_result apply_step(struct ec_slave *s, bool *there)
 		return r;
 	}
 	anew = READ_ONCE(s->work.reconfigure) && want > EC_AL_PREOP;
-	if (cur == EC_AL_PREOP && s->work.clean && s->work.ours && anew)
+	if (cur == EC_AL_PREOP && s->work.clean && s->work.ours && anew && !needs_init(s))
 		return EC_RESULT(start_clean(s));
 	if (cur != EC_AL_INIT && (!s->work.ours || anew))
 		return to_init(s);

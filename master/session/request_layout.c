@@ -135,7 +135,7 @@ void ec_requests_describe(const struct ec_session *s)
 }
 
 /* Has the request a queue of its own, or one of its kind? */
-static bool apart(u32 kind)
+static bool queue_apart(u32 kind)
 {
 	return kind == EC_REQUEST_VOE || kind == EC_REQUEST_FOE || kind == EC_REQUEST_DATAGRAM;
 }
@@ -146,7 +146,7 @@ static struct ec_lane *lane_of(struct ec_requests *rq, const struct ec_request_s
 {
 	struct ec_lane *lane = spec->config == EC_UAPI_NONE32 ? NULL : &rq->lanes[spec->config];
 
-	if (!apart(spec->kind))
+	if (!queue_apart(spec->kind))
 		return lane;
 	if (spec->kind == EC_REQUEST_VOE)
 		lane->voe = true;
@@ -206,7 +206,7 @@ unsigned int ec_requests_lanes(const struct ec_session *s)
 
 	lockdep_assert_held(s->wanted.lock);
 	for (i = 0; i < s->n_specs; i++)
-		n += apart(s->specs[i].kind);
+		n += queue_apart(s->specs[i].kind);
 	return n;
 }
 

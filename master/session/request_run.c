@@ -101,7 +101,7 @@ static void run_reg(struct ec_request *r, struct ec_slave *s)
 		r->res.err = ec_xfer_fprd(s->bus->links, s->station, r->index, r->buf, r->size);
 }
 
-/* Sent once, as it is: only the application knows what it does. */
+/* Sent once, unchanged: only the application knows what it does. */
 static void run_datagram(struct ec_request *r, struct ec_links *l)
 {
 	struct ec_dg dg = EC_DG(r->sub, r->vendor & 0xffff, r->vendor >> 16, r->size, r->buf);

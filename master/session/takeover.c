@@ -77,6 +77,8 @@ static bool name_command(const struct ec_config *c, const struct ec_startup *u,
 			       u->sub);
 	case EC_STARTUP_IDN:
 		return differs(t, "slave %s, startup IDN 0x%04x", c->name, u->index);
+	case EC_STARTUP_COMMAND:
+		return differs(t, "slave %s, command for a transition, 0x%04x", c->name, u->index);
 	case EC_STARTUP_IP:
 		return differs(t, "slave %s, IP parameters", c->name);
 	default:
@@ -87,7 +89,8 @@ static bool name_command(const struct ec_config *c, const struct ec_startup *u,
 static bool same_command(const struct ec_startup *a, const struct ec_startup *b)
 {
 	return a->type == b->type && a->transition == b->transition && a->index == b->index &&
-	       a->sub == b->sub && a->complete == b->complete && a->size == b->size &&
+	       a->sub == b->sub && a->complete == b->complete && a->kind == b->kind &&
+	       a->how == b->how && a->timeout_ms == b->timeout_ms && a->size == b->size &&
 	       !memcmp(a->data, b->data, a->size);
 }
 

@@ -241,7 +241,7 @@ static void datagram_request_no_link(struct kunit *test)
 	while (ecrt_datagram_request_state(r) == EC_REQUEST_BUSY) {
 		ecrt_master_receive(k->m);
 		ecrt_master_send(k->m);
-		msleep(1);
+		usleep_range(1000, 1100);
 	}
 	ecrt_release_master(k->m);
 }

@@ -422,6 +422,11 @@ static void takeover_refused(struct kunit *test)
 	struct ec_ioc_cycle cfg = hold, none = { .cpu = -1 };
 	struct ec_ioc_sc_watchdog wd = { .intervals = 7 };
 	struct ec_ioc_sc_dc dc = { .assign_activate = 0x300, .cycle0 = 1000000 };
+	struct ec_ioc_sc_command command = {
+		.flags = EC_COMMAND_FLAG_WRITE, .config = 1, .from = EC_AL_OP, .to = EC_AL_SAFEOP,
+		.kind = EC_REQUEST_REG, .index = 0x0f80, .size = 1, .data = (uintptr_t)"",
+	};
+	struct ec_ioc_datagram_request datagram = { .size = 4 };
 	struct ec_ioc_sc_request rq = { .config = 1, .kind = EC_REQUEST_REG, .size = 4 };
 	struct ec_ioc_sc_emerg em = { .config = 1, .count = 4 };
 	struct ec_ioc_sc_flag flag = { .key = "Key", .value = 1 };
@@ -469,6 +474,12 @@ static void takeover_refused(struct kunit *test)
 	bus_unlock(b);
 	KUNIT_ASSERT_EQ(test, ret, 0);
 	refused(b, "slave 0:1, startup SDO 0x8000:01");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_SC_COMMAND, &command), 0);
+	refused(b, "slave 0:1, command for a transition, 0x0f80");
+	kcyc_configure(b, hold);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DATAGRAM_REQUEST, &datagram), 0);
+	refused(b, "requests");
 	KUNIT_EXPECT_TRUE(test, plant_in_op(b));
 	KUNIT_EXPECT_EQ(test, bus_lost(b), lost);
 	/* and the same one still may */

@@ -306,6 +306,10 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 		((struct ec_ioc_domain_fmmu *)arg)->dir =
 			(__u8)(1 + ((struct ec_ioc_domain_fmmu *)arg)->fmmu);
 		break;
+	case EC_IOC_SC_COMMAND:
+		memcpy(fake.values, (void *)(uintptr_t)((struct ec_ioc_sc_command *)arg)->data,
+		       ((struct ec_ioc_sc_command *)arg)->size);
+		break;
 	case EC_IOC_SC_PDO:
 		pdo_op(arg);
 		break;

@@ -47,6 +47,7 @@ struct fake {
 	int no_advice;		/* errno that it returns */
 	int received;		/* by ioctl() */
 	int admitted;		/* likewise a send */
+	__u8 values[64];	/* of the last command for a transition */
 	void (*beside)(void);	/* what another thread does during a send, once */
 	unsigned int answer;	/* bytes of SDO information; 0: all */
 	unsigned int large;	/* bytes of memory for the first request, behind the others */

@@ -274,7 +274,7 @@ static int reg_rdwr(struct ec_ioc_reg *x)
 }
 
 /* three slaves whose registers count up from 0x40 */
-static int datagram(struct ec_ioc_datagram *x)
+static int any_command(struct ec_ioc_datagram *x)
 {
 	static const __u8 per_slave[] = { 0, 0, 0, 0, 0, 0, 0, 1, 1, 3, 0, 0, 0, 1, 1 };
 	static const __u8 single[] = { 0, 1, 1, 3, 1, 1, 3 };
@@ -478,7 +478,7 @@ int fake_slave_command(unsigned long request, void *arg)
 	case EC_IOC_REG_RDWR:
 		return reg_rdwr(arg);
 	case EC_IOC_DATAGRAM:
-		return datagram(arg);
+		return any_command(arg);
 	case EC_IOC_STATE:
 		return request_state(arg);
 	default:

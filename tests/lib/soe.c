@@ -76,6 +76,50 @@ static void at_once(ec_master_t *m)
 	fake.refuse = 0;
 }
 
+/* The values are behind one another. */
+static void command(ec_slave_config_t *sc)
+{
+	const struct ec_ioc_sc_command *arg = (void *)fake.arg;
+	const uint8_t data[] = { 1, 2 }, expect[] = { 3, 4 }, mask[] = { 5, 6 };
+	ec_command_t c = {
+		.kind = EC_COMMAND_IDN, .index = 0x8096, .subindex = 3, .size = 2, .data = data,
+	};
+	unsigned int calls;
+
+	CHECK(!ecrt_slave_config_command(sc, EC_STEP_SO, &c));
+	CHECK(arg->config == 5 && arg->from == 4 && arg->to == 8 && arg->kind == EC_REQUEST_SOE);
+	CHECK(arg->index == 0x8096 && arg->subindex == 3 && arg->size == 2);
+	CHECK(arg->flags == EC_COMMAND_FLAG_WRITE && !memcmp(fake.values, "\1\2", 2));
+	c.expect = expect;
+	c.kind = EC_COMMAND_SDO;
+	c.complete = 1;
+	c.timeout_ms = 70;
+	CHECK(!ecrt_slave_config_command(sc, EC_STEP_PI, &c));
+	CHECK(arg->flags == 7 && arg->size == 6 && arg->timeout_ms == 70 && !arg->kind);
+	CHECK(arg->from == 2 && arg->to == 1 && !memcmp(fake.values, "\1\2\3\4\xff\xff", 6));
+	c.data = NULL;
+	c.complete = 0;
+	c.mask = mask;
+	c.kind = EC_COMMAND_REG;
+	CHECK(!ecrt_slave_config_command(sc, EC_STEP_IB, &c));
+	CHECK(arg->flags == EC_COMMAND_FLAG_CHECK && arg->size == 4 && arg->to == 3);
+	CHECK(arg->kind == EC_REQUEST_REG && !memcmp(fake.values, "\3\4\5\6", 4));
+	calls = fake.calls;
+	c.expect = NULL;
+	CHECK(ecrt_slave_config_command(sc, EC_STEP_IB, &c) == -EINVAL);
+	c.data = data;
+	c.size = 0;
+	CHECK(ecrt_slave_config_command(sc, EC_STEP_IB, &c) == -EINVAL);
+	c.size = 0x10001;
+	CHECK(ecrt_slave_config_command(sc, EC_STEP_IB, &c) == -EINVAL);
+	c.size = 2;
+	c.kind = (ec_command_kind_t)3;
+	CHECK(ecrt_slave_config_command(sc, EC_STEP_IB, &c) == -EINVAL);
+	CHECK(ecrt_slave_config_command(sc, EC_STEP_IB, NULL) == -EINVAL);
+	CHECK(ecrt_slave_config_command(NULL, EC_STEP_IB, &c) == -EINVAL);
+	CHECK(fake.calls == calls);
+}
+
 static void at_startup(ec_slave_config_t *sc)
 {
 	const struct ec_ioc_sc_idn *arg = (void *)fake.arg;
@@ -191,6 +235,7 @@ void idns_and_vendor_messages(void)
 	CHECK(ecrt_soe_request_read(s) == -EINVAL);	/* not active */
 	CHECK(ecrt_voe_handler_read(v) == -EINVAL);
 	at_once(m);
+	command(sc);
 	at_startup(sc);
 	CHECK(!ecrt_master_activate(m));
 	soe(s);

@@ -56,6 +56,9 @@ static void slave(void)
 	SAYS(CALL(ecrt_slave_config_sdo16)(b.motor, 0x2001, 7, 1), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_sdo32)(b.motor, 0x2001, 8, 1), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_complete_sdo)(b.motor, 0x2001, data, 2), -EBUSY);
+	SAYS(CALL(ecrt_slave_config_command)(b.motor, EC_STEP_PS,
+		&(ec_command_t){ .kind = EC_COMMAND_SDO, .index = 0x2001, .subindex = 6,
+				 .size = 1, .data = data }), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_emerg_size)(b.motor, 4), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_flag)(b.motor, "AssignToPdi", 1), -EBUSY);
 	SAYS(CALL(ecrt_slave_config_state_timeout)(b.motor, EC_AL_STATE_PREOP, EC_AL_STATE_SAFEOP, 1),

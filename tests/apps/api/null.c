@@ -176,6 +176,7 @@ static void requests(void)
 	IS(ecrt_reg_request_write(NULL, 1, 1), -EINVAL);
 	IS(ecrt_reg_request_read(NULL, 1, 1), -EINVAL);
 	IS(ecrt_reg_request_readwrite(NULL, 1, 1), -EINVAL);
+	IS(ecrt_slave_config_command(NULL, EC_STEP_PS, NULL), -EINVAL);
 	YES(!ecrt_master_create_datagram_request(NULL, 4));
 	YES(!ecrt_datagram_request_data(NULL));
 	IS(ecrt_datagram_request_state(NULL), EC_REQUEST_ERROR);

@@ -99,6 +99,8 @@ const struct cmd cmds[] = {
 	CMD(SEND, APP, RSV1(ec_ioc_send), .cyclic = true, .flags = EC_SEND_FLAG_ALL),
 	CMD(SC_REQUEST, APP, RSV1(ec_ioc_sc_request)),
 	CMD(DATAGRAM_REQUEST, APP, RSV1(ec_ioc_datagram_request)),
+	CMD(SC_COMMAND, APP, RSV1(ec_ioc_sc_command), DATA(ec_ioc_sc_command),
+	    .flags = EC_COMMAND_FLAG_WRITE | EC_COMMAND_FLAG_CHECK | EC_COMMAND_FLAG_COMPLETE),
 	CMD(SC_EMERG, APP, RSV1(ec_ioc_sc_emerg)),
 	CMD(SC_OVERLAP, APP, RSV1(ec_ioc_sc_overlap)),
 	CMD(SC_REPLAY, APP, RSV1(ec_ioc_sc_replay),
