@@ -531,7 +531,7 @@ static void maybe_scan(struct watch *w)
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
 		return;
-	if (READ_ONCE(m->bus.rescan))
+	if (READ_ONCE(m->bus.rescan) || xchg(&m->bus.renew, false))
 		scan_next(w);
 	if (w->scanned || (w->same < STABLE_LOOKS &&
 			   !(w->moving_ns && ktime_get_ns() - w->moving_ns >= MOVING_NS)))

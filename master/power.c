@@ -353,6 +353,14 @@ static bool file_written(struct ec_master *m)
 	return true;
 }
 
+static bool eeprom_written(struct ec_master *m)
+{
+	if (!atomic_read(&m->bus.writes))
+		return false;
+	ec_warn(m, "suspend refused: the EEPROM of a slave is being written; wait for its end\n");
+	return true;
+}
+
 static void resume(struct ec_master *m)
 {
 	WRITE_ONCE(m->pause, false);
@@ -367,7 +375,8 @@ static int put_to_sleep(struct ec_master *m)
 		return -EBUSY;
 	}
 	/* a slave that is slow is no reason to refuse: all of them are read again */
-	if (file_written(m) || in_boot(m) || ec_bus_wait_scan(&m->bus) == -EINTR) {
+	if (file_written(m) || eeprom_written(m) || in_boot(m) ||
+	    ec_bus_wait_scan(&m->bus) == -EINTR) {
 		ec_sessions_resume(&m->sessions);
 		return -EBUSY;
 	}

@@ -4,7 +4,9 @@
 
 #include "../master/wire/sii.h"
 #include "dev.h"
+#include "io.h"
 #include "out.h"
+#include "sii_decode.h"
 #include "sii_image.h"
 
 static const char *category_name(unsigned int type)
@@ -71,6 +73,10 @@ static void decoded(const u8 *img, size_t size)
 
 static void show(const struct tool *t, const u8 *img, size_t size)
 {
+	if (t->decode || (t->file && t->verbosity <= 0)) {
+		sii_decode(img, size);
+		return;
+	}
 	if (t->verbosity <= 0) {
 		out_binary("data_hex", img, size);
 		return;
@@ -82,6 +88,21 @@ static void show(const struct tool *t, const u8 *img, size_t size)
 		categories(img, size);
 }
 
+static int saved(const struct tool *t)
+{
+	size_t size;
+	u8 *img;
+
+	if (t->positions.given || t->aliases.given)
+		return usage_error("--file needs no slave: leave out --position and --alias");
+	if (io_read(t->file, &img, &size))
+		return 1;
+	out_u("size_bytes", size, NULL);
+	show(t, img, size);
+	free(img);
+	return 0;
+}
+
 static int run(struct tool *t, int argc, char **argv)
 {
 	struct ect_slave s;
@@ -91,7 +112,9 @@ static int run(struct tool *t, int argc, char **argv)
 	int ret;
 
 	(void)argc, (void)argv;
-	if (t->verbosity <= 0 &&
+	if (t->file)
+		return saved(t);
+	if (t->verbosity <= 0 && !t->decode &&
 	    out_binary_allowed("use --verbose, --json, or a file: ethercat sii_read -p0 > FILE"))
 		return 1;
 	if (dev_open_single(&d, t, false))
@@ -116,13 +139,21 @@ const struct cmd cmd_sii_read = {
 	.name = "sii_read",
 	.run = run,
 	.args = "",
-	.opts = "mapv",
+	.opts = "mapvix",
 	.summary = "Write the EEPROM image of a slave to stdout",
 	.help = "Binary, as read by the last bus scan, not to a terminal:\n"
 		"ethercat sii_read -p2 > backup.bin\n"
-		"--verbose prints hex bytes for each category.\n",
+		"--verbose prints hex bytes for each category, --decode what they mean. With --file it is\n"
+		"the image of a file that is decoded, without a master.\n",
 	.json = "master, position, size_bytes, data_hex; with --verbose instead of data_hex:\n"
 		"fixed_area_hex, checksum_ok, alias, vendor_id, product_code, revision_number,\n"
-		"serial_number, categories[] (type, name, size_words, data_hex), complete",
+		"serial_number, categories[] (type, name, size_words, data_hex), complete;\n"
+		"with --decode or --file: vendor_id, product_code, revision_number, serial_number, alias,\n"
+		"checksum_ok, checksum, pdi_control, pdi_config, pdi_config_2, sync_impulse_ns, mailbox and\n"
+		"bootstrap_mailbox (rx_offset, rx_size, tx_offset, tx_size), protocols, declared_bytes, group,\n"
+		"order_number, name, coe_details, general_flags, current_ma, port_types, sync_managers[]\n"
+		"(index, start, size_bytes, control, enable, type), pdos[] (kind, index, name, sync_manager,\n"
+		"entries[]: index, subindex, size_bits, type, name), dc_modes[] (name, assign_activate,\n"
+		"sync0_cycle_ns, sync0_factor, sync0_shift_ns, sync1_factor, sync1_shift_ns), complete",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 };

@@ -33,6 +33,11 @@ const struct opt opts[] = {
 	{ 'R', "retry", NULL, "try at once what waits" },
 	{ 'N', "let-in", "PORT", "let the device behind a closed port in" },
 	{ 'E', "tree", NULL, "tree of text" },
+	{ 'U', "allow-unreachable", NULL, "write an EEPROM also if the slave may be unreachable then" },
+	{ 'K', "repair-checksum", NULL, "correct the checksum of an EEPROM" },
+	{ 'D', "dry-run", NULL, "check only, change nothing" },
+	{ 'i', "file", "FILE", "EEPROM image of a file instead of a slave; - for stdin" },
+	{ 'x', "decode", NULL, "what the bytes mean" },
 	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
@@ -65,6 +70,11 @@ static const struct option longs[] = {
 	{ "retry", no_argument, NULL, 'R' },
 	{ "let-in", required_argument, NULL, 'N' },
 	{ "tree", no_argument, NULL, 'E' },
+	{ "allow-unreachable", no_argument, NULL, 'U' },
+	{ "repair-checksum", no_argument, NULL, 'K' },
+	{ "dry-run", no_argument, NULL, 'D' },
+	{ "file", required_argument, NULL, 'i' },
+	{ "decode", no_argument, NULL, 'x' },
 	{ "follow", no_argument, NULL, 'F' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
@@ -249,6 +259,21 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'F':
 		t->follow = true;
+		return 0;
+	case 'U':
+		t->unsafe = true;
+		return 0;
+	case 'K':
+		t->repair = true;
+		return 0;
+	case 'D':
+		t->dry_run = true;
+		return 0;
+	case 'i':
+		t->file = optarg;
+		return 0;
+	case 'x':
+		t->decode = true;
 		return 0;
 	case 'R':
 		t->retry = true;

@@ -49,6 +49,11 @@
  * @tree: --tree
  * @watch_s: argument of --watch in seconds, 0: not given
  * @follow: --follow
+ * @unsafe: --allow-unreachable
+ * @repair: --repair-checksum
+ * @dry_run: --dry-run
+ * @file: --file, NULL when not given
+ * @decode: --decode
  */
 struct tool {
 	struct list masters;
@@ -78,6 +83,11 @@ struct tool {
 	bool tree;
 	double watch_s;
 	bool follow;
+	bool unsafe;
+	bool repair;
+	bool dry_run;
+	const char *file;
+	bool decode;
 };
 
 /**

@@ -38,6 +38,7 @@ struct ec_esc;
  * @features: register 0x0008, EC_FEAT_*
  * @eeprom_8byte: reads 8 bytes per EEPROM access, else 4
  * @eeprom_emulated: the PDI answers EEPROM commands (0x0502 bit 5)
+ * @alias_reload: the reload command sets 0x0012 as well
  * @eeprom_busy_ns: time of a read access of 8 bytes; 4 bytes take half
  * @eeprom_write_ns: time of a write access
  * @eeprom: initial content, copied; may be NULL (all 0xff)
@@ -68,6 +69,7 @@ struct ec_esc_config {
 	u16 features;
 	bool eeprom_8byte;
 	bool eeprom_emulated;
+	bool alias_reload;
 	u32 eeprom_busy_ns;
 	u32 eeprom_write_ns;
 	const u8 *eeprom;

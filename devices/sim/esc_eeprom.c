@@ -50,7 +50,8 @@ void ec_esc_eeprom_load(struct ec_esc *esc, bool power_on)
 	memcpy(m + EC_REG_PDI_CONFIG, d + 2, 2);
 	memcpy(m + EC_REG_DC_PULSE, d + 4, 2);
 	memcpy(m + EC_REG_PDI_CONFIG + 2, d + 6, 2);
-	if (!e->alias_loaded) {		/* not again by a reload */
+	/* many controllers do not take it by a reload */
+	if (!e->alias_loaded || esc->cfg.alias_reload) {
 		memcpy(m + EC_REG_ALIAS, d + 8, 2);
 		e->alias_loaded = true;
 		ec_sim_rehash(esc);
@@ -86,7 +87,7 @@ void ec_esc_eeprom_answer(struct ec_esc *esc, u8 control)
 	esc->al_event &= (u32)~EC_AL_EVENT_EEPROM;
 }
 
-static void finish(struct ec_esc *esc)
+static void finish(struct ec_esc *esc, u64 now)
 {
 	struct ec_esc_eeprom *e = &esc->eep;
 	size_t at = (size_t)(e->addr & 0x3ffff) * 2, n, i;
@@ -116,6 +117,11 @@ static void finish(struct ec_esc *esc)
 		break;
 	case EC_EEP_CMD_RELOAD:
 		ec_esc_eeprom_load(esc, false);
+		/* an application that starts now reads what was asked for before */
+		if (e->loaded && esc->al_unread) {
+			esc->pend.al_control = true;
+			ec_esc_pend(esc, now);
+		}
 		break;
 	}
 }
@@ -127,7 +133,7 @@ void ec_esc_eeprom_refresh(struct ec_esc *esc, u64 now)
 	u16 v;
 
 	if (e->cmd && now >= e->busy_until && !esc->fault.eeprom_busy) {
-		finish(esc);
+		finish(esc, now);
 		e->cmd = 0;
 		e->busy_until = EC_ESC_NEVER;
 	}
@@ -145,6 +151,24 @@ void ec_esc_eeprom_refresh(struct ec_esc *esc, u64 now)
 	    !ec_esc_bug(esc, EC_SIM_BUG_EEP_NEVER_BUSY))
 		v |= (u16)(EC_EEP_BUSY | e->cmd);
 	put_unaligned_le16(v, esc->mem + EC_REG_EEP_CONTROL);
+}
+
+/*
+ * Power is lost: of a word that is being written, the chip has erased some bits and has not set all
+ * of them. Which, depends on when it happens.
+ */
+void ec_esc_eeprom_power_off(struct ec_esc *esc, u64 now)
+{
+	struct ec_esc_eeprom *e = &esc->eep;
+	size_t at = (size_t)(e->addr & 0x3ffff) * 2;
+	u16 bits;
+
+	ec_esc_eeprom_refresh(esc, now);
+	if (e->cmd != EC_EEP_CMD_WRITE || esc->cfg.eeprom_emulated || at + 2 > e->len)
+		return;
+	bits = (u16)((e->busy_until - now) * 0x9e3779b1u >> 16);
+	if (bits & 3)		/* else it has not begun */
+		put_unaligned_le16(e->wdata | (bits & 4 ? 0xffff : bits), e->data + at);
 }
 
 static u64 duration(const struct ec_esc *esc, u16 cmd)

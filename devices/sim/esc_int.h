@@ -263,6 +263,7 @@ int ec_esc_fmmu_access(struct ec_esc *esc, struct ec_dgram *d,
 
 /* esc_eeprom.c */
 void ec_esc_eeprom_load(struct ec_esc *esc, bool power_on);
+void ec_esc_eeprom_power_off(struct ec_esc *esc, u64 now);
 void ec_esc_eeprom_refresh(struct ec_esc *esc, u64 now);
 void ec_esc_eeprom_write(struct ec_esc *esc, u16 ado, const u8 *buf,
 			 size_t len, const struct ec_frame_ctx *ctx);

@@ -148,6 +148,7 @@ void ec_sim_power(struct ec_esc *esc, bool on, u64 now)
 	if (on) {
 		ec_esc_power_on(esc, now);
 	} else {
+		ec_esc_eeprom_power_off(esc, now);
 		esc->ecat_event = 0;
 		ec_esc_event(esc, 0, 0);
 		esc->wd_due = EC_ESC_NEVER;

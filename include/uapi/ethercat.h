@@ -93,6 +93,8 @@
 #define EC_IOC_END_DETACHED	EC_IOC_N(0x2b)
 #define EC_IOC_DEVICE_USE	EC_IOC_W(0x2c, struct ec_ioc_device_use)
 #define EC_IOC_FOE_READ		EC_IOC_RW(0x2d, struct ec_ioc_foe)
+#define EC_IOC_SII_WRITE	EC_IOC_RW(0x3a, struct ec_ioc_sii_write)
+#define EC_IOC_ALIAS		EC_IOC_RW(0x3b, struct ec_ioc_alias)
 #define EC_IOC_FOE_WRITE	EC_IOC_RW(0x2e, struct ec_ioc_foe)
 
 /* reserved by this open file: the application */

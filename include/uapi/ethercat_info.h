@@ -325,6 +325,39 @@ struct ec_ioc_sii {
 	__u64 data;
 };
 
+/* struct ec_ioc_sii_write.flags and ec_ioc_alias.flags */
+#define EC_SII_FLAG_FORCE	1	/* while the slave runs; image of another device */
+#define EC_SII_FLAG_UNSAFE	2	/* an image that may make the slave unreachable */
+#define EC_SII_FLAG_REPAIR	4	/* alias: the checksum may be wrong before */
+#define EC_SII_FLAG_DRY_RUN	8	/* check and compare, write nothing */
+
+/*
+ * The EEPROM from word 0 on: only words that differ are written, words 0 to 7 at last, and all are
+ * read back. When it is interrupted, the same command continues.
+ */
+struct ec_ioc_sii_write {
+	__u32 flags;		/* in: FORCE, UNSAFE, DRY_RUN */
+	__u32 size;		/* in, bytes, even */
+	struct ec_ioc_address slave;	/* in */
+	__u64 data;		/* in */
+	__u64 done;		/* in: address of a __u64 for the words done so far, or 0 */
+	__u32 differ;		/* out: words that differed */
+	__u32 written;		/* out: words written; fewer after -EIO */
+	__u16 register_alias;	/* out: register 0x0012: not word 4 before a power cycle */
+	__u8 renewed;		/* out: the master has read the slave again */
+	__u8 reserved[5];
+};
+
+/* words 4 and 7 of the EEPROM */
+struct ec_ioc_alias {
+	__u32 flags;		/* in: FORCE, REPAIR */
+	__u16 alias;		/* in; 0: none */
+	__u16 register_alias;	/* out: register 0x0012 */
+	struct ec_ioc_address slave;	/* in */
+	__u8 renewed;		/* out */
+	__u8 reserved[7];
+};
+
 struct ec_ioc_reg {
 	__u32 flags;
 	__u16 address;		/* in */

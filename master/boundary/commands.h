@@ -71,6 +71,11 @@ CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
 	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV2(ec_ioc_soe))
 CMD(EC_IOC_FOE_READ, ec_ioc_foe_read, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
 CMD(EC_IOC_FOE_WRITE, ec_ioc_foe_write, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
+CMD(EC_IOC_SII_WRITE, ec_ioc_sii_write, F_WRITE, SLAVE(ec_ioc_sii_write),
+	IN(ec_ioc_sii_write, EC_MAX_SII_BYTES), RSV1(ec_ioc_sii_write),
+	FLAGS(EC_SII_FLAG_FORCE | EC_SII_FLAG_UNSAFE | EC_SII_FLAG_DRY_RUN))
+CMD(EC_IOC_ALIAS, ec_ioc_alias, F_WRITE, SLAVE(ec_ioc_alias), RSV1(ec_ioc_alias),
+	FLAGS(EC_SII_FLAG_FORCE | EC_SII_FLAG_REPAIR))
 CMD(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state))
 CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
 	RSV(FIELD(ec_ioc_ip, params.reserved), FIELD(ec_ioc_ip, reserved)))

@@ -138,6 +138,10 @@ int ec_ioc_rescan(struct ec_call *call)
 	if (ec_bus_scan_awaited(&m->bus))
 		return ec_refuse(call, -EBUSY,
 				 "another program waits until scans have ended and slaves have settled; try again later");
+	/* slaves would get other addresses meanwhile */
+	if (atomic_read(&m->bus.writes))
+		return ec_refuse(call, -EBUSY,
+				 "the EEPROM of a slave is being written; try again later");
 	ec_ports_retry(&m->bus);
 	ec_bus_rescan(&m->bus);
 	return 0;

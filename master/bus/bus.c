@@ -24,6 +24,7 @@ int ec_bus_init(struct ec_bus *bus, struct ec_base *base, struct ec_links *links
 	bus->ops = ops;
 	init_rwsem(&bus->topo);
 	spin_lock_init(&bus->scan_lock);
+	mutex_init(&bus->begun_lock);
 	init_waitqueue_head(&bus->settled);
 	ec_known_init(&bus->known);
 	ec_border_init(&bus->border);

@@ -6,6 +6,7 @@
 #ifndef EC_MASTER_BUS_H
 #define EC_MASTER_BUS_H
 
+#include <linux/mutex.h>
 #include <linux/rwsem.h>
 #include <linux/spinlock.h>
 #include <linux/wait.h>
@@ -15,6 +16,8 @@
 #include "line_watch.h"
 #include "workers.h"
 
+#define EC_MAX_BEGUN	16	/* interrupted changes of an alias that are remembered */
+#define EC_BEGUN_BYTES	24	/* checksum and identity */
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the present list of slaves is used */
 
 struct ec_bus;
@@ -79,6 +82,16 @@ struct ec_bus {
 	bool rescan;
 	/** @looked: the bus was scanned, or there is no link, since the device was attached */
 	bool looked;
+	/** @renew: a slave is to be read again, as its EEPROM was written */
+	bool renew;
+	/** @writes: EEPROMs that are being written: no user asks for a scan meanwhile */
+	atomic_t writes;
+	/** @begun_lock: protects @begun and @next_begun */
+	struct mutex begun_lock;
+	/** @begun: words 0 to 11 of EEPROMs whose change of the alias was interrupted */
+	u8 begun[EC_MAX_BEGUN][EC_BEGUN_BYTES];
+	/** @next_begun: entry of @begun that is used next */
+	unsigned int next_begun;
 	/** @down: the computer reboots: no slave is brought beyond PREOP any more */
 	bool down;
 	/** @guarded: process data run: ports behind which nothing is known are closed */

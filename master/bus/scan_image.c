@@ -39,6 +39,7 @@ static void image_finish(struct reader *r)
 	ec_scan_image_done(r);
 	swap(s->eeprom.data, s->eeprom.part);
 	swap(s->eeprom.bytes, s->eeprom.part_bytes);
+	s->work.renew = false;
 }
 
 /**
@@ -331,6 +332,8 @@ void ec_scan_image_begin(struct reader *r, struct ec_slave *s)
 {
 	r->slave = s;
 	r->need = FIRST_BYTES;
+	/* the image of an equal device says nothing of what was written */
+	r->looked = s->work.renew;
 	r->len = sizeof(r->reg);
 	r->began = s->eeprom.part_bytes;
 	if (s->eeprom.part)

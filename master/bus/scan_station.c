@@ -147,11 +147,16 @@ static bool owns_station(const struct scan *sc, unsigned int i, const struct ec_
 	       !same_state(sc, front ? sc->n - (sc->bus->n_slaves - s->position) : s->position, s);
 }
 
-/* A slave that failed in a scan is read again, an attached one that refused a state is not. */
+/*
+ * A slave that failed in a scan is read again, an attached one that refused a state is not. One
+ * whose EEPROM was written is, but not while it runs.
+ */
 static bool is_usable(const struct ec_slave *s)
 {
 	u8 error = READ_ONCE(s->note.error);
 
+	if (READ_ONCE(s->work.renew) && !(READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP))
+		return false;
 	return s->eeprom.data && (!error || READ_ONCE(s->reply.silent) ||
 				  (error == EC_SLAVE_CONFIG_FAILED && s->bus->ops &&
 				   s->bus->ops->attached && s->bus->ops->attached(s)));
@@ -298,6 +303,9 @@ static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 	if (known && sc->regs[i].there && sc->claims[old] == 1) {
 		scan_station_take_part(s, known);
 		s->found = known->eeprom.data ? known->found : 0;
+		s->work.renew = READ_ONCE(known->work.renew);
+		if (s->work.renew)
+			s->device = known->device;
 	}
 	sc->regs[i].was = sc->regs[i].there ? old : 0;
 	put_unaligned_le16(station, sc->regs[i].station);

@@ -174,6 +174,8 @@ struct ec_slave_work {
 	bool clean;
 	/** @ours: this master has brought it from INIT to PREOP or BOOT, not an earlier one */
 	bool ours;
+	/** @renew: its EEPROM was written: the next scan reads it as if it were new */
+	bool renew;
 };
 
 /** struct ec_slave - one slave. What is not a part with an owner is fixed after the scan */

@@ -297,7 +297,7 @@ static struct ec_ioc_address *address_of(unsigned long request, void *arg)
 		EC_IOC_REG_RDWR, EC_IOC_STATE, EC_IOC_SDO_UPLOAD, EC_IOC_SDO_DOWNLOAD,
 		EC_IOC_SDO_INFO, EC_IOC_SOE_READ, EC_IOC_SOE_WRITE, EC_IOC_FOE_READ,
 		EC_IOC_FOE_WRITE, EC_IOC_IP_GET, EC_IOC_IP_SET, EC_IOC_EMERGENCIES,
-		EC_IOC_LET_IN,
+		EC_IOC_LET_IN, EC_IOC_SII_WRITE, EC_IOC_ALIAS,
 	};
 
 	_Static_assert(offsetof(struct ec_ioc_slave, slave) == offsetof(struct ec_ioc_foe, slave),

@@ -335,6 +335,31 @@ static int sii(struct ec_ioc_sii *x)
 	return 0;
 }
 
+/* FAKE_REFUSE: neither; FAKE_RUNS: the slave is in OP; FAKE_RELOAD: it sets its register */
+static int sii_write(struct ec_ioc_sii_write *x)
+{
+	const __u8 *data = (const __u8 *)(uintptr_t)x->data;
+
+	if (getenv("FAKE_REFUSE"))
+		return fake_fail(EBADMSG, "EEPROM of slave 2: the image moves the mailboxes");
+	fake_record("sii_write %u: %u bytes, checksum 0x%02x, flags 0x%x\n", x->slave.position,
+		    x->size, x->size > 14 ? data[14] : 0, x->flags);
+	x->differ = 3;
+	x->written = x->flags & EC_SII_FLAG_DRY_RUN ? 0 : 3;
+	x->renewed = !getenv("FAKE_RUNS");
+	return 0;
+}
+
+static int alias(struct ec_ioc_alias *x)
+{
+	if (getenv("FAKE_REFUSE"))
+		return fake_fail(EBUSY, "EEPROM of slave 2: the slave is in OP");
+	fake_record("alias %u: %u, flags 0x%x\n", x->slave.position, x->alias, x->flags);
+	x->register_alias = getenv("FAKE_RELOAD") ? x->alias : 0;
+	x->renewed = !getenv("FAKE_RUNS");
+	return 0;
+}
+
 static int names(struct ec_ioc_slave_names *x)
 {
 	struct fake_slave s;
@@ -471,6 +496,10 @@ int fake_slave_command(unsigned long request, void *arg)
 		return entry(arg);
 	case EC_IOC_SII:
 		return sii(arg);
+	case EC_IOC_SII_WRITE:
+		return sii_write(arg);
+	case EC_IOC_ALIAS:
+		return alias(arg);
 	case EC_IOC_REG_READ:
 		return reg_read(arg);
 	case EC_IOC_REG_WRITE:

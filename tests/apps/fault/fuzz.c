@@ -95,6 +95,12 @@ static void fill(struct worker *w, const struct cmd *c, unsigned char *arg, size
 	memcpy(arg, &n, size < 4 ? size : 4);
 	if (c->nr == EC_IOC_FOE_READ || c->nr == EC_IOC_FOE_WRITE)
 		fill_file(w, (struct ec_ioc_foe *)arg);
+	/* a random image would be the end of its slave */
+	if (c->nr == EC_IOC_SII_WRITE) {
+		((struct ec_ioc_sii_write *)arg)->flags |= EC_SII_FLAG_DRY_RUN;
+		((struct ec_ioc_sii_write *)arg)->done =
+			(uint64_t)(unsigned long)bad_pointers[rnd(w) % BAD_POINTERS];
+	}
 	if (!c->data)
 		return;
 	if (!(rnd(w) % 16))

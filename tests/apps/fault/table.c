@@ -63,6 +63,9 @@ const struct cmd cmds[] = {
 	/* their data are not copied before the slave has been asked: check_foe() */
 	CMD(FOE_READ, BUS, RSV1(ec_ioc_foe)),
 	CMD(FOE_WRITE, BUS, RSV1(ec_ioc_foe)),
+	CMD(SII_WRITE, BUS, RSV1(ec_ioc_sii_write), DATA(ec_ioc_sii_write),
+	    .flags = EC_SII_FLAG_FORCE | EC_SII_FLAG_UNSAFE | EC_SII_FLAG_DRY_RUN),
+	CMD(ALIAS, BUS, RSV1(ec_ioc_alias), .flags = EC_SII_FLAG_FORCE | EC_SII_FLAG_REPAIR),
 	CMD(STATE, BUS, RSV1(ec_ioc_state)),
 	CMD(RESCAN, BUS),
 	CMD(LET_IN, BUS),
