@@ -13,6 +13,7 @@
 #include "bus/known.h"
 #include "bus/line_errors.h"
 #include "bus/mailboxes.h"
+#include "bus/owed.h"
 #include "bus/ports.h"
 #include "bus/slave.h"
 #include "bus/survey.h"

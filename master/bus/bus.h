@@ -21,6 +21,7 @@
 #define EC_SCAN_WAIT_MS	30000	/* for the end of scans, then the present list of slaves is used */
 
 struct ec_bus;
+struct ec_owed;
 struct ec_links;
 struct ec_slave;
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The list of slaves: one of it, all of it, and until they have settled. */
 #include "bus_list.h"
+#include "owed.h"
 #include "slave.h"
 #include "../link/links.h"
 
