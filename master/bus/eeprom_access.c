@@ -164,7 +164,7 @@ size_t ec_eeprom_capacity(const struct ec_eeprom_access *a)
 }
 
 /* Before another try: the slave's side, or another master, may have taken it. */
-static int again(struct ec_eeprom_access *a)
+static int write_again(struct ec_eeprom_access *a)
 {
 	if (ec_stop_all(&a->slave->stop))
 		return -ECANCELED;
@@ -188,7 +188,7 @@ static int read_at(struct ec_eeprom_access *a, u32 word, u8 *reg)
 		if (!(a->control & EC_EEP_ERR_ACK) && get_unaligned_le16(reg + 2) == (u16)word)
 			return a->control & EC_EEP_READ8 ? 8 : 4;
 		usleep_range(POLL_US, 2 * POLL_US);
-		ret = again(a);
+		ret = write_again(a);
 		if (ret)
 			return ret;
 	}
@@ -275,7 +275,7 @@ int ec_eeprom_write_word(struct ec_eeprom_access *a, u32 word, const u8 *value)
 		ret = is_written(a, word, value);
 		if (ret)
 			return min(ret, 0);
-		ret = again(a);
+		ret = write_again(a);
 		if (ret)
 			return ret;
 	}

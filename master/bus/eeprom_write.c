@@ -218,7 +218,7 @@ static int make_alias(struct writing *w)
 	return 0;
 }
 
-static int prepare(struct writing *w, bool *locked)
+static int eeprom_prepare(struct writing *w, bool *locked)
 {
 	struct ec_eeprom_job *j = w->job;
 	struct ec_eeprom_images e = {
@@ -267,7 +267,7 @@ static int take_effect(struct writing *w)
 static int write_all(struct writing *w, bool *locked)
 {
 	u32 words = w->bytes / 2;
-	int ret = prepare(w, locked);
+	int ret = eeprom_prepare(w, locked);
 
 	if (ret || w->job->flags & EC_EEPROM_DRY_RUN)
 		return ret;
@@ -290,7 +290,7 @@ static bool is_outdated(const struct writing *w)
 					 min(s->eeprom.bytes, w->bytes));
 }
 
-static void renew(struct writing *w)
+static void eeprom_renew(struct writing *w)
 {
 	struct ec_slave *s = w->job->slave;
 	struct ec_bus *bus = s->bus;
@@ -382,7 +382,7 @@ static void report_done(struct writing *w)
 			      j->written);
 	set_flaw(j->slave, "");
 	if (is_outdated(w))
-		renew(w);
+		eeprom_renew(w);
 }
 
 static void run_writing(struct work_struct *work)

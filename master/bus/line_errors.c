@@ -62,7 +62,7 @@ static struct ec_slave *far_end(const struct ec_slave *s, unsigned int port, uns
 	return next;
 }
 
-static void forget(struct ec_line_errors *e)
+static void line_forget(struct ec_line_errors *e)
 {
 	unsigned int p;
 
@@ -217,7 +217,7 @@ static u64 parent_of(const struct ec_slave *s)
 }
 
 /* Take the counters as read; those of the first read count for nothing. */
-static void take(struct ec_slave *s, const struct ec_dg *dg, const u8 *now)
+static void line_take(struct ec_slave *s, const struct ec_dg *dg, const u8 *now)
 {
 	struct ec_line_errors *e = s->lines;
 	u64 t = ktime_get_ns();
@@ -236,7 +236,7 @@ static void take(struct ec_slave *s, const struct ec_dg *dg, const u8 *now)
 		count(s, now);
 		e->to_ns = e->read_ns;
 	} else {
-		forget(e);
+		line_forget(e);
 		memcpy(e->regs, now, sizeof(e->regs));
 		e->from_ns = t;
 		e->to_ns = t;
@@ -282,7 +282,7 @@ static const char *label(const struct ec_slave *s)
 	return *l ? l : NULL;
 }
 
-static void report(const struct ec_slave *s, unsigned int port, u16 crc, u16 phy, u64 ns)
+static void line_report(const struct ec_slave *s, unsigned int port, u16 crc, u16 phy, u64 ns)
 {
 	unsigned int far = 0;
 	const struct ec_slave *next = far_end(s, port, &far);
@@ -308,7 +308,7 @@ static void judge_port(struct ec_slave *s, unsigned int port, bool noise)
 	if (!is_above(crc, crc_ns) && !is_above(p->phy, phy_ns))
 		return;
 	if (!p->reported && !(other && other->reported))
-		report(s, port, crc, p->phy, is_above(crc, crc_ns) ? crc_ns : phy_ns);
+		line_report(s, port, crc, p->phy, is_above(crc, crc_ns) ? crc_ns : phy_ns);
 	p->reported = true;
 }
 
@@ -383,7 +383,7 @@ static void read_some(struct ec_bus *bus, unsigned int n)
 	}
 	if (k && ec_xfer(bus->links, dg, k) != -ENOMEM)
 		for (i = 0; i < k; i++)
-			take(of[i], &dg[i], regs[i]);
+			line_take(of[i], &dg[i], regs[i]);
 	kvfree(dg);
 	kvfree(regs);
 	kvfree(of);

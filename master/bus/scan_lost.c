@@ -41,7 +41,7 @@ void ec_lost_note_place(struct ec_slave *s)
 	struct ec_slave *u = ec_graph_parent(s);
 
 	lockdep_assert_held_write(&s->bus->topo);
-	s->lost.seen_ns = s->bus->complete_ns;
+	s->lost.seen_ns = s->bus->complete_ns ?: ktime_get_ns();
 	if (u && u->position < s->position && !u->listing) {
 		s->lost.at = u->lost.at;
 		s->lost.at.up = u->position;
@@ -101,7 +101,7 @@ static void report_port(const struct ec_slave *first, const struct ec_slave *las
 
 static void report_all(struct ec_bus *bus, unsigned int n)
 {
-	u64 ms = div_u64(ktime_get_ns() - bus->complete_ns, NSEC_PER_MSEC);
+	u64 ms = div_u64(ktime_get_ns() - (bus->complete_ns ?: ktime_get_ns()), NSEC_PER_MSEC);
 
 	if (READ_ONCE(bus->links->access.mode) == EC_ACCESS_DIRECT)
 		return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Slaves of the list that do not reply any more; they stay in their place until they do. */
+#include <linux/ktime.h>
 #include "../base/once64.h"
 #include "silent.h"
 #include "slave.h"
@@ -17,7 +18,7 @@ bool ec_slave_set_silent(struct ec_slave *s, const char *why)
 	if (READ_ONCE(s->reply.silent))
 		return false;
 	WRITE_ONCE(s->reply.silent, true);
-	s->lost.seen_ns = s->bus->complete_ns;
+	s->lost.seen_ns = s->bus->complete_ns ?: ktime_get_ns();
 	WRITE_ONCE(s->al.status, 0);
 	ec_slave_event(s, EC_EVENT_SLAVE_SILENT);
 	ec_slave_fail(s, EC_SLAVE_SCAN_FAILED, EC_CAUSE(SILENT), "%s", why);
