@@ -90,6 +90,48 @@ out:
 	return n;
 }
 
+/* The only slave of the list with that address of its first FMMU, or NULL */
+static const struct ec_slave *mapped_at(struct ec_bus *bus, u32 logical)
+{
+	const struct ec_slave *found = NULL;
+
+	ec_for_each_slave(s, bus) {
+		if (READ_ONCE(s->work.mapped) != logical + 1)
+			continue;
+		if (found)
+			return NULL;
+		found = s;
+	}
+	return found;
+}
+
+/**
+ * ec_owed_by_fmmu() - find the slave that has lost its address by the first FMMU
+ * @bus: bus
+ * @station: station address that a slave with process data has by now
+ *
+ * No two slaves of a session have the same logical address there. The slave was made harmless when
+ * it came, so it has no FMMU of another master.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: the slave of the list which that is, and which does not reply at its own address; NULL:
+ * there is none.
+ */
+const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station)
+{
+	const struct ec_slave *s;
+	u8 page[EC_FMMU_PAGE], own[2];
+
+	if (ec_xfer_fprd(bus->links, station, EC_REG_FMMU(0), page, sizeof(page)) ||
+	    !(page[EC_FMMU_OFS_ENABLE] & 1))
+		return NULL;
+	s = mapped_at(bus, get_unaligned_le32(page));
+	if (!s || !ec_owed_runs_as(bus, station, s) ||
+	    !ec_xfer_fprd(bus->links, s->station, EC_REG_STATION, own, sizeof(own)))
+		return NULL;
+	return s;
+}
+
 /**
  * ec_owed_runs_as() - is a slave in the state of another one, above PREOP?
  * @bus: bus

@@ -21,6 +21,7 @@ struct ec_owed {
 };
 
 unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, unsigned int max);
+const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station);
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s);
 void ec_owed_note(struct ec_bus *bus, u16 has, u16 own);
 bool ec_owed_pay(struct ec_bus *bus, bool first);

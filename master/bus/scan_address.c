@@ -91,9 +91,26 @@ static unsigned int find_doubtful(struct scan *sc, const u16 *at, unsigned int n
 	return found;
 }
 
+/* Those with process data: their FMMUs say which they are. Returns how many others are left. */
+static unsigned int give_back_mapped(struct ec_bus *bus, u16 *used, unsigned int n)
+{
+	unsigned int i, left = 0;
+
+	for (i = 0; i < n; i++) {
+		const struct ec_slave *s = ec_owed_by_fmmu(bus, used[i]);
+
+		if (s)
+			ec_owed_note(bus, used[i], s->station);
+		else
+			used[left++] = used[i];
+	}
+	ec_owed_pay(bus, true);
+	return left;
+}
+
 /*
  * The frame that wrote an address is lost, and a running slave has it: no new one runs. If as many
- * slaves have lost theirs, it is one of these, in the order of the ring.
+ * slaves without process data have lost theirs, it is one of these, in the order of the ring.
  */
 static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 {
@@ -101,6 +118,7 @@ static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 	u16 *used = kvcalloc(n, sizeof(*used), GFP_KERNEL);
 	unsigned int i = 0, k = lost && used ? find_doubtful(sc, at, n, used) : 0;
 
+	k = give_back_mapped(sc->bus, used, k);
 	if (k && ec_owed_find(sc->bus, lost, k) == k)
 		while (i < k && ec_owed_runs_as(sc->bus, used[i], lost[i]))
 			i++;

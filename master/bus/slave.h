@@ -174,6 +174,8 @@ struct ec_slave_work {
 	bool clean;
 	/** @ours: this master has brought it from INIT to PREOP or BOOT, not an earlier one */
 	bool ours;
+	/** @mapped: logical address of its first FMMU, and 1; 0: it has none */
+	u32 mapped;
 	/** @renew: its EEPROM was written: the next scan reads it as if it were new */
 	bool renew;
 };

@@ -133,6 +133,8 @@ static struct ec_result add_fmmus(struct batch *b, struct ec_slave *s, const str
 		ec_fmmu_encode(&v, b->fmmu[i]);
 	}
 	ec_setup_of(s)->mapped = c->n_fmmus;
+	WRITE_ONCE(s->work.mapped, c->n_fmmus && c->fmmus[0].size ?
+		   c->fmmus[0].domain->offset + c->fmmus[0].logical + 1 : 0);
 	for (i = 0; i < count_fmmus(s); i++)
 		apply_regs_add(b, s, EC_REG_FMMU(i), b->fmmu[i], EC_FMMU_PAGE);
 	return r;
@@ -184,6 +186,8 @@ int ec_apply_clear_fmmus(struct ec_slave *s)
 
 	lockdep_assert_held(&s->lock);
 	ec_setup_of(s)->mapped = ret;
+	if (!ret)
+		WRITE_ONCE(s->work.mapped, 0);
 	return ret;
 }
 

@@ -141,6 +141,7 @@ enum ec_loop_control {		/* two bits per port in 0x0101 */
 /* FMMU and SyncManager pages */
 #define EC_REG_FMMU(n)		(0x0600 + 16 * (n))
 #define EC_FMMU_PAGE		16
+#define EC_FMMU_OFS_ENABLE	12
 #define EC_MAX_FMMU		16
 #define EC_REG_SM(n)		(0x0800 + 8 * (n))
 #define EC_SM_PAGE		8
