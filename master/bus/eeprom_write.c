@@ -20,7 +20,7 @@
 #include "slave.h"
 
 #define HEAD_WORDS	8	/* the checksum of the words before is in the last one */
-#define LOCK_NS		(10 * NSEC_PER_SEC)	/* for a worker of the slave */
+#define LOCK_NS		(10ULL * NSEC_PER_SEC)	/* for a worker of the slave */
 #define RENEW_MS	3000	/* for the scan that reads it again */
 #define PROGRESS_MS	50
 #define CHUNK_WORDS	64	/* read until the next check whether another thread waits */

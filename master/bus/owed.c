@@ -13,7 +13,7 @@
 #include "slave.h"
 
 #define TRIES		3
-#define LATEST_NS	(10 * NSEC_PER_SEC)
+#define LATEST_NS	(10ULL * NSEC_PER_SEC)
 
 /**
  * ec_owed_note() - a slave has to get its station address back

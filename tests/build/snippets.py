@@ -29,6 +29,7 @@ PROGRAM = """#include <ecrt.h>
 #include <ethercat-tools.h>
 #include <sched.h>
 #include <stdio.h>
+#include <string.h>
 #include <sys/mman.h>
 extern ec_master_t *master;
 extern ec_domain_t *domain;
