@@ -528,7 +528,7 @@ static void maybe_scan(struct watch *w)
 	struct ec_scan_result result = { 0 };
 	bool asked = false;
 
-	ec_owed_pay(&m->bus, false);
+	ec_owed_pay(&m->bus);
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
 		return;

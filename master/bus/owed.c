@@ -153,7 +153,7 @@ bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s)
 	       get_unaligned_le16(al) == is;
 }
 
-/* Those that do not reply at their own address by now, and have not been tried for too long. */
+/* Of those that were tried before, the ones at whose own address no slave replies by now. */
 static void owed_sift(struct ec_bus *bus, struct ec_dg *dg, u8 (*station)[2])
 {
 	unsigned int i, n = bus->n_owed;
@@ -164,8 +164,9 @@ static void owed_sift(struct ec_bus *bus, struct ec_dg *dg, u8 (*station)[2])
 	ec_xfer(bus->links, dg, n);
 	bus->n_owed = 0;
 	for (i = 0; i < n; i++)
-		if ((dg[i].err || !dg[i].wkc) && now - bus->owed[i].since_ns < LATEST_NS &&
-		    ec_known_is_present(bus, bus->owed[i].own))
+		if (!bus->owed[i].tried ||
+		    ((dg[i].err || !dg[i].wkc) && now - bus->owed[i].since_ns < LATEST_NS &&
+		     ec_known_is_present(bus, bus->owed[i].own)))
 			bus->owed[bus->n_owed++] = bus->owed[i];
 }
 
@@ -180,19 +181,20 @@ static void owed_write(struct ec_bus *bus, struct ec_dg *dg, u8 (*station)[2])
 	ec_xfer(bus->links, dg, n);
 	bus->n_owed = 0;
 	for (i = 0; i < n; i++)
-		if (dg[i].err || !dg[i].wkc)
+		if (dg[i].err || !dg[i].wkc) {
+			bus->owed[i].tried = true;
 			bus->owed[bus->n_owed++] = bus->owed[i];
+		}
 }
 
 /**
  * ec_owed_pay() - give slaves their station addresses back
  * @bus: bus
- * @first: they have just been noted, and have not replied there
  *
  * Context: The monitor thread. May sleep; waits for bus traffic if there are such slaves.
  * Return: whether all of them have it now.
  */
-bool ec_owed_pay(struct ec_bus *bus, bool first)
+bool ec_owed_pay(struct ec_bus *bus)
 {
 	u8 (*station)[2];
 	struct ec_dg *dg;
@@ -203,7 +205,9 @@ bool ec_owed_pay(struct ec_bus *bus, bool first)
 	dg = kvcalloc(bus->n_owed, sizeof(*dg), GFP_KERNEL);
 	station = kvcalloc(bus->n_owed, sizeof(*station), GFP_KERNEL);
 	if (dg && station) {
-		if (!first)
+		for (i = 0; i < bus->n_owed && !bus->owed[i].tried; i++)
+			;
+		if (i < bus->n_owed)
 			owed_sift(bus, dg, station);
 		for (i = 0; i < TRIES && bus->n_owed; i++)
 			owed_write(bus, dg, station);

@@ -13,18 +13,20 @@ struct ec_slave;
  * @since_ns: (ktime)
  * @has: address that it has, and no other slave has had
  * @own: its own
+ * @tried: it was written, without a reply
  */
 struct ec_owed {
 	u64 since_ns;
 	u16 has;
 	u16 own;
+	bool tried;
 };
 
 unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, unsigned int max);
 const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station);
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s);
 void ec_owed_note(struct ec_bus *bus, u16 has, u16 own);
-bool ec_owed_pay(struct ec_bus *bus, bool first);
+bool ec_owed_pay(struct ec_bus *bus);
 void ec_owed_exit(struct ec_bus *bus);
 
 #endif

@@ -66,7 +66,7 @@ static unsigned int address_give_back(struct scan *sc, const u16 *at, unsigned i
 	if (!k)
 		return 0;
 	ec_warn(sc->bus, "scan: slaves left the ring while station addresses were written, those of %u others %s\n",
-		k, ec_owed_pay(sc->bus, true) ? "restored" : "are restored when these reply");
+		k, ec_owed_pay(sc->bus) ? "restored" : "are restored when these reply");
 	return k;
 }
 
@@ -104,7 +104,8 @@ static unsigned int give_back_mapped(struct ec_bus *bus, u16 *used, unsigned int
 		else
 			used[left++] = used[i];
 	}
-	ec_owed_pay(bus, true);
+	if (left < n)
+		ec_owed_pay(bus);
 	return left;
 }
 
@@ -125,7 +126,7 @@ static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 	if (k && i == k) {
 		for (i = 0; i < k; i++)
 			ec_owed_note(sc->bus, used[i], lost[i]->station);
-		ec_owed_pay(sc->bus, true);
+		ec_owed_pay(sc->bus);
 	}
 	kvfree(lost);
 	kvfree(used);

@@ -81,7 +81,7 @@ static void trial_give_back(const struct ec_trials *t, u16 station, bool next)
 
 	if (owner)
 		ec_owed_note(t->bus, station, owner);
-	if (owner && ec_owed_pay(t->bus, true))
+	if (owner && ec_owed_pay(t->bus))
 		ec_warn(t->bus, "trial at station address 0x%04x, port %u: contact lost, station address 0x%04x restored\n",
 			t->host.station, t->port, owner);
 	else
