@@ -128,6 +128,8 @@
 #define EC_HAVE_DATAGRAM_REQUESTS
 /* ecrt_slave_config_command(): commands for every transition */
 #define EC_HAVE_TRANSITION_COMMANDS
+/* ecrt_master_unit() and the next ones: units of domains that fail alone */
+#define EC_HAVE_UNITS
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -2574,6 +2576,194 @@ EC_PUBLIC_API int ecrt_domain_age(const ec_domain_t *domain, ec_domain_age_t *ag
  * Return: 0; %-EPERM, %-EBUSY.
  */
 EC_PUBLIC_API int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int sends);
+#endif
+
+#ifdef EC_HAVE_UNITS
+
+/* what is done when the working counters of a unit are incomplete */
+typedef enum {
+	EC_UNIT_CONTINUE = 0,	/* nothing; the application looks at its domains */
+	EC_UNIT_ZERO = 1,	/* its outputs are zero until they are complete again */
+	EC_UNIT_HOLD = 2,	/* its outputs keep their last values until then */
+	EC_UNIT_SAFEOP = 3,	/* its outputs are zero and its slaves go to SAFEOP, for good */
+	EC_UNIT_STOP = 4,	/* the same for all slaves of the application */
+} ec_unit_policy_t;
+
+/* ec_unit_config_t.flags */
+#define EC_UNIT_AUTHORITY	1U	/* begins without authority; a failure takes it */
+#define EC_UNIT_LEASE_HOLD	2U	/* after the lease outputs are held, not zero */
+#define EC_UNIT_OFFERED		4U	/* another application may hold it */
+
+/**
+ * struct ec_unit_config_t - a sync unit
+ * @name: for messages and files: a letter, then letters, digits, '_', '-' and '.', at most 63
+ * @policy: what is done when it fails
+ * @limit: it fails after so many receives in a row with an incomplete working counter of one of its
+ *	domains, and is complete again after as many that are; 1..1000000, 0: 3
+ * @lease_cycles: for a cycle run by the kernel: cycles after which its outputs are zero unless all
+ *	its domains with outputs were queued and sent; 0: no lease. Begins with the first outputs.
+ * @repeats: its frames are sent so many times in a cycle, and the best working counter counts; 1 to
+ *	3, 0: 1. All its slaves need the flag "FrameRepeatSupport" (ecrt_slave_config_flag()), as
+ *	their vendor says it in the ESI file.
+ * @flags: %EC_UNIT_AUTHORITY: its outputs are zero until ecrt_master_unit_authority() gives
+ *	authority. A failure other than with %EC_UNIT_CONTINUE takes it, as does the end of the
+ *	lease. %EC_UNIT_LEASE_HOLD. %EC_UNIT_OFFERED, with %EC_UNIT_AUTHORITY: see
+ *	ecrt_master_unit_hold().
+ */
+typedef struct {
+	const char *name;
+	ec_unit_policy_t policy;
+	uint32_t limit;
+	uint32_t lease_cycles;
+	uint32_t repeats;
+	uint32_t flags;
+} ec_unit_config_t;
+
+typedef enum {
+	EC_UNIT_STARTING = 0,	/* not yet complete since activation */
+	EC_UNIT_COMPLETE = 1,
+	EC_UNIT_FAILED = 2,
+} ec_unit_run_t;
+
+typedef enum {
+	EC_UNIT_SENDS_APPLICATION = 0,	/* the outputs of the application */
+	EC_UNIT_SENDS_ZEROS = 1,
+	EC_UNIT_SENDS_HELD_VALUES = 2,
+} ec_unit_outputs_t;
+
+/**
+ * struct ec_unit_state_t - state of a unit
+ * @run: are its working counters complete?
+ * @outputs: what is sent for it
+ * @authority: it has authority
+ * @lease_ended: the lease has ended and was not renewed
+ * @down: its policy has taken its slaves to SAFEOP
+ * @held: another application gives its outputs
+ * @faults: how often it has failed or its lease has ended; 65535: at least that
+ */
+typedef struct {
+	ec_unit_run_t run;
+	ec_unit_outputs_t outputs;
+	unsigned int authority : 1;
+	unsigned int lease_ended : 1;
+	unsigned int down : 1;
+	unsigned int held : 1;
+	unsigned int faults;
+} ec_unit_state_t;
+
+/**
+ * ecrt_master_unit() - create or find a sync unit
+ * @master: a reserved master, not active
+ * @config: the unit
+ *
+ * Extension (%EC_HAVE_UNITS). A unit is a domain or several that are judged together: when one of
+ * its working counters stays incomplete, the policy is carried out, in the same cycle and on
+ * outputs of this unit alone (but for %EC_UNIT_STOP). Domains without unit are not judged. Inputs
+ * are received in any case. Domains in a unit never share a datagram with others; they may share a
+ * frame unless @repeats is 2 or more.
+ *
+ * Context: Process. May sleep.
+ * Return: number of the unit; %-EINVAL the description is not valid; %-EEXIST another unit has the
+ * name; %-ENOSPC there are 64; %-EBUSY @master is active; %-EPERM not reserved; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_unit(ec_master_t *master, const ec_unit_config_t *config);
+
+/**
+ * ecrt_domain_set_unit() - put a domain into a unit
+ * @domain: domain of a master that is not active
+ * @unit: number of the unit; -1: into none (initial)
+ *
+ * Extension (%EC_HAVE_UNITS). A slave may have process data in several units, unless one of them
+ * has the policy %EC_UNIT_SAFEOP: activation fails then.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL; %-ENOENT no such unit; %-EBUSY active.
+ */
+EC_PUBLIC_API int ecrt_domain_set_unit(ec_domain_t *domain, int unit);
+
+/**
+ * ecrt_master_unit_authority() - give authority to a unit, or take it
+ * @master: an active master; to take it any master that is open for writing
+ * @unit: number of the unit
+ * @give: 0: take it: the outputs of the next send are zero
+ *
+ * Extension (%EC_HAVE_UNITS). A unit gets authority only when its working counters are complete;
+ * then the next send has its outputs. After a failure with %EC_UNIT_SAFEOP or %EC_UNIT_STOP the
+ * first call requests OP for the slaves again: call until it returns 0.
+ *
+ * Context: Process. May sleep, for a short time; not for the cycle.
+ * Return: 0; %-EINPROGRESS the working counters are not complete, try again; %-EINVAL not active;
+ * %-ENOENT no such unit; %-EPERM @master did not reserve it, and does not hold the unit; %-EBUSY
+ * another application holds it.
+ */
+EC_PUBLIC_API int ecrt_master_unit_authority(ec_master_t *master, unsigned int unit, int give);
+
+/**
+ * ecrt_master_unit_state() - get the state of a unit
+ * @master: an active master
+ * @unit: number of the unit
+ * @state: out
+ *
+ * Extension (%EC_HAVE_UNITS). Of the last receive of the cycle. No system call.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0; %-EINVAL not active, no such unit, or @state is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_unit_state(const ec_master_t *master, unsigned int unit,
+		ec_unit_state_t *state);
+
+/**
+ * ecrt_master_unit_hold() - give the outputs of a unit of another application from now on
+ * @master: a master that was opened for writing, and not reserved
+ * @name: of a unit with %EC_UNIT_OFFERED, in the application that has activated the master
+ * @size: out: bytes of the domains of the unit; may be NULL
+ *
+ * Extension (%EC_HAVE_UNITS). The outputs that the other application writes there are not sent.
+ * They are zero until the holder gives authority by ecrt_master_unit_authority(), which it alone
+ * may do. It holds the unit until it releases @master or exits, for any reason; the unit loses its
+ * authority then. Its lease counts from one ecrt_master_unit_write() to the next.
+ *
+ * Context: Process. May sleep.
+ * Return: number of the unit; %-ENOENT no such unit; %-EACCES it is not offered; %-EBUSY another
+ * one holds it, or its application has given it authority; %-EINVAL the master is not active;
+ * %-EPERM
+ * @master has activated it.
+ */
+EC_PUBLIC_API int ecrt_master_unit_hold(ec_master_t *master, const char *name, size_t *size);
+
+/**
+ * ecrt_master_unit_write() - give the outputs of a unit
+ * @master: holder of the unit
+ * @unit: number of the unit
+ * @data: the data of its domains, one behind the other in the order of their creation; what is
+ * input
+ *	there has no effect
+ * @size: bytes of @data, as ecrt_master_unit_hold() returned them
+ * @state: out, may be NULL
+ *
+ * Extension (%EC_HAVE_UNITS). The next cycle sends them, all of them or none. One system call.
+ *
+ * Context: Process. May sleep, for a short time.
+ * Return: 0; %-EPERM @master does not hold the unit; %-EINVAL another size, or not active any more.
+ */
+EC_PUBLIC_API int ecrt_master_unit_write(ec_master_t *master, unsigned int unit,
+		const uint8_t *data, size_t size, ec_unit_state_t *state);
+
+/**
+ * ecrt_master_unit_read() - get the data of a unit
+ * @master: holder of the unit
+ * @unit: number of the unit
+ * @data: out: the data of its domains; outputs as they are sent
+ * @size: bytes of @data, as ecrt_master_unit_hold() returned them
+ * @state: out, may be NULL
+ *
+ * Extension (%EC_HAVE_UNITS). Values of different slaves may be of two cycles. One system call.
+ *
+ * Context: Process. May sleep, for a short time.
+ * Return: as ecrt_master_unit_write().
+ */
+EC_PUBLIC_API int ecrt_master_unit_read(ec_master_t *master, unsigned int unit,
+		uint8_t *data, size_t size, ec_unit_state_t *state);
 #endif
 
 /**

@@ -183,6 +183,12 @@ static inline size_t ec_status_configs(const struct ec_master *m)
 	return bytes < EC_STATUS_CONFIGS ? bytes : EC_STATUS_CONFIGS;
 }
 
+/* an older module has no states of units */
+static inline bool ec_status_has_units(const struct ec_master *m)
+{
+	return m->status_size >= sizeof(struct ec_status);
+}
+
 static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
 {
 	return &m->cycle.next;

@@ -196,7 +196,7 @@ static int map_all(struct ec_master *m, const struct ec_ioc_activate *arg)
 {
 	int ret;
 
-	if (arg->status_size < sizeof(struct ec_status))
+	if (arg->status_size < offsetof(struct ec_status, units))
 		return -EPROTO;
 	m->status_size = arg->status_size;
 	m->status = ec_master_map(m, NULL, arg->status_size, PROT_READ, EC_MMAP_STATUS);

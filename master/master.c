@@ -13,6 +13,7 @@
 #include "config/apply.h"
 #include "session/reserve.h"
 #include "session/session_attach.h"
+#include "session/session_units.h"
 #include "bus/bus_list.h"
 
 static void master_device(struct ec_links *l, const struct ec_link *link, bool attached)
@@ -117,7 +118,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		goto err;
 	ec_cycles_init(&m->cycles, m->base, &m->carry, &m->riders, &m->dc);
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
-	      ec_sessions_init(&m->sessions, ec_session_again);
+	      ec_sessions_init(&m->sessions, ec_session_again, ec_session_units);
 	if (ret)
 		goto err;
 	ec_setup_init(&m->bus);

@@ -5,6 +5,7 @@
 #include "config_info.h"
 #include "domain.h"
 #include "out.h"
+#include "unit.h"
 
 #define WIRE_NS_PER_BYTE	80	/* at 100 Mbit/s */
 
@@ -77,6 +78,22 @@ static void layout(const struct tool *t, const char *in, const struct ect_domain
 			 dom->datagram_bytes * WIRE_NS_PER_BYTE / 1000.0);
 }
 
+/* the unit that is judged with it */
+static void unit(struct dev *d, const char *in, const struct ect_domain *dom)
+{
+	struct ect_unit u;
+
+	if (!unit_of_domain(d, dom->index, &u)) {
+		out_null("unit", NULL);
+		return;
+	}
+	out_str("unit", u.name, "%s  Unit %s: policy %s", in, u.name, unit_policy(&u));
+	if (u.active)
+		out_text(", %s, outputs %s%s", unit_run(&u), unit_outputs(&u),
+			 u.authority ? "" : ", no authority");
+	out_text("\n");
+}
+
 /* A stale domain is marked in any case. */
 static void age(const struct tool *t, const char *in, const struct ect_domain *dom)
 {
@@ -114,6 +131,7 @@ static int show(const struct tool *t, struct dev *d, const struct ect_domain *do
 	out_str("working_counter_state", !dom->working_counter ? "zero" :
 		dom->working_counter != dom->expected || cancelled ? "incomplete" : "complete",
 		NULL);
+	unit(d, in, dom);
 	age(t, in, dom);
 	layout(t, in, dom);
 	if (t->verbosity > 0) {
@@ -164,12 +182,14 @@ const struct cmd cmd_domains = {
 		"data. Wrong counters of datagrams may cancel each other: then it is equal 'in sum, not\n"
 		"of each datagram'. --verbose adds the options of the domain (overlap: inputs at\n"
 		"logical addresses of outputs; separate: LRD and LWR; own frame), its datagrams, and the\n"
-		"share of each slave configuration. 'ethercat master -v' shows the wire time of a\n"
+		"share of each slave configuration. A domain of a sync unit shows it; 'ethercat units' says\n"
+		"more. 'ethercat master -v' shows the wire time of a\n"
 		"cycle. Age of process data: sends of the domain since the send of the newest received\n"
 		"frame; shown with --verbose, and when it exceeds its limit (stale).\n",
 	.json = "masters[]: master, domains[]: index, logical_address, size_bytes,\n"
 		"working_counter, expected_working_counter, working_counter_state (zero, incomplete,\n"
-		"complete: each datagram has its counter), age_sends, max_age_sends (0: no limit),\n"
+		"complete: each datagram has its counter), unit (name, or null), age_sends,\n"
+		"max_age_sends (0: no limit),\n"
 		"stale, options[] (overlap, separate, own_frame),\n"
 		"datagrams, datagram_bytes, with --verbose fmmus[]: alias, relative_position,\n"
 		"sync_manager, direction, logical_address, size_bytes, offset_bytes, data_hex",

@@ -219,6 +219,8 @@ const struct cmd cmd_log = {
 		"cycle_timeout (duration_ms, timeouts),\n"
 		"cycle_resumed (duration_ms), stale_data (domain, age_sends, limit_sends),\n"
 		"output_stall (policy, cycles, more_stalls), outputs_again (cycles),\n"
+		"unit (unit, state, reason, domain, working_counter, expected, more_changes,\n"
+		"state_before),\n"
 		"wire_time (cyclic_ns, cycle_ns, free_ns, needed_ns), reference_clock (reference, lost,\n"
 		"substitute),\n"
 		"clocks_synchronized (duration_us, reference), clocks_not_synchronized (errno,\n"

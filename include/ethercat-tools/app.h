@@ -317,6 +317,72 @@ int ect_domain_fmmu(struct ect_handle *h, unsigned int index, unsigned int fmmu,
  */
 long ect_domain_data(struct ect_handle *h, unsigned int index, void *data, size_t size);
 
+/* struct ect_unit.policy */
+#define ECT_UNIT_CONTINUE		0U
+#define ECT_UNIT_ZERO		1U
+#define ECT_UNIT_HOLD		2U
+#define ECT_UNIT_SAFEOP		3U
+#define ECT_UNIT_STOP		4U
+
+/* bits of struct ect_unit.flags */
+#define ECT_UNIT_AUTHORITY	1U	/* begins without authority; a failure takes it */
+#define ECT_UNIT_LEASE_HOLD	2U	/* after the lease outputs are held, not zero */
+#define ECT_UNIT_OFFERED	4U	/* another application may hold it */
+
+/* struct ect_unit.run */
+#define ECT_UNIT_STARTING	0
+#define ECT_UNIT_COMPLETE	1
+#define ECT_UNIT_FAILED		2
+
+/* struct ect_unit.outputs */
+#define ECT_UNIT_VALUES		0	/* those of the application */
+#define ECT_UNIT_ZEROS		1
+#define ECT_UNIT_HELD		2
+
+/* a sync unit: domains that are judged together */
+struct ect_unit {
+	uint32_t struct_size;
+	uint32_t index;
+	uint32_t policy;	/* ECT_UNIT_* */
+	uint32_t flags;		/* likewise */
+	uint32_t limit;		/* receives in a row until it has failed */
+	uint32_t lease_cycles;	/* 0: no lease */
+	uint32_t repeats;	/* frames with the same data in a cycle */
+	uint32_t faults;	/* 65535: at least that */
+	uint64_t domains;	/* bit n: domain n */
+	uint8_t active;		/* what follows is valid */
+	uint8_t run;
+	uint8_t outputs;
+	uint8_t authority;
+	uint8_t lease_ended;
+	uint8_t down;		/* its policy has taken its slaves to SAFEOP */
+	uint8_t held;		/* another application gives its outputs */
+	uint8_t reserved;
+	char name[ECT_STRING];
+};
+
+/**
+ * ect_unit_read() - a sync unit of an application
+ * @h: master
+ * @index: from 0 on
+ * @u: result, with its @struct_size
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: 0; -ENOENT there is no such unit; -ENOTTY an older module; or another negative errno.
+ */
+int ect_unit_read(struct ect_handle *h, unsigned int index, struct ect_unit *u);
+
+/**
+ * ect_unit_take() - take the authority of a sync unit: its outputs are zero
+ * @h: master, opened for writing
+ * @index: unit
+ *
+ * Context: The thread of the handle.
+ * Return: 0; -ENOENT there is no such unit; -EINVAL the master is not active; or another negative
+ * errno.
+ */
+int ect_unit_take(struct ect_handle *h, unsigned int index);
+
 #ifdef __cplusplus
 }
 #endif

@@ -27,6 +27,7 @@
 #include "ethercat_info.h"
 #include "ethercat_map.h"
 #include "ethercat_mbox.h"
+#include "ethercat_unit.h"
 
 /*
  * From EC_UAPI_FIRST on no number and no member changes: such programs run on each later module.
@@ -71,6 +72,7 @@
 #define EC_IOC_PORT		EC_IOC_RW(0x1d, struct ec_ioc_port)
 #define EC_IOC_SLAVE_NAMES	EC_IOC_RW(0x1e, struct ec_ioc_slave_names)
 #define EC_IOC_SLAVE_WHY	EC_IOC_RW(0x1f, struct ec_ioc_slave_why)
+#define EC_IOC_UNIT_INFO	EC_IOC_RW(0x15, struct ec_ioc_unit_info)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)
@@ -134,6 +136,12 @@
 #define EC_IOC_GROUP		EC_IOC_RW(0x68, struct ec_ioc_group)
 #define EC_IOC_GROUP_CONFIG	EC_IOC_RW(0x69, struct ec_ioc_group_config)
 #define EC_IOC_CONFIG_GROUP	EC_IOC_RW(0x6a, struct ec_ioc_config_group)
+#define EC_IOC_UNIT		EC_IOC_RW(0x6b, struct ec_ioc_unit)
+#define EC_IOC_DOMAIN_UNIT	EC_IOC_W(0x6c, struct ec_ioc_domain_unit)
+#define EC_IOC_UNIT_AUTHORITY	EC_IOC_W(0x6d, struct ec_ioc_unit_authority)
+#define EC_IOC_UNIT_HOLD	EC_IOC_RW(0x6e, struct ec_ioc_unit_hold)
+#define EC_IOC_UNIT_WRITE	EC_IOC_RW(0x6f, struct ec_ioc_unit_data)
+#define EC_IOC_UNIT_READ	EC_IOC_RW(0x77, struct ec_ioc_unit_data)
 #define EC_IOC_SC_OVERLAP	EC_IOC_W(0x78, struct ec_ioc_sc_overlap)
 #define EC_IOC_LATE		EC_IOC_W(0x7a, struct ec_ioc_late)
 #define EC_IOC_DOMAIN_AGE	EC_IOC_W(0x7b, struct ec_ioc_domain_age)

@@ -93,6 +93,13 @@
 /* EC_STALL_*, cycles of the kernel without new outputs; stalls before without record */
 #define EC_EVENT_STALL		0x38
 #define EC_EVENT_OUTPUTS	0x39	/* there are new ones: cycles without */
+/*
+ * a sync unit: index, its state (the low 16 bits, as struct ec_ioc_unit_info.state), why it has
+ * changed: 0 working counter, 1 lease, 2 command, 3 another unit has stopped all; first domain that
+ * is not complete or EC_EVENT_NONE, its working counter, the expected one; changes before this one
+ * that have no record; state of the last record
+ */
+#define EC_EVENT_UNIT		0x3a
 
 /*
  * slave, or EC_EVENT_NONE: clocks run free; 1: the reference clock before was lost; 1: the slave

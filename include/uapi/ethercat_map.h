@@ -196,6 +196,7 @@ struct ec_status {
 	struct ec_status_link links[EC_UAPI_DEVICES];
 	__u32 sequence;		/* odd: 64-bit values are being written */
 	__u32 reserved;
+	__u32 units[EC_STATUS_DOMAINS];	/* as struct ec_ioc_unit_info.state */
 };
 
 /*
@@ -226,11 +227,12 @@ struct ec_exchange {
 	__u32 reserved3[13];
 };
 
-/* precedes an image; valid for inputs */
+/* precedes an image; valid for inputs, but for @fed */
 struct ec_exchange_buffer {
 	__u64 cycle;		/* as struct ec_status_cycle.cycle */
 	__u64 time_ns;		/* schedule of that cycle, CLOCK_MONOTONIC */
-	__u64 reserved[6];
+	__u64 fed;		/* outputs: domains given since the last cycle, bit n: domain n */
+	__u64 reserved[5];
 	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 };
 

@@ -130,6 +130,7 @@ int ec_exchange_begin(struct ec_app_cycle *a, struct ec_exchange *x, size_t size
 		return -EPROTO;
 	a->out_back = ec_status_read(x->app_output);
 	a->out_last = a->out_back;
+	a->unseen = 0;
 	a->in_front = ec_status_read(x->app_input);
 	a->in_taken = false;
 	a->seen = ec_status_read64(st, &st->kernel.cycle);
@@ -217,6 +218,16 @@ static unsigned int swap_buffer(__u32 *word, __u32 mine)
 	__u32 n = ec_exchange_word(word, mine) & INDEX_MASK;
 
 	return n < EC_EXCHANGE_BUFFERS ? n : 0;
+}
+
+/* Pass the outputs; their domains are given again if no cycle has taken the ones before. */
+static unsigned int pass_buffer(struct ec_app_cycle *a)
+{
+	__u32 word = ec_exchange_word(&a->exchange->outputs, a->out_back | EC_EXCHANGE_NEW);
+	unsigned int n = (word & INDEX_MASK) < EC_EXCHANGE_BUFFERS ? word & INDEX_MASK : 0;
+
+	a->unseen = word & EC_EXCHANGE_NEW ? buffer(a, n)->fed : 0;
+	return n;
 }
 
 /* Why no more inputs arrive, or none for now; 0: they do. */
@@ -343,8 +354,9 @@ int ec_exchange_send(ec_master_t *m, const struct ec_status *st)
 	ec_for_each_app_domain(m, d)
 		if (!(a->next.queued >> d->index & 1) && d->size && a->out_last != a->out_back)
 			memcpy(place(a, d, a->out_back), place(a, d, a->out_last), d->size);
+	buffer(a, a->out_back)->fed = a->next.queued | a->unseen;
 	a->out_last = a->out_back;
-	a->out_back = swap_buffer(&a->exchange->outputs, a->out_back | EC_EXCHANGE_NEW);
+	a->out_back = pass_buffer(a);
 	a->next.queued = 0;
 	return ret;
 }

@@ -19,6 +19,7 @@
  * @stride: from one buffer of @exchange to the next, bytes
  * @out_back: output buffer that the application holds
  * @out_last: output buffer that it passed last
+ * @unseen: domains of a buffer that no cycle has taken
  * @in_front: input buffer that the application holds
  * @in_taken: @in_front has inputs
  * @seen: last cycle that a thread has waited for; several may wait
@@ -31,6 +32,7 @@ struct ec_app_cycle {
 	unsigned int stride;
 	unsigned int out_back;
 	unsigned int out_last;
+	__u64 unseen;
 	unsigned int in_front;
 	bool in_taken;
 	__aligned_u64 seen;

@@ -244,3 +244,45 @@ long ect_domain_data(struct ect_handle *h, unsigned int index, void *data, size_
 
 	return ret ? ret : (long)min((size_t)i.size, size);
 }
+
+static void convert_unit(struct ect_unit *to, const struct ec_ioc_unit_info *from)
+{
+	u32 state = from->state;
+
+	COPY(index);
+	COPY(policy);
+	COPY(flags);
+	COPY(limit);
+	COPY(lease_cycles);
+	COPY(repeats);
+	COPY(domains);
+	to->active = !!from->active;
+	to->faults = state >> 16;
+	to->run = state & 0xf;
+	to->outputs = state >> 4 & 0xf;
+	to->authority = !!(state & EC_UNIT_HAS_AUTHORITY);
+	to->lease_ended = !!(state & EC_UNIT_LEASE_ENDED);
+	to->down = !!(state & EC_UNIT_DOWN);
+	to->held = !!(state & EC_UNIT_HAS_HOLDER);
+	memcpy(to->name, from->name, sizeof(to->name));
+	string_clean(to->name, sizeof(to->name));
+}
+
+int ect_unit_read(struct ect_handle *h, unsigned int index, struct ect_unit *u)
+{
+	struct ec_ioc_unit_info i = { .index = index };
+	struct ect_unit own = { .struct_size = sizeof(own) };
+	int ret = ect_command(h, EC_IOC_UNIT_INFO, &i);
+
+	if (ret)
+		return ret;
+	convert_unit(&own, &i);
+	return ect_give(h, u, &own, sizeof(own));
+}
+
+int ect_unit_take(struct ect_handle *h, unsigned int index)
+{
+	struct ec_ioc_unit_authority i = { .unit = index };
+
+	return ect_command(h, EC_IOC_UNIT_AUTHORITY, &i);
+}

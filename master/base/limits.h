@@ -11,6 +11,7 @@
 #define EC_MIN_SLAVES		256	/* that a scan takes on however little memory there is */
 #define EC_MAX_DOMAINS		64	/* bits of the queue mask, EC_STATUS_DOMAINS */
 #define EC_MAX_GROUPS		128	/* hot connect groups of one session */
+#define EC_MAX_UNIT_LIMIT	1000000	/* receives until a unit has failed */
 #define EC_MAX_DIVISION		1000	/* cycles from one exchange of a domain to the next */
 #define EC_MAX_COPIES		1024	/* of one session, done in each cycle */
 #define EC_MAX_CONFIGS		4096	/* EC_STATUS_CONFIGS */

@@ -8,6 +8,7 @@ static u32 report_id(const struct ec_event *e)
 	switch (e->kind) {
 	case EC_EVENT_WKC:
 	case EC_EVENT_STALE:
+	case EC_EVENT_UNIT:
 		return 1 + e->arg[0];
 	case EC_EVENT_SLAVE_LOST:
 	case EC_EVENT_SLAVE_FOUND:

@@ -151,6 +151,11 @@ static inline size_t ec_status_configs(const struct ec_master *m)
 	return EC_STATUS_CONFIGS;
 }
 
+static inline bool ec_status_has_units(const struct ec_master *m)
+{
+	return true;
+}
+
 static inline struct ec_ioc_send *ec_next_send(struct ec_master *m)
 {
 	return &m->api->cycle.next;

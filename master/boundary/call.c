@@ -131,7 +131,8 @@ static int show_session(struct ec_call *call, const struct ec_ioctl *op)
 				 call->master->base->index);
 	if (op->class == EC_CLASS_SHOW_CONFIG)
 		return find_config(call, *(u32 *)(call->arg + op->at));
-	return find_domain(call, *(u32 *)(call->arg + op->at));
+	return op->class == EC_CLASS_SHOW ? 0 :
+	       find_domain(call, *(u32 *)(call->arg + op->at));
 }
 
 /**
@@ -251,6 +252,7 @@ static int execute(struct ec_call *call, const struct ec_ioctl *op)
 		return ec_ioc_get_slave(call, call->arg + op->at) ?: with_show(call, op);
 	case EC_CLASS_SHOW_CONFIG:
 	case EC_CLASS_SHOW_DOMAIN:
+	case EC_CLASS_SHOW:
 		return with_show(call, op);
 	default:
 		return with_session(call, op);

@@ -24,6 +24,7 @@ enum ec_ioc_class {
 	EC_CLASS_DOMAIN,	/* the same, and a domain */
 	EC_CLASS_SHOW_CONFIG,	/* own or running session, in a show section: a configuration */
 	EC_CLASS_SHOW_DOMAIN,	/* or a domain */
+	EC_CLASS_SHOW,		/* or the session alone */
 };
 
 /* a buffer that an argument names: where its address and its bytes are, and how many at most */

@@ -11,6 +11,7 @@
 #include "master.h"
 #include "../session/reserve.h"
 #include "../session/session.h"
+#include "../session/session_units.h"
 #include "slave_device.h"
 
 static struct class *ec_class;
@@ -105,6 +106,8 @@ static int ec_release(struct inode *inode, struct file *filp)
 	struct ec_master *m = f->master;
 
 	/* a read-only file has reserved nothing: no lock is needed */
+	if (f->holds)
+		ec_session_leave_units(&m->sessions, f);
 	if (f->writable)
 		ec_session_end(&m->sessions, f);
 	ec_event_reader_end(f);

@@ -22,6 +22,7 @@ struct ec_session;
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
  * @reader: NULL, or it reads events; set once
+ * @holds: it has held a sync unit of another application
  * @admitted: bits EC_ADMITTED_*: commands of the cycle that ioctl() has let through on this file
  * @rcu: frees it after the cycle has finished with @waiters
  */
@@ -32,6 +33,7 @@ struct ec_file {
 	char reason[EC_UAPI_REASON];
 	struct ec_waiters waiters;
 	struct ec_event_reader *reader;
+	bool holds;
 	unsigned long admitted;
 	struct rcu_head rcu;
 };

@@ -49,6 +49,7 @@ CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
 	RSV1(ec_ioc_domain_fmmu), OLDEST(ec_ioc_domain_fmmu, offset))
 CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
 	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
+CMD(EC_IOC_UNIT_INFO, ec_ioc_unit_info, 0, SHOW)
 CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
 	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)))
 CMD(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
@@ -95,6 +96,14 @@ CMD(EC_IOC_SLAVE_CONFIG, ec_ioc_slave_config, F_WRITE)
 CMD(EC_IOC_GROUP, ec_ioc_group, F_WRITE, IDLE, RSV2(ec_ioc_group),
 	FLAGS(EC_GROUP_FLAG_MANDATORY | EC_GROUP_FLAG_FAST))
 CMD(EC_IOC_GROUP_CONFIG, ec_ioc_group_config, F_WRITE, RSV1(ec_ioc_group_config))
+CMD(EC_IOC_UNIT, ec_ioc_unit, F_WRITE, IDLE, RSV2(ec_ioc_unit),
+	FLAGS(EC_UNIT_FLAG_AUTHORITY | EC_UNIT_FLAG_LEASE_HOLD | EC_UNIT_FLAG_OFFERED))
+CMD(EC_IOC_DOMAIN_UNIT, ec_ioc_domain_unit, F_WRITE, DOMAIN(ec_ioc_domain_unit),
+	RSV1(ec_ioc_domain_unit))
+CMD(EC_IOC_UNIT_AUTHORITY, ec_ioc_unit_authority, F_WRITE, RSV1(ec_ioc_unit_authority))
+CMD(EC_IOC_UNIT_HOLD, ec_ioc_unit_hold, F_WRITE, RSV1(ec_ioc_unit_hold), FLAGS(EC_UNIT_HOLD_END))
+CMD(EC_IOC_UNIT_WRITE, ec_ioc_unit_write, F_WRITE, IN(ec_ioc_unit_data, EC_MAX_IMAGE))
+CMD(EC_IOC_UNIT_READ, ec_ioc_unit_read, F_WRITE, OUT(ec_ioc_unit_data, EC_MAX_IMAGE))
 CMD(EC_IOC_SC_SYNC, ec_ioc_sc_sync, F_WRITE, CONFIG(ec_ioc_sc_sync), RSV1(ec_ioc_sc_sync))
 CMD(EC_IOC_SC_WATCHDOG, ec_ioc_sc_watchdog, F_WRITE, CONFIG(ec_ioc_sc_watchdog))
 CMD(EC_IOC_SC_PDO, ec_ioc_sc_pdo, F_WRITE, CONFIG(ec_ioc_sc_pdo))

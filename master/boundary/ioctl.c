@@ -25,6 +25,7 @@
 #define DOMAIN(type) INDEX(EC_CLASS_DOMAIN, type, domain)
 #define SHOW_CONFIG(type) INDEX(EC_CLASS_SHOW_CONFIG, type, index)
 #define SHOW_DOMAIN(type) INDEX(EC_CLASS_SHOW_DOMAIN, type, index)
+#define SHOW .class = EC_CLASS_SHOW
 #define SESSION .class = EC_CLASS_SESSION
 #define IDLE .class = EC_CLASS_IDLE
 #define BUFFER(type, d, s, m, i, o) .buffer = { .address = offsetof(struct type, d), \

@@ -2,6 +2,7 @@
 /* Commands of the application that has reserved the master. */
 #include "api.h"
 #include "../config/config.h"
+#include "../config/unit.h"
 #include "../config/domain.h"
 #include "ioctl.h"
 #include "master.h"
@@ -438,6 +439,7 @@ static int take_over(struct ec_call *call)
 
 static int activate(struct ec_call *call, struct ec_session *s, const void *preset, u32 size)
 {
+	char why[EC_UAPI_REASON];
 	unsigned int i;
 	int ret;
 
@@ -450,6 +452,9 @@ static int activate(struct ec_call *call, struct ec_session *s, const void *pres
 		return ec_refuse(call, -EINVAL,
 				 "initial image has %u bytes, domains need %u; register all entries first",
 				 size, ec_session_place(s));
+	ret = ec_units_check(&s->wanted, s->cycle.setup.kernel.period_ns, why, sizeof(why));
+	if (ret)
+		return ec_refuse(call, ret, "%s", why);
 	s->preset = preset;
 	ret = ec_session_activate(s);
 	s->preset = NULL;

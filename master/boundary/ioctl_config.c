@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands that show what the application has configured. */
+#include "../cycle/units_hold.h"
 #include "../config/config.h"
 #include "../cycle/cycle_thread.h"
 #include "../config/domain.h"
@@ -253,6 +254,7 @@ int ec_ioc_domain_data(struct ec_call *call)
 		memcpy(call->data + pos, ec_session_domain_data(d) + pos, n);
 		ec_cycle_thread_outputs(&ec_domain_session(d)->cycle, call->data + pos,
 					d->offset + pos, n);
+		ec_units_show(&ec_domain_session(d)->cycle, d, call->data + pos, pos, n);
 	}
 	return 0;
 }

@@ -18,6 +18,7 @@
 struct ec_domain;
 struct ec_group;
 struct ec_slave;
+struct ec_unit;
 
 #define EC_CONFIG_NAME	(EC_UAPI_STRING + 8)
 
@@ -76,6 +77,9 @@ struct ec_config_fmmu {
 
 /* not 0: the application writes to a slave that returns before the master configures it */
 #define EC_FLAG_HOLD		"ReinitHold"
+
+/* not 0: the same frame may be sent several times in a cycle, as its ESI says */
+#define EC_FLAG_REPEAT		"FrameRepeatSupport"
 
 /* a named number that other masters know; in the order of the calls */
 struct ec_config_flag {
@@ -240,13 +244,17 @@ struct ec_wanted {
 	struct ec_group *groups[EC_MAX_GROUPS];
 	/** @n_groups: entries in @groups */
 	unsigned int n_groups;
+	/** @units: sync units */
+	struct ec_unit *units[EC_MAX_DOMAINS];
+	/** @n_units: entries in @units */
+	unsigned int n_units;
 	/** @active: activated: the configurations do not change any more, workers use them */
 	bool active;
 	/** @before: the same of the running session that is to be taken over, NULL: none */
 	const struct ec_wanted *before;
 };
 
-/* each configuration, domain, group of @w: declares @c, @d, @g */
+/* each configuration, domain, group, unit of @w: declares @c, @d, @g, @u */
 #define ec_for_each_config(c, w) \
 	for (struct ec_config **c##_at = (w)->configs, *c; \
 	     c##_at < (w)->configs + (w)->n_configs && (c = *c##_at, true); c##_at++)
@@ -257,6 +265,10 @@ struct ec_wanted {
 #define ec_for_each_group(g, w) \
 	for (struct ec_group *const *g##_at = (w)->groups, *g; \
 	     g##_at < (w)->groups + (w)->n_groups && (g = *g##_at, true); g##_at++)
+
+#define ec_for_each_unit(u, w) \
+	for (struct ec_unit *const *u##_at = (w)->units, *u; \
+	     u##_at < (w)->units + (w)->n_units && (u = *u##_at, true); u##_at++)
 
 /* For what reads configurations: the lock of the session is held, or they are shown. */
 static inline void ec_wanted_assert_stays(const struct ec_wanted *w)

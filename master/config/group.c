@@ -28,8 +28,16 @@ static bool has_sign_of(const struct ec_group *g, const struct ec_ioc_group *wha
 					      g->value == what->value;
 }
 
-/* Names are for messages and files: letters first, so that they are no numbers. */
-static bool group_is_name(const char *name)
+/**
+ * ec_group_is_name() - may a group or unit have this name?
+ * @name: EC_UAPI_STRING bytes
+ *
+ * Names are for messages and files: letters first, so that they are no numbers.
+ *
+ * Context: Any.
+ * Return: true: a letter, then letters, digits, '_', '-', '.', and a zero.
+ */
+bool ec_group_is_name(const char *name)
 {
 	size_t len = strnlen(name, EC_UAPI_STRING), i;
 
@@ -69,7 +77,7 @@ struct ec_group *ec_group_create(struct ec_wanted *w, const struct ec_ioc_group 
 	int ret;
 
 	lockdep_assert_held(w->lock);
-	if (!group_is_name(what->name) || !is_possible(w, what))
+	if (!ec_group_is_name(what->name) || !is_possible(w, what))
 		return ERR_PTR(-EINVAL);
 	ec_for_each_group(x, w) {
 		if (!strcmp(x->name, what->name))

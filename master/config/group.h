@@ -56,6 +56,7 @@ struct ec_group {
 	char name[EC_UAPI_STRING];
 };
 
+bool ec_group_is_name(const char *name);
 struct ec_group *ec_group_create(struct ec_wanted *w, const struct ec_ioc_group *what);
 void ec_group_free(struct ec_group *g);
 struct ec_config *ec_group_config(struct ec_group *g, u16 member, u32 vendor, u32 product);

@@ -12,7 +12,7 @@
  * @spare: as in its datagrams
  * @send: number of the newest send of which data were received
  * @wkc: sum of the working counters of that send
- * @partial: one of these working counters is not the expected one, even if their sum is
+ * @partial: how many of these are not the expected ones, even if their sum is
  * @age: sends of the domain since @send
  * @max_age: data that are older are stale, 0: none are
  * @stale: age of the oldest stale data received, for the log
@@ -33,7 +33,7 @@ struct ec_cyc_domain {
 	u32 max_age;
 	u32 stale;
 	bool stale_logged;
-	bool partial;
+	u32 partial;
 	u32 seen;
 	u32 noted;
 	u32 noted_state;

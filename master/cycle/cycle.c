@@ -115,7 +115,7 @@ static void forget_flights(struct ec_cycle *c)
 
 /**
  * ec_cycle_free() - free what a layout and its frames occupy
- * @c: cycle that does not run any more
+ * @c: cycle that does not run any more, whose units are freed
  *
  * Context: Process. May sleep.
  */

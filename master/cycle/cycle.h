@@ -18,6 +18,7 @@
 
 struct ec_cycle;
 struct ec_cycle_thread;
+struct ec_cyc_units;
 struct ec_waiters;
 
 #define EC_CYCLE_PRIORITY	50	/* SCHED_FIFO, when none is configured */
@@ -31,7 +32,7 @@ struct ec_waiters;
  * @queued: domains of that send, bit n: domain n
  * @missed: a receive has not found its reply
  * @in_time: mask of the links whose copy a receive before the next send has found
- * @direct: sent from struct ec_cycle.direct
+ * @direct: domains sent from struct ec_cycle.direct, bit n: domain n
  * @clocks: clock datagrams before them
  * @riding: riders behind them
  */
@@ -43,7 +44,7 @@ struct ec_cyc_flight {
 	u64 queued;
 	bool missed;
 	u8 in_time;
-	bool direct;
+	u64 direct;
 	struct ec_dc_flight clocks;
 	struct ec_riding riding;
 };
@@ -177,6 +178,8 @@ struct ec_cycle {
 	struct ec_layout layout;
 	/** @copying: the copies while active, or NULL; of the cycle owner, as is all below */
 	struct ec_copying *copying;
+	/** @units: sync units, or NULL */
+	struct ec_cyc_units *units;
 	/** @clock: clock datagrams */
 	struct ec_dc_datagrams clock;
 	/** @late: send deviations */

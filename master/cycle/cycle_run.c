@@ -17,6 +17,7 @@
 #include "cycle_run.h"
 #include "receive.h"
 #include "send.h"
+#include "units_run.h"
 #include "waiters.h"
 
 #define INDEX_MASK	3
@@ -37,6 +38,8 @@ static bool take_outputs(struct ec_cycle_thread *t)
 		return false;
 	t->front = buffer_index(xchg(&x->outputs, t->front));
 	t->given = true;
+	if (unlikely(t->cycle->units))
+		ec_units_fed(t->cycle->units, READ_ONCE(ec_cycle_run_buffer(t, t->front)->fed));
 	t->ahead = true;
 	return true;
 }
@@ -319,6 +322,8 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 	c->clock.lead = t->lock.time - t->next_ns;
 	feed(t);
 	choose_source(t);
+	if (unlikely(c->units))
+		ec_units_lease(c);
 	if (t->ops && t->ops->cycle)
 		t->ops->cycle(c);
 	if (ec_cycle_run_status(t)->state <= EC_CYCLE_STATE_STALLED) {

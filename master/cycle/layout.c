@@ -5,6 +5,7 @@
 #include "../base/limits.h"
 #include "../config/config.h"
 #include "../config/domain.h"
+#include "../config/unit.h"
 #include "../config/group.h"
 #include "layout.h"
 #include "logical.h"
@@ -263,22 +264,12 @@ static int add_stretch(struct adding *o, const struct ec_stretch *st)
 	return ret;
 }
 
-/* The first datagram of a domain with frames of its own, or of the domain after one. */
-static void begin_frame(struct ec_layout *l, const struct ec_wanted *w, const struct ec_domain *d,
-			unsigned int first)
-{
-	struct ec_cyc_dgram *g = l->dgrams + first;
-	u32 options = d->options;
-
-	if (first)
-		options |= w->domains[g[-1].domain]->options;
-	g->new_frame = options & EC_DOMAIN_OPT_OWN_FRAME;
-}
 
 static int layout_domain(struct ec_layout *l, const struct ec_wanted *w, struct ec_domain *d)
 {
 	struct adding o = { .to = l, .d = d };
 	unsigned int i, first = l->n_dgrams;
+	u8 repeats = ec_unit_repeats(w, d);
 	int ret = ec_logical_place(d, &o.l);
 
 	d->expected = 0;
@@ -287,10 +278,11 @@ static int layout_domain(struct ec_layout *l, const struct ec_wanted *w, struct 
 	ec_logical_free(&o.l);
 	d->n_dgrams = l->n_dgrams - first;
 	d->dgram_bytes = 0;
-	for (i = first; i < l->n_dgrams; i++)
+	for (i = first; i < l->n_dgrams; i++) {
 		d->dgram_bytes += EC_DGRAM_OVERHEAD + l->dgrams[i].len;
-	if (!ret && d->n_dgrams)
-		begin_frame(l, w, d, first);
+		l->dgrams[i].repeats = repeats;
+		l->dgrams[i].own_frame = d->options & EC_DOMAIN_OPT_OWN_FRAME || repeats > 1;
+	}
 	return ret;
 }
 
@@ -301,7 +293,8 @@ static int layout_domain(struct ec_layout *l, const struct ec_wanted *w, struct 
 static struct ec_cyc_wire layout_plan(const struct ec_layout *l, unsigned int max_datagrams,
 				      bool clocks)
 {
-	unsigned int count = clocks ? DC_DGRAMS : 0, own = 0, i;
+	unsigned int count = clocks ? DC_DGRAMS : 0, i;
+	const struct ec_cyc_dgram *last = NULL;
 	size_t body = clocks ? DC_BYTES + DC_DGRAMS * EC_DGRAM_OVERHEAD : 0;
 	struct ec_cyc_wire w = { 0 };
 
@@ -309,17 +302,21 @@ static struct ec_cyc_wire layout_plan(const struct ec_layout *l, unsigned int ma
 		const struct ec_cyc_dgram *g = l->dgrams + i;
 		bool end = i == l->n_dgrams;
 
-		if (count && (end || count >= max_datagrams || (own && g->new_frame) ||
+		if (count && (end || count >= max_datagrams || (!end && ec_cyc_is_apart(g, last)) ||
 			      body + EC_DGRAM_OVERHEAD + g->len > EC_FRAME_BODY_MAX)) {
-			w.frames++;
-			w.ns += ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + body);
-			body = count = own = 0;
+			u8 frames = last ? last->repeats : 1;
+
+			/* the clock datagrams are only in the first of them */
+			w.frames += frames;
+			w.ns += frames * ec_frame_wire_ns(EC_ETH_HDR + EC_FRAME_HDR + body);
+			body = count = 0;
+			last = NULL;
 		}
 		if (end)
 			break;
 		body += EC_DGRAM_OVERHEAD + g->len;
 		count++;
-		own++;
+		last = g;
 	}
 	return w;
 }

@@ -11,12 +11,16 @@ struct ec_wanted;
 
 /**
  * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use but for @wrote
- *	and @before
+ *	@before, and the best copy
  * @domain: index
  * @cmd: LRD, LWR or LRW
- * @new_frame: shares no frame with the datagrams before
+ * @own_frame: shares no frame with datagrams of other domains
  * @holes: @n_copies areas do not cover it: clear it first
  * @solid: one piece of the image has the same bytes as the whole datagram
+ * @repeats: so many frames with it are sent in a cycle
+ * @best_ok: if there are several, the best copy of send @best_send is complete
+ * @best: its working counter
+ * @best_send: number of that send
  * @wrote: low half of the number of the last send before its inputs were last written
  * @before: the same without what incomplete replies of that receive have written
  * @logical: logical address
@@ -35,9 +39,13 @@ struct ec_wanted;
 struct ec_cyc_dgram {
 	u16 domain;
 	u8 cmd;
-	bool new_frame : 1;
+	bool own_frame : 1;
 	bool holes : 1;
 	bool solid : 1;
+	bool best_ok : 1;
+	u8 repeats;
+	u16 best;
+	u32 best_send;
 	u16 wrote;
 	u16 before;
 	u32 logical;
@@ -60,6 +68,12 @@ static inline bool ec_cyc_is_complete(const struct ec_cyc_dgram *d, u16 wkc)
 	u16 spare = smp_load_acquire(&d->spare);
 
 	return (u16)(wkc - READ_ONCE(d->expected)) <= spare;
+}
+
+/* May @d not be in the frame of @last, the datagram before it, which may be NULL? */
+static inline bool ec_cyc_is_apart(const struct ec_cyc_dgram *d, const struct ec_cyc_dgram *last)
+{
+	return last && (d->own_frame | last->own_frame) && d->domain != last->domain;
 }
 
 /* It has inputs only, and their last values are in the image. */

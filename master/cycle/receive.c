@@ -10,6 +10,7 @@
 #include "../base/once64.h"
 #include "../base/report.h"
 #include "receive.h"
+#include "units_run.h"
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
 static noinline void take_cuts(struct ec_cycle *c, const struct ec_cyc_dgram *d, u32 send,
@@ -51,7 +52,7 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 {
 	const struct ec_cyc_area *in = &c->layout.areas[d->first_input];
 	u8 *image = c->domains[d->domain].image;
-	bool direct = f->direct && !ec_cyc_from_image(d);
+	bool direct = f->direct >> d->domain & 1 && !ec_cyc_from_image(d);
 	const struct ec_cyc_area *end;
 
 	/*
@@ -79,6 +80,22 @@ static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 		take_cuts(c, d, f->send, data);
 }
 
+/* Of several copies in a cycle the best one counts; what an earlier one has added is taken back. */
+static noinline bool is_better(struct ec_cyc_dgram *d, struct ec_cyc_domain *dom, u32 send,
+			       u16 wkc, bool complete)
+{
+	if (d->best_send == send) {
+		if (d->best_ok || (!complete && wkc <= d->best))
+			return false;
+		dom->wkc -= d->best;
+		dom->partial--;
+	}
+	d->best_send = send;
+	d->best = wkc;
+	d->best_ok = complete;
+	return true;
+}
+
 /*
  * Inputs and working counter of one datagram. A reply to an older send must not overwrite the
  * data of a newer one.
@@ -96,12 +113,14 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	if (f->send != dom->send) {
 		dom->send = f->send;
 		dom->wkc = 0;
-		dom->partial = false;
+		dom->partial = 0;
 	}
+	if (unlikely(d->repeats > 1) && !is_better(d, dom, f->send, wkc, complete))
+		return;
 	dom->wkc += wkc;
 	c->back |= BIT_ULL(d->domain);
 	if (unlikely(!complete))
-		dom->partial = true;
+		dom->partial++;
 	if (wkc)
 		take_inputs(c, d, f, data, complete);
 }
@@ -210,6 +229,8 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		WRITE_ONCE(st->age, judge_age(c, d, i));
 		note_wkc(c, d, i, wkc, state);
 	}
+	if (unlikely(c->units) && !READ_ONCE(c->slaves_down))
+		ec_units_judge(c, c->sent | c->back);
 	c->judged = c->send;
 	c->sent = 0;
 	c->back = 0;

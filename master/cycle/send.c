@@ -7,6 +7,7 @@
 #include "../base/once64.h"
 #include "../kernel/trace.h"
 #include "send.h"
+#include "units_run.h"
 #include "../clock/dc_app.h"
 
 /*
@@ -34,6 +35,7 @@ static bool make_room(struct ec_cycle *c, u64 now)
 /* one send */
 struct send {
 	const struct ec_ioc_send *what;
+	unsigned int end;	/* datagrams up to here */
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
 	struct ec_riding riding;	/* of the last frame */
@@ -49,6 +51,8 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 
 	if (c->direct && !ec_cyc_from_image(d))
 		image = c->direct;
+	if (unlikely(c->units) && c->units->replaced >> d->domain & 1)
+		image = c->units->image;
 	if (d->solid) {
 		memcpy(data, image + a->offset, d->len);
 		return;
@@ -64,7 +68,7 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
 			 struct send *send)
 {
-	const struct ec_cyc_dgram *d = &c->layout.dgrams[g];
+	const struct ec_cyc_dgram *d = &c->layout.dgrams[g], *last = NULL;
 	unsigned int room, dc, first = g;
 	u64 queued = send->what->queued;
 	struct ec_frame_buf fb;
@@ -75,16 +79,17 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 		ec_dc_datagrams_fill(&c->clock, &fb, slot->index, send->dc, send->now);
 	dc = fb.count;
 	room = max(c->links->max_datagrams, dc) - dc;
-	for (; g < c->layout.n_dgrams && room; g++, d++) {
+	for (; g < send->end && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
-		if (d->new_frame && fb.count > dc)
+		if (ec_cyc_is_apart(d, last))
 			break;
 		p = ec_frame_add(&fb, d->cmd, slot->index, d->logical & 0xffff,
 				 d->logical >> 16, d->len);
 		if (!p)
 			break;
 		send_fill_dgram(c, d, p);
+		last = d;
 		room--;
 	}
 	send->riding.mask = 0;
@@ -106,7 +111,7 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->queued = send->what->queued;
 	f->missed = false;
 	f->in_time = 0;
-	f->direct = c->direct;
+	f->direct = !c->direct ? 0 : c->units ? ~c->units->replaced : ~0ULL;
 	f->clocks.dgrams = send->dc;
 	f->clocks.time = c->clock.sent;
 	f->riding = send->riding;
@@ -149,6 +154,22 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	return g + count;
 }
 
+/* The same frame again, for units with repetition: datagrams @from to @g, of one domain. */
+static noinline void send_again(struct ec_cycle *c, unsigned int from, unsigned int g,
+				struct send *send)
+{
+	unsigned int n;
+
+	while (from < g && !(send->what->queued >> c->layout.dgrams[from].domain & 1))
+		from++;
+	if (from == g)
+		return;
+	send->end = g;
+	for (n = 1; n < c->layout.dgrams[from].repeats; n++)
+		send_frame(c, from, send);
+	send->end = c->layout.n_dgrams;
+}
+
 /* Wire time of a send of all domains and clock datagrams at most, ns. */
 static u32 wire_ns(const struct ec_cycle *c)
 {
@@ -186,7 +207,9 @@ static noinline void trace_send(const struct ec_cycle *c)
  */
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	struct send send = { .what = what, .now = ktime_get_ns() };
+	struct send send = {
+		.what = what, .end = c->layout.n_dgrams, .now = ktime_get_ns(),
+	};
 	struct ec_carry *carry = c->carry;
 	struct ec_links *l = c->links;
 	unsigned int g = 0;
@@ -200,6 +223,8 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		WRITE_ONCE(l->access.stopped, false);
 	if (c->copying)
 		ec_copy_run(c->copying, c->shared->status, c->domains);
+	if (unlikely(c->units))
+		ec_units_fill(c, what->queued);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
 	c->sent |= what->queued;
@@ -209,10 +234,14 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
 	while (g < c->layout.n_dgrams || send.dc) {
+		unsigned int from = g;
+
 		if (send.dc || what->queued & BIT_ULL(c->layout.dgrams[g].domain))
 			g = send_frame(c, g, &send);
 		else
 			g++;
+		if (unlikely(c->units))
+			send_again(c, from, g, &send);
 	}
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);

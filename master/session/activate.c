@@ -4,9 +4,11 @@
 #include "../base/report.h"
 #include "../bus/ports.h"
 #include "../bus/slave.h"
+#include "../config/unit.h"
 #include "../config/why.h"
 #include "../cycle/cycle_stats.h"
 #include "../cycle/cycle_thread.h"
+#include "../cycle/units.h"
 #include "../cycle/wire_time.h"
 #include "activate.h"
 #include "clear.h"
@@ -38,6 +40,9 @@ static int session_fits(const struct ec_session *s, size_t image_size)
 	size_t images = s->cycle.setup.kernel.period_ns ? 1 + 2 * EC_EXCHANGE_BUFFERS : 1;
 
 	lockdep_assert_held(&s->sessions->lock);
+	/* sync units: one that is sent instead, and the buffers of holders */
+	if (s->wanted.n_units)
+		images += 1 + EC_EXCHANGE_BUFFERS;
 	return atomic_long_read(&s->sessions->memory) + images * image_size + EC_STATUS_BYTES +
 	       ec_requests_bytes(s) + s->request_bytes > EC_MAX_SESSION_BYTES ? -EDQUOT : 0;
 }
@@ -51,6 +56,14 @@ static void activate_status(struct ec_session *s)
 	st->dc_monitor = ~0u;
 	ec_for_each_domain(d, &s->wanted)
 		st->domains[d->index].expected = d->expected;
+	ec_for_each_unit(u, &s->wanted)
+		st->units[u->what.index] = ec_units_state(&s->cycle.units->unit[u->what.index]);
+}
+
+static void free_cycle(struct ec_cycle *c)
+{
+	ec_units_end(c->units);
+	ec_cycle_free(c);
 }
 
 /* Memory and layout of the cycle, and the thread that runs it. */
@@ -68,6 +81,7 @@ static int activate_prepare(struct ec_session *s, u32 image_bytes)
 	if (s->preset)
 		memcpy(c->shared->image, s->preset, image_bytes);
 	ret = ec_requests_begin(s) ?: ec_cycle_layout(c) ?:
+	      ec_units_make(c, s->sessions->service, &s->sessions->units) ?:
 	      ec_wire_time_check(c, ec_clocks_used(s));
 	if (!ret && c->setup.kernel.period_ns)
 		ret = ec_cycle_thread_create(c, image_bytes, &cycle_ops);
@@ -75,7 +89,7 @@ static int activate_prepare(struct ec_session *s, u32 image_bytes)
 		activate_status(s);
 		return 0;
 	}
-	ec_cycle_free(c);
+	free_cycle(c);
 	ec_requests_end(s);
 	ec_shared_put(c->shared);
 	c->shared = NULL;
@@ -193,7 +207,7 @@ int ec_session_deactivate(struct ec_session *s)
 	s->timeout_log.open = false;
 	ec_requests_end(s);
 	ec_session_clear(s);
-	ec_cycle_free(&s->cycle);
+	free_cycle(&s->cycle);
 	ec_shared_put(s->cycle.shared);
 	s->cycle.shared = NULL;
 	ec_sessions_forget_times(ss);

@@ -4,6 +4,7 @@
 #include "../bus/slave.h"
 #include "clear.h"
 #include "../config/replay.h"
+#include "../config/unit.h"
 #include "ref_clock.h"
 #include "session_groups.h"
 #include "session_slave.h"
@@ -29,6 +30,7 @@ void ec_session_clear(struct ec_session *s)
 	}
 	ec_for_each_domain(d, &s->wanted)
 		ec_domain_free(d);
+	ec_units_free(&s->wanted);
 	ec_replay_free(&s->wanted.strays);
 	kvfree(s->wanted.configs);
 	kvfree(s->specs);

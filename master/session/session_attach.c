@@ -5,6 +5,7 @@
 #include "../config/replay.h"
 #include "../config/why.h"
 #include "session_attach.h"
+#include "session_units.h"
 #include "session_groups.h"
 #include "session_slave.h"
 
@@ -306,8 +307,10 @@ void ec_session_attach(struct ec_sessions *ss)
 /* An active session requests OP for its slaves, even after a tool has requested another state. */
 static bool wanted_in_op(const struct ec_session *session, const struct ec_slave *s)
 {
+	const struct ec_config *c = ec_config_of(s);
+
 	return session && session->wanted.active && !session->ending &&
-	       (ec_config_of(s) || s == session->raised);
+	       (c ? ec_session_goal(session, c) == EC_AL_OP : s == session->raised);
 }
 
 static void session_attach_try_again(const struct ec_session *session, struct ec_slave *s)

@@ -6,6 +6,7 @@
 #include "../mailbox/emerg.h"
 #include "request.h"
 #include "session_slave.h"
+#include "session_units.h"
 
 /**
  * ec_session_owns() - is the slave of a configuration its own?
@@ -115,7 +116,7 @@ bool ec_session_give(struct ec_session *s, struct ec_config *c, struct ec_slave 
 	WRITE_ONCE(slave->mbox.reply_ms, c->reply_ms);
 	ec_requests_attach(s, c);
 	if (s->wanted.active && !s->ending)
-		ec_slave_request(slave, EC_AL_OP);
+		ec_slave_request(slave, ec_session_goal(s, c));
 	else
 		ec_slave_kick(slave);
 	return true;

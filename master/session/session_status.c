@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* The state of the bus for an active session, and log messages about its application. */
+#include "../cycle/units.h"
 #include "../config/why.h"
 #include "../config/group.h"
 #include "../cycle/counts.h"
@@ -140,6 +141,7 @@ static void status_configs(struct ec_session *s)
 	ec_for_each_config(c, &s->wanted)
 		WRITE_ONCE(st->configs[c->index], ec_config_status(c));
 	ec_counts_update(&s->cycle);
+	ec_units_look(&s->cycle);
 	if (ec_groups_wait(&s->wanted))
 		WRITE_ONCE(s->sessions->bus->regroup, true);
 }

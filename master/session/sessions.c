@@ -10,14 +10,16 @@
  * ec_sessions_init() - prepare the sessions of a master, without an application
  * @ss: sessions of a master, zeroed but for the pointers to lower layers
  * @again: work that lets slaves that failed begin again, of @ss->again
+ * @units: work that takes slaves where sync units want them, of @ss->units
  *
  * Context: Process. May sleep.
  * Return: 0 or -ENOMEM; ec_sessions_exit() must follow both.
  */
-int ec_sessions_init(struct ec_sessions *ss, work_func_t again)
+int ec_sessions_init(struct ec_sessions *ss, work_func_t again, work_func_t units)
 {
 	mutex_init(&ss->lock);
 	INIT_WORK(&ss->again, again);
+	INIT_WORK(&ss->units, units);
 	/* what a request waits for is in another queue, see ec_bus_init() */
 	ss->lanes = alloc_workqueue("ethercat%u-req", WQ_UNBOUND, WQ_UNBOUND_MAX_ACTIVE,
 				    ss->base->index);

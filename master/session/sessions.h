@@ -48,6 +48,8 @@ struct ec_sessions {
 	struct workqueue_struct *service;
 	/** @again: tries slaves again that have failed */
 	struct work_struct again;
+	/** @units: takes slaves where the policies of sync units want them */
+	struct work_struct units;
 	/**
 	 * @lock: protects @session, @candidate and everything they own except the part of the
 	 * cycle owner
@@ -71,7 +73,7 @@ struct ec_sessions {
 	atomic_long_t memory;
 };
 
-int ec_sessions_init(struct ec_sessions *ss, work_func_t again);
+int ec_sessions_init(struct ec_sessions *ss, work_func_t again, work_func_t units);
 void ec_sessions_exit(struct ec_sessions *ss);
 void ec_sessions_lock(struct ec_sessions *ss);
 bool ec_sessions_trylock(struct ec_sessions *ss);

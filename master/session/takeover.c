@@ -6,6 +6,7 @@
  */
 #include "../base/report.h"
 #include "../config/group.h"
+#include "../config/unit.h"
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
 #include "clear.h"
@@ -198,6 +199,12 @@ static bool wanted_differs(const struct ec_wanted *a, const struct ec_wanted *b,
 	for (i = 0; i < a->n_domains; i++)
 		if (domain_differs(a->domains[i], b->domains[i], t))
 			return true;
+	if (NUMBER(n_units, "it has %u sync units, not %u"))
+		return true;
+	for (i = 0; i < a->n_units; i++)
+		if (ec_unit_differs(a->units[i], b->units[i]) ||
+		    a->units[i]->domains != b->units[i]->domains)
+			return differs(t, "sync unit %s", a->units[i]->what.name);
 	return false;
 }
 

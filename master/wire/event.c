@@ -106,6 +106,9 @@ static const struct row kinds[] = {
 	     U("more_stalls")),
 	KIND(OUTPUTS, "outputs_again", INFO | LATER, "new outputs after %0 cycle(s) without",
 	     U("cycles")),
+	KIND(UNIT, "unit", WARNING | LATER, SPECIAL, U("unit"), X("state"), U("reason"),
+	     U("domain"), U("working_counter"), U("expected"), U("more_changes"),
+	     X("state_before")),
 	KIND(WIRE_TIME, "wire_time", WARNING,
 	     "cyclic frames use %0 ns of %1 ns; %2 ns free for acyclic frames, minimum %3 ns: lengthen the cycle or overlap PDOs",
 	     U("cyclic_ns"), U("cycle_ns"), U("free_ns"), U("needed_ns")),
@@ -190,6 +193,15 @@ static u8 group_level(const u32 *a)
 	return expected ? EC_LINE_INFO : EC_LINE_WARN;
 }
 
+/* A command and what is whole again are no fault. */
+static u8 unit_level(const u32 *a)
+{
+	bool failed = a[2] == 1 ? a[1] & EC_UNIT_LEASE_ENDED :
+		      a[2] == 0 ? (a[1] & 0xf) == EC_UNIT_RUN_FAILED : a[2] == 3;
+
+	return failed ? EC_LINE_WARN : EC_LINE_INFO;
+}
+
 /**
  * ec_event_level() - what the kernel log has of an event
  * @e: event
@@ -215,6 +227,8 @@ enum ec_event_line ec_event_level(const struct ec_event *e)
 		return lock_level(a);
 	case EC_EVENT_GROUP:
 		return group_level(a);
+	case EC_EVENT_UNIT:
+		return unit_level(a);
 	default:
 		return row ? row->how & 0xf : EC_LINE_NONE;
 	}

@@ -5,6 +5,7 @@
 
 #include "env.h"
 #include "../../include/uapi/ethercat_event.h"
+#include "../../include/uapi/ethercat_unit.h"
 
 /* kinds of arguments */
 enum ec_event_arg {

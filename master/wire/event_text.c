@@ -257,6 +257,49 @@ static void about_stall(struct ec_event_buf *t, const struct ec_event *e,
 		add(t, "; %u more stall(s) before", a[2]);
 }
 
+/* as EC_EVENT_UNIT has them */
+enum unit_reason {
+	UNIT_COUNTER, UNIT_LEASE, UNIT_COMMAND, UNIT_STOP,
+};
+
+static const char *unit_reason(const u32 *a)
+{
+	switch (a[2]) {
+	case UNIT_LEASE:
+		return a[1] & EC_UNIT_LEASE_ENDED ? "no new outputs within the lease" :
+						    "new outputs";
+	case UNIT_COMMAND:
+		return a[1] & EC_UNIT_HAS_AUTHORITY ? "authority given" : "authority taken";
+	case UNIT_STOP:
+		return "another unit has stopped all";
+	default:
+		return (a[1] & 0xf) == EC_UNIT_RUN_COMPLETE ? "complete" :
+							      "a slave is not in OP";
+	}
+}
+
+static void about_unit(struct ec_event_buf *t, const struct ec_event *e,
+		       const struct ec_event_more *more)
+{
+	/* EC_UNIT_SENDS_* */
+	static const char *const sends[] = {
+		"outputs of the application", "outputs zero", "outputs held",
+	};
+	const u32 *a = e->arg;
+	u32 sent = a[1] >> 4 & 0xf;
+
+	(void)more;
+	add(t, "unit %u: %s", a[0], sent < ARRAY_SIZE(sends) ? sends[sent] : "?");
+	if (a[1] & EC_UNIT_DOWN)
+		add(t, ", slaves to SAFEOP");
+	if (a[2] == UNIT_COUNTER && a[3] != EC_EVENT_NONE && (a[1] & 0xf) == EC_UNIT_RUN_FAILED)
+		add(t, ": domain %u has working counter %u of %u", a[3], a[4], a[5]);
+	else
+		add(t, ": %s", unit_reason(a));
+	if (a[6])
+		add(t, "; %u more change(s) before", a[6]);
+}
+
 static void about_ref_clock(struct ec_event_buf *t, const struct ec_event *e,
 			    const struct ec_event_more *more)
 {
@@ -385,6 +428,7 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 		{ EC_EVENT_EEPROM, about_eeprom },
 		{ EC_EVENT_WKC, about_wkc },
 		{ EC_EVENT_STALL, about_stall },
+		{ EC_EVENT_UNIT, about_unit },
 		{ EC_EVENT_REF_CLOCK, about_ref_clock },
 		{ EC_EVENT_DC_FAILED, about_dc_failed },
 		{ EC_EVENT_DC_WINDOW, about_window },

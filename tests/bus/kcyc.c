@@ -32,6 +32,13 @@ void kcyc_give(struct kcyc *a)
 	KUNIT_ASSERT_LT(a->c->b->test, a->back, (u32)EC_EXCHANGE_BUFFERS);
 }
 
+/* Bit n: domain n; the others keep the outputs that the buffer has. */
+void kcyc_give_domains(struct kcyc *a, u64 domains)
+{
+	buffer(a, a->back)->fed = domains;
+	kcyc_give(a);
+}
+
 /* The newest inputs, or NULL when there are no new ones. */
 struct ec_exchange_buffer *kcyc_take(struct kcyc *a)
 {

@@ -36,6 +36,7 @@ struct ec_shared *kcyc_shared(const struct kcyc *a);
 struct ec_status_cycle *kcyc_status(const struct kcyc *a);
 u8 *kcyc_outputs(const struct kcyc *a);
 void kcyc_give(struct kcyc *a);
+void kcyc_give_domains(struct kcyc *a, u64 domains);
 struct ec_exchange_buffer *kcyc_take(struct kcyc *a);
 int kcyc_wait(struct kcyc *a, u32 timeout_us);
 void kcyc_wait_cycles(struct kcyc *a, u32 n);

@@ -24,6 +24,15 @@ static const struct ec_ioc_domain domains[] = {
 	  .datagram_count = 2, .datagram_bytes = 30, .age = 3, .max_age = 2 },
 };
 
+static const struct ec_ioc_unit_info units[] = {
+	{ .index = 0, .policy = EC_UNIT_POLICY_ZERO, .limit = 3, .repeats = 1, .domains = 1,
+	  .active = 1, .state = EC_UNIT_RUN_COMPLETE | EC_UNIT_HAS_AUTHORITY, .name = "tool" },
+	{ .index = 1, .flags = EC_UNIT_FLAG_AUTHORITY | EC_UNIT_FLAG_LEASE_HOLD, .limit = 10,
+	  .policy = EC_UNIT_POLICY_SAFEOP, .lease_cycles = 50, .repeats = 2, .domains = 2,
+	  .active = 1, .state = EC_UNIT_RUN_FAILED | EC_UNIT_SENDS_ZERO << 4 | EC_UNIT_DOWN |
+	  EC_UNIT_LEASE_ENDED | 2 << 16, .name = "axes" },
+};
+
 const unsigned int fake_configs = LEN(configs), fake_domains = LEN(domains);
 
 static const __u8 images[2][6] = { { 0xa5 }, { 1, 2, 3, 4, 5, 0xff } };
@@ -233,6 +242,15 @@ int fake_app(unsigned long request, void *arg)
 		return 0;
 	case EC_IOC_DOMAIN:
 		*(struct ec_ioc_domain *)arg = domains[((struct ec_ioc_domain *)arg)->index];
+		return 0;
+	case EC_IOC_UNIT_INFO:
+		if (!getenv("FAKE_UNITS") || ((struct ec_ioc_unit_info *)arg)->index >= LEN(units))
+			return fake_fail(ENOENT, "there is no such unit");
+		*(struct ec_ioc_unit_info *)arg = units[((struct ec_ioc_unit_info *)arg)->index];
+		return 0;
+	case EC_IOC_UNIT_AUTHORITY:
+		fake_record("unit %u authority %u\n", ((struct ec_ioc_unit_authority *)arg)->unit,
+			    ((struct ec_ioc_unit_authority *)arg)->authority);
 		return 0;
 	case EC_IOC_DOMAIN_FMMU:
 		return domain_fmmu(arg);

@@ -19,6 +19,7 @@
 #include "alone.h"
 #include "master/session/reserve.h"
 #include "master/session/session_attach.h"
+#include "master/session/session_units.h"
 #include "master/clock/dc.h"
 
 static const u8 mac[ETH_ALEN] = { 0x02, 0x00, 0x00, 0xec, 0x00, 0x03 };
@@ -69,7 +70,7 @@ static int compose(struct ec_master *m)
 		return ret;
 	ec_cycles_init(&m->cycles, m->base, &m->carry, &m->riders, &m->dc);
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
-	      ec_sessions_init(&m->sessions, ec_session_again);
+	      ec_sessions_init(&m->sessions, ec_session_again, ec_session_units);
 	ec_setup_init(&m->bus);
 	ec_dc_init(&m->dc, m->base, &m->links, &m->bus, m->sessions.service);
 	ret = ret ?: ec_api_create(m) ?: ec_cdev_init();

@@ -11,6 +11,7 @@
 #include "master/session/reserve.h"
 #include "master/session/session.h"
 #include "master/session/session_attach.h"
+#include "master/session/session_units.h"
 #include "scanned.h"
 #include "master/clock/dc.h"
 
@@ -70,7 +71,7 @@ static struct bench *bench_new(void)
 	b->ss.cycles = &b->cycles;
 	ec_cycles_init(&b->cycles, &b->s.seg.base, &b->s.seg.carry, &b->s.seg.riders, &b->dc);
 	ec_setup_init(&b->s.bus);
-	if (CHECK_EQ(ec_sessions_init(&b->ss, ec_session_again), 0)) {
+	if (CHECK_EQ(ec_sessions_init(&b->ss, ec_session_again, ec_session_units), 0)) {
 		ec_dc_init(&b->dc, &b->s.seg.base, &b->s.seg.links, &b->s.bus, b->ss.service);
 		if (scanned_scan(&b->s, SLAVES)) {
 			b->s.bus.slaves[AXIS]->pdos.wanted = true;

@@ -91,6 +91,7 @@ _ethercat()
 					w="NOP APRD APWR APRW FPRD FPWR FPRW BRD BWR BRW LRD LWR LRW ARMW FRMW" ;;
 			states)	w="INIT PREOP BOOT SAFEOP OP" ;;
 			graph)	w="DC CRC" ;;
+			units)	w="take" ;;
 			why)	w=$(_ethercat_values position "$master") ;;
 			crc)	w="reset" ;;
 			debug)	w="0 1 2" ;;

@@ -98,6 +98,56 @@ static void groups(void)
 	bench_down(&b);
 }
 
+/* A unit that begins without authority: zeros until it is complete and has it */
+static void units(void)
+{
+	ec_unit_config_t u = { .name = "axis", .policy = EC_UNIT_HOLD, .flags = EC_UNIT_AUTHORITY };
+	ec_unit_state_t st;
+	struct bench b;
+	int i, ret;
+
+	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_unit)(b.m, &u), 0);
+	IS(ecrt_master_unit(b.m, &u), 0);
+	u.limit = 9;
+	SAYS(ecrt_master_unit(b.m, &u), -EEXIST);
+	u.name = "1";
+	SAYS(ecrt_master_unit(b.m, &u), -EINVAL);
+	u.name = NULL;
+	SAYS(ecrt_master_unit(b.m, &u), -EINVAL);
+	SAYS(CALL(ecrt_domain_set_unit)(b.d, 1), -ENOENT);
+	IS(ecrt_domain_set_unit(b.d, -2), -EINVAL);
+	IS(ecrt_domain_set_unit(b.d, -1), 0);
+	IS(ecrt_domain_set_unit(b.d, 0), 0);
+	SAYS(CALL(ecrt_master_unit_authority)(b.m, 0, 1), -EINVAL);
+	IS(CALL(ecrt_master_unit_state)(b.m, 0, &st), -EINVAL);
+	NEED(bench_activate(&b));
+	u.name = "late";
+	SAYS(ecrt_master_unit(b.m, &u), -EBUSY);
+	IS(ecrt_master_unit_state(b.m, 0, NULL), -EINVAL);
+	IS(ecrt_master_unit_state(b.m, 1, &st), -EINVAL);
+	IS(ecrt_master_unit_state(b.m, 64, &st), -EINVAL);
+	IS(ecrt_master_unit_state(b.m, 0, &st), 0);
+	YES(!st.authority && st.outputs == EC_UNIT_SENDS_ZEROS);
+	SAYS(ecrt_master_unit_authority(b.m, 1, 1), -ENOENT);
+	SAYS(CALL(ecrt_master_unit_hold)(b.m, "axis", NULL), -EPERM);
+	SAYS(ecrt_master_unit_hold(b.m, NULL, NULL), -EINVAL);
+	SAYS(CALL(ecrt_master_unit_write)(b.m, 0, (const uint8_t *)&st, 1, NULL), -EPERM);
+	SAYS(CALL(ecrt_master_unit_read)(b.m, 0, (uint8_t *)&st, 1, &st), -EPERM);
+	NEED(bench_op(&b));
+	for (i = 0, ret = -EINPROGRESS; i < 2000 && ret == -EINPROGRESS; i++) {
+		bench_cycle(&b, 1);
+		ret = ecrt_master_unit_authority(b.m, 0, 1);
+	}
+	IS(ret, 0);
+	bench_cycle(&b, 1);
+	bench_cycle(&b, 1);
+	IS(ecrt_master_unit_state(b.m, 0, &st), 0);
+	YES(st.authority && st.outputs == EC_UNIT_SENDS_APPLICATION && st.run == EC_UNIT_COMPLETE);
+	YES(!st.faults && !st.down && !st.held && !st.lease_ended);
+	bench_down(&b);
+}
+
 const struct api_case layout_cases[] = {
 	{ "as it is without options", plain },
 	{ "a slave whose process data overlap", overlapping },
@@ -106,6 +156,7 @@ const struct api_case layout_cases[] = {
 	{ "own frame", own_frame },
 	{ "late cycles", late_cycles },
 	{ "hot connect groups", groups },
+	{ "sync units", units },
 	{ "what cannot be is refused", refused },
 	{ NULL, NULL },
 };

@@ -177,6 +177,13 @@ static void requests(void)
 	IS(ecrt_reg_request_read(NULL, 1, 1), -EINVAL);
 	IS(ecrt_reg_request_readwrite(NULL, 1, 1), -EINVAL);
 	IS(ecrt_slave_config_command(NULL, EC_STEP_PS, NULL), -EINVAL);
+	IS(ecrt_master_unit(NULL, NULL), -EINVAL);
+	IS(ecrt_domain_set_unit(NULL, 0), -EINVAL);
+	IS(ecrt_master_unit_authority(NULL, 0, 1), -EINVAL);
+	IS(ecrt_master_unit_state(NULL, 0, NULL), -EINVAL);
+	IS(ecrt_master_unit_hold(NULL, "a", NULL), -EINVAL);
+	IS(ecrt_master_unit_write(NULL, 0, NULL, 0, NULL), -EINVAL);
+	IS(ecrt_master_unit_read(NULL, 0, NULL, 0, NULL), -EINVAL);
 	YES(!ecrt_master_create_datagram_request(NULL, 4));
 	YES(!ecrt_datagram_request_data(NULL));
 	IS(ecrt_datagram_request_state(NULL), EC_REQUEST_ERROR);

@@ -81,6 +81,7 @@ static int configure_more(void)
 {
 	static const uint8_t value[4096];
 	static const ec_group_info_t group = { .name = "g", .by = EC_GROUP_ID, .value = 9 };
+	static const ec_unit_config_t unit = { .name = "u", .policy = EC_UNIT_ZERO };
 	struct in_addr address = { .s_addr = 0x0100000a };
 
 	for (uint16_t i = 1; i < APP_CONFIGS; i++) {
@@ -99,7 +100,7 @@ static int configure_more(void)
 			return -1;
 	}
 	written = ecrt_slave_config_create_reg_request(sc, 1);
-	return !written || ecrt_master_group(master, &group) ||
+	return !written || ecrt_master_group(master, &group) || ecrt_master_unit(master, &unit) ||
 	       !ecrt_master_group_config(master, 0, 0, 1, 2);
 }
 

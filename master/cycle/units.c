@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Sync units: made by an activation, and what commands do with them. */
+#include <linux/bitops.h>
+#include <linux/slab.h>
+#include <linux/workqueue.h>
+#include "../base/report.h"
+#include "../config/domain.h"
+#include "../config/group.h"
+#include "../config/unit.h"
+#include "../config/why.h"
+#include "cycle.h"
+#include "units.h"
+#include "units_hold.h"
+
+/* One more area; process data of a slave behind those of the one before are one. */
+static unsigned int add_area(struct ec_unit_area *list, unsigned int n, u32 offset, u32 len)
+{
+	if (n && list[n - 1].offset + list[n - 1].len == offset) {
+		list[n - 1].len += len;
+		return n;
+	}
+	list[n] = (struct ec_unit_area){ offset, len };
+	return n + 1;
+}
+
+static unsigned int add_areas(struct ec_unit_area *list, const struct ec_domain *d, u8 dir)
+{
+	unsigned int i, n = 0;
+
+	for (i = 0; i < d->n_fmmus; i++) {
+		const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
+
+		if (f->dir == dir && f->size)
+			n = add_area(list, n, d->offset + f->offset, f->size);
+	}
+	return n;
+}
+
+static int make_places(struct ec_cyc_units *us, const struct ec_wanted *w)
+{
+	struct ec_unit_area *at;
+	size_t n = 0;
+
+	ec_for_each_domain(d, w)
+		n += d->n_fmmus;
+	us->areas = kvcalloc(n ?: 1, sizeof(*us->areas), GFP_KERNEL_ACCOUNT);
+	if (!us->areas)
+		return -ENOMEM;
+	at = us->areas;
+	ec_for_each_domain(d, w) {
+		struct ec_unit_place *p = &us->places[d->index];
+
+		p->areas = at;
+		p->outputs = add_areas(at, d, EC_CFG_DIR_OUTPUT);
+		p->inputs = add_areas(at + p->outputs, d, EC_CFG_DIR_INPUT);
+		at += p->outputs + p->inputs;
+		us->used |= BIT_ULL(d->index);
+	}
+	return 0;
+}
+
+/* The unit of each slave; one that takes its slaves to SAFEOP has them alone. */
+static int make_configs(struct ec_cyc_units *us, const struct ec_wanted *w)
+{
+	unsigned int i, k;
+
+	us->of_config = kvmalloc(w->n_configs ?: 1, GFP_KERNEL_ACCOUNT);
+	if (!us->of_config)
+		return -ENOMEM;
+	memset(us->of_config, EC_NO_UNIT, w->n_configs);
+	for (i = 0; i < us->n; i++)
+		ec_for_each_domain(d, w)
+			for (k = 0; us->unit[i].domains >> d->index & 1 && k < d->n_fmmus; k++)
+				us->of_config[d->fmmus[k].config->index] = i;
+	return 0;
+}
+
+static void make_unit(struct ec_cyc_units *us, const struct ec_unit *from)
+{
+	struct ec_cyc_unit *u = &us->unit[us->n++];
+	unsigned int i;
+
+	u->what = from->what;
+	u->domains = from->domains;
+	for (i = 0; i < EC_MAX_DOMAINS; i++)
+		if (u->domains >> i & 1 && us->places[i].outputs)
+			u->feeds |= BIT_ULL(i);
+	u->authority = !(u->what.flags & EC_UNIT_FLAG_AUTHORITY);
+	u->sends = u->authority ? EC_UNIT_SENDS_VALUES : EC_UNIT_SENDS_ZERO;
+	u->without = EC_UNIT_SENDS_ZERO;
+	if (!u->authority)
+		us->replaced |= u->domains;
+}
+
+/**
+ * ec_units_make() - prepare the sync units of an activation
+ * @c: cycle with a layout; ec_units_end() frees it, also after an error
+ * @queue: runs @alarm
+ * @alarm: takes slaves to the states that ec_units_keep_down() says
+ *
+ * Without units nothing is made, and a cycle has no work for them.
+ *
+ * Context: Process, lock of the configuration held. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_units_make(struct ec_cycle *c, struct workqueue_struct *queue, struct work_struct *alarm)
+{
+	const struct ec_wanted *w = c->wanted;
+	struct ec_cyc_units *us;
+	int ret;
+
+	lockdep_assert_held(w->lock);
+	if (!w->n_units)
+		return 0;
+	us = kvzalloc(struct_size(us, unit, w->n_units), GFP_KERNEL_ACCOUNT);
+	if (!us)
+		return -ENOMEM;
+	us->queue = queue;
+	us->alarm = alarm;
+	us->image = kvzalloc(c->shared->image_size ?: 1, GFP_KERNEL_ACCOUNT);
+	ret = us->image ? make_places(us, w) : -ENOMEM;
+	if (!ret) {
+		ec_for_each_unit(u, w) {
+			make_unit(us, u);
+			ret = ret ?: ec_units_buffers(&us->unit[us->n - 1], w);
+		}
+		ret = ret ?: make_configs(us, w);
+	}
+	if (ret)
+		ec_units_end(us);
+	else
+		c->units = us;
+	return ret;
+}
+
+/**
+ * ec_units_end() - free the units of a cycle
+ * @us: of a cycle that does not run any more, or NULL
+ *
+ * Context: Process. May sleep.
+ */
+void ec_units_end(struct ec_cyc_units *us)
+{
+	unsigned int i;
+
+	if (!us)
+		return;
+	for (i = 0; i < us->n; i++)
+		kvfree(us->unit[i].buffers);
+	kvfree(us->image);
+	kvfree(us->areas);
+	kvfree(us->of_config);
+	kvfree(us);
+}
+
+/**
+ * ec_units_give() - give authority to a unit
+ * @c: active cycle with units
+ * @unit: index
+ *
+ * A unit that is not complete does not get it, nor one that another has stopped. If its policy has taken slaves to SAFEOP, they go to
+ * OP again.
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: 0: the next receive gives it; -EINPROGRESS: its working counters are not complete.
+ */
+int ec_units_give(struct ec_cycle *c, u32 unit)
+{
+	struct ec_cyc_units *us = c->units;
+	struct ec_cyc_unit *u = &us->unit[unit];
+	bool all = READ_ONCE(us->stopped) == unit + 1 && READ_ONCE(us->down);
+
+	lockdep_assert_held(c->wanted->lock);
+	if (READ_ONCE(u->down) || all) {
+		WRITE_ONCE(u->down, false);
+		if (all)
+			WRITE_ONCE(us->down, false);
+		queue_work(us->queue, us->alarm);
+		return -EINPROGRESS;
+	}
+	if (READ_ONCE(u->run) != EC_UNIT_RUN_COMPLETE ||
+	    (us->stopped && us->stopped != unit + 1))
+		return -EINPROGRESS;
+	WRITE_ONCE(u->wish, EC_UNIT_GIVE);
+	return 0;
+}
+
+/**
+ * ec_units_take() - take authority from a unit
+ * @c: active cycle with units
+ * @unit: index
+ *
+ * The outputs of the next send are zero.
+ *
+ * Context: Process, lock of the configuration held.
+ */
+void ec_units_take(struct ec_cycle *c, u32 unit)
+{
+	lockdep_assert_held(c->wanted->lock);
+	WRITE_ONCE(c->units->unit[unit].wish, EC_UNIT_TAKE);
+}
+
+/* One of a group that may be absent does not count until it is in OP. */
+static bool is_in_op(const struct ec_config *c)
+{
+	return ec_config_status(c) & EC_STATUS_SC_OP || ec_group_is_optional(c->group);
+}
+
+static bool has_all_in_op(const struct ec_cyc_unit *u, const struct ec_wanted *w)
+{
+	unsigned int i;
+
+	ec_for_each_domain(d, w)
+		for (i = 0; u->domains >> d->index & 1 && i < d->n_fmmus; i++)
+			if (!is_in_op(d->fmmus[i].config))
+				return false;
+	return true;
+}
+
+/**
+ * ec_units_look() - are the slaves of the units in OP?
+ * @c: active cycle
+ *
+ * A slave in SAFEOP counts in working counters as one in OP does.
+ *
+ * Context: Process, lock of the configuration held.
+ */
+void ec_units_look(struct ec_cycle *c)
+{
+	unsigned int i;
+
+	lockdep_assert_held(c->wanted->lock);
+	for (i = 0; c->units && i < c->units->n; i++)
+		WRITE_ONCE(c->units->unit[i].op, has_all_in_op(&c->units->unit[i], c->wanted));
+}
+
+/**
+ * ec_units_keep_down() - is a slave to be in SAFEOP?
+ * @c: active cycle
+ * @config: index of its configuration
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: true: a policy has taken it out of OP.
+ */
+bool ec_units_keep_down(const struct ec_cycle *c, u32 config)
+{
+	const struct ec_cyc_units *us = c->units;
+
+	lockdep_assert_held(c->wanted->lock);
+	if (!us)
+		return false;
+	return READ_ONCE(us->down) || (us->of_config[config] != EC_NO_UNIT &&
+				       READ_ONCE(us->unit[us->of_config[config]].down));
+}

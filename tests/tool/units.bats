@@ -1,0 +1,38 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+
+load common
+
+setup() {
+	export FAKE_BUS=app FAKE_UNITS=1
+}
+
+@test "units and domains show units, their policy and state" {
+	golden units units
+	golden domains_units domains
+	out units -j | json '[u["name"] for u in d["masters"][0]["units"]] == ["tool", "axes"]'
+	out units -j | json '(lambda u: (u["run"], u["outputs"], u["slaves_down"], u["faults"], u["lease_cycles"], u["lease_holds"], u["repeats"], u["domains"]) == ("failed", "zero", True, 2, 50, True, 2, [1]))(d["masters"][0]["units"][1])'
+	out domains -j | json 'd["masters"][0]["domains"][1]["unit"] == "axes"'
+}
+
+@test "without units nothing is shown" {
+	unset FAKE_UNITS
+	[ -z "$(out units)" ]
+	out units -j | json 'd["masters"][0]["units"] == []'
+	out domains -j | json 'd["masters"][0]["domains"][1]["unit"] is None'
+}
+
+@test "units take takes authority, and refuses what it does not know" {
+	[ "$(log_of units take axes | tail -n 1)" = "unit 1 authority 0" ]
+	run ethercat units take nothing
+	[ "$status" -eq 1 ]
+	[[ $output == *"Master0 has no unit nothing; 'ethercat units' shows them"* ]]
+	run ethercat units give axes
+	[ "$status" -eq 1 ]
+	[[ $output == *"'give': use no argument, or take and the name of a unit"* ]]
+	run ethercat units take
+	[ "$status" -eq 1 ]
+	[[ $output == *"'take': use no argument"* ]]
+	FAKE_READONLY=1 run ethercat units take axes
+	[ "$status" -eq 1 ]
+}
