@@ -10,8 +10,7 @@
 /* of receive times; the way through any port and back takes longer */
 #define NOISE_NS	40
 
-/* order in which a frame passes the ports of a slave (ETG.1000.4 clause 6.2) */
-static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
+const u8 ec_graph_order[EC_MAX_PORT] = { 0, 3, 1, 2 };
 
 /**
  * ec_graph_open_ports() - by which ports do frames leave a slave?
@@ -65,7 +64,7 @@ static u8 entry_of(const struct ec_slave *s)
 	unsigned int i;
 
 	for (i = 0; i < EC_MAX_PORT; i++) {
-		u8 p = order[i];
+		u8 p = ec_graph_order[i];
 
 		if (!ec_graph_is_open(s, p))
 			continue;
@@ -80,7 +79,7 @@ static u8 entry_of(const struct ec_slave *s)
 /* the port a frame passes as number @step after its entry */
 static u8 port_at(const struct ec_slave *s, unsigned int step)
 {
-	return order[(place[s->graph.upstream] + step) % EC_MAX_PORT];
+	return ec_graph_order[(place[s->graph.upstream] + step) % EC_MAX_PORT];
 }
 
 /* Number of port 0 likewise: behind it is the processing unit; 0: the entry is port 0. */

@@ -4,8 +4,12 @@
 #define EC_GRAPH_H
 
 #include <linux/types.h>
+#include "../wire/regs.h"
 
 struct ec_slave;
+
+/* order in which a frame passes the ports of a slave (ETG.1000.4 clause 6.2) */
+extern const u8 ec_graph_order[EC_MAX_PORT];
 
 u8 ec_graph_open_ports(u16 dl_status);
 bool ec_graph_is_open(const struct ec_slave *s, unsigned int port);

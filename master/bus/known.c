@@ -223,25 +223,43 @@ bool ec_known_is(const struct ec_bus *bus, u16 station, u32 vendor, u32 product,
 	return false;
 }
 
+static bool is_taken(const struct ec_bus *bus, struct ec_slave *const *known, const u8 *claims,
+		     u16 station)
+{
+	return !station || station == U16_MAX ||
+	       (known ? known[station] != NULL : ec_known_is_present(bus, station)) ||
+	       (claims && claims[station]);
+}
+
 /**
- * ec_known_fresh_station() - a station address that no device has or had
+ * ec_known_fresh_station() - find a station address that no device has
  * @bus: bus
+ * @known: slaves of the list by address; NULL: the list is searched
+ * @claims: for each address, how many slaves of the ring have it; NULL: those of the list do
+ *
+ * One that no disconnected device had either, as long as there are such: it may return with it.
+ * U16_MAX is not given, the clocks use it for "no slave".
  *
  * Context: The monitor thread.
  * Return: the address, or 0 when all are in use.
  */
-u16 ec_known_fresh_station(struct ec_bus *bus)
+u16 ec_known_fresh_station(struct ec_bus *bus, struct ec_slave *const *known, const u8 *claims)
 {
-	u16 last = bus->next_station;
+	u16 last = bus->next_station, second = 0;
 	u32 i;
 
-	for (i = 0; i <= EC_MAX_SLAVES; i++)
-		if (++last && last != U16_MAX && !ec_known_is_present(bus, last) &&
-		    !was_present(&bus->known, last)) {
+	for (i = 0; i <= EC_MAX_SLAVES; i++) {
+		if (is_taken(bus, known, claims, ++last))
+			continue;
+		if (!was_present(&bus->known, last)) {
 			bus->next_station = last;
 			return last;
 		}
-	return 0;
+		second = second ?: last;
+	}
+	if (second)
+		bus->next_station = second;
+	return second;
 }
 
 /**

@@ -16,7 +16,7 @@ bool ec_known_is_present(const struct ec_bus *bus, u16 station);
 bool ec_known_was_there(const struct ec_bus *bus, u16 station);
 u64 ec_known_by_station(const struct ec_bus *bus, u16 station);
 bool ec_known_is(const struct ec_bus *bus, u16 station, u32 vendor, u32 product, u32 serial);
-u16 ec_known_fresh_station(struct ec_bus *bus);
+u16 ec_known_fresh_station(struct ec_bus *bus, struct ec_slave *const *known, const u8 *claims);
 struct ec_image *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head);
 void ec_known_forget_images(struct ec_bus *bus);
 struct ec_lost *ec_known_lost(const struct ec_bus *bus, u64 number);

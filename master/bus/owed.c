@@ -43,6 +43,26 @@ void ec_owed_note(struct ec_bus *bus, u16 has, u16 own)
 }
 
 /**
+ * ec_owed_has_lost() - has a slave of the list lost its station address?
+ * @s: slave
+ * @own: read of a register at its address
+ * @up: read of the DL status of the slave at which it hangs; that without one: any
+ * @dl: result of @up
+ *
+ * Context: The monitor thread.
+ * Return: whether it does not reply, although the port at which it hangs is open.
+ */
+bool ec_owed_has_lost(const struct ec_slave *s, const struct ec_dg *own, const struct ec_dg *up,
+		      const u8 *dl)
+{
+	if (own->err || own->wkc)
+		return false;
+	return !ec_graph_parent(s) ||
+	       (!up->err && up->wkc == 1 &&
+		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->graph.parent_port));
+}
+
+/**
  * ec_owed_find() - slaves of the list that have lost their station addresses
  * @bus: bus
  * @found: result, in ring order
@@ -71,12 +91,12 @@ unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, uns
 
 		if (!d->err && d->wkc == 1)
 			s->dl_seen = get_unaligned_le16(dl[s->position]);
-		if (d->err || d->wkc || READ_ONCE(s->reply.silent))
+		if (READ_ONCE(s->reply.silent))
 			continue;
-		if (u && !lost[u->position] &&
-		    (dg[u->position].err || dg[u->position].wkc != 1 ||
-		     !(ec_graph_open_ports(get_unaligned_le16(dl[u->position])) &
-		       BIT(s->graph.parent_port))))
+		/* nothing says whether the port of one that has lost its own is open */
+		if (u && lost[u->position] ? d->err || d->wkc :
+		    !ec_owed_has_lost(s, d, u ? &dg[u->position] : NULL,
+				      u ? dl[u->position] : NULL))
 			continue;
 		lost[s->position] = true;
 		if (n < max)

@@ -6,6 +6,7 @@
 #include <linux/types.h>
 
 struct ec_bus;
+struct ec_dg;
 struct ec_slave;
 
 /**
@@ -22,6 +23,8 @@ struct ec_owed {
 	bool tried;
 };
 
+bool ec_owed_has_lost(const struct ec_slave *s, const struct ec_dg *own, const struct ec_dg *up,
+		      const u8 *dl);
 unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, unsigned int max);
 const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station);
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s);

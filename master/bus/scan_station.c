@@ -5,6 +5,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "known.h"
 #include "scan_address.h"
 #include "scan_int.h"
 #include "scan_station.h"
@@ -44,25 +45,6 @@ static int index_known(struct scan *sc)
 		return -ENOMEM;
 	ec_for_each_slave(s, sc->bus)
 		sc->known[s->station] = s;
-	return 0;
-}
-
-/**
- * ec_scan_station() - find a station address that no slave has
- * @last: address found last
- * @known: slaves of the last scan by address
- * @claims: for each address, how many slaves have it now
- *
- * Context: Any.
- * Return: the address, or 0 when all are in use.
- */
-u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims)
-{
-	u32 i;
-
-	for (i = 0; i <= EC_MAX_SLAVES; i++)
-		if (++last && last != NO_STATION && !known[last] && !claims[last])
-			return last;
 	return 0;
 }
 
@@ -285,10 +267,9 @@ static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 	*write = !addressed || known;
 	sc->regs[i].own = addressed ? old : 0;
 	if (*write) {
-		station = ec_scan_station(sc->bus->next_station, sc->known, sc->claims);
+		station = ec_known_fresh_station(sc->bus, sc->known, sc->claims);
 		if (!station)
 			return -ENOSPC;
-		sc->bus->next_station = station;
 		/* not for another one as well */
 		sc->claims[station] = 1;
 	}

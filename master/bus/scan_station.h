@@ -11,6 +11,5 @@ struct scan;
 
 int ec_scan_stations(struct scan *sc);
 const struct ec_slave *ec_scan_unreadable(const struct ec_bus *bus, unsigned int i);
-u16 ec_scan_station(u16 last, struct ec_slave *const *known, const u8 *claims);
 
 #endif

@@ -18,9 +18,6 @@
 #define BRANCH	256	/* slaves that are let in together; the others after the next scan */
 #define DEPTH	64	/* slaves one behind the other at which a branch begins */
 
-/* in which a frame passes the ports */
-static const u8 order[EC_MAX_PORT] = { 0, 3, 1, 2 };
-
 /* Is it an address that a try before has given to the guest? */
 static bool was_fresh(const struct ec_guest *g, u16 station)
 {
@@ -79,7 +76,7 @@ static int greet(struct ec_trials *t, struct ec_guest *g)
 		return ret == -ENOLINK ? ret : -EAGAIN;
 	}
 	/* each time another one: when frames are lost, any slave may have got it */
-	g->station = ec_known_fresh_station(t->bus);
+	g->station = ec_known_fresh_station(t->bus, NULL, NULL);
 	if (!g->station)
 		return -ENOSPC;
 	put_unaligned_le16(g->station, fresh);
@@ -135,7 +132,7 @@ static u8 guest_entry(const struct ec_guest *g)
 	unsigned int i;
 
 	for (i = 0; i < EC_MAX_PORT; i++) {
-		u8 p = order[i];
+		u8 p = ec_graph_order[i];
 
 		if (open & BIT(p) &&
 		    (best < 0 || (has_times ? (s32)(get_unaligned_le32(g->times + 4 * p) -
@@ -259,9 +256,9 @@ static u32 measure_branch(const struct ec_trials *t)
 	    ec_xfer_fpwr(t->bus->links, t->host.station, EC_REG_DC_RECV(0), latch, 4) ||
 	    ec_xfer_fprd(t->bus->links, t->host.station, EC_REG_DC_RECV(0), times, sizeof(times)))
 		return guess;
-	for (last = k = 0; order[k] != t->port; k++)
-		if (ec_graph_open_ports(t->dl) & BIT(order[k]))
-			last = order[k];
+	for (last = k = 0; ec_graph_order[k] != t->port; k++)
+		if (ec_graph_open_ports(t->dl) & BIT(ec_graph_order[k]))
+			last = ec_graph_order[k];
 	ns = get_unaligned_le32(times + 4 * last) - get_unaligned_le32(times);
 	/* not every controller has receive times */
 	return ns > 0 ? ns : guess;
@@ -335,11 +332,11 @@ static unsigned int next_link(const struct ec_guest *g, unsigned int after)
 {
 	unsigned int k = 0;
 
-	while (order[k] != after)
+	while (ec_graph_order[k] != after)
 		k++;
 	for (k++; k < EC_MAX_PORT; k++)
-		if (get_unaligned_le16(g->dl) & EC_DLS_LINK(order[k]))
-			return order[k];
+		if (get_unaligned_le16(g->dl) & EC_DLS_LINK(ec_graph_order[k]))
+			return ec_graph_order[k];
 	return 0;
 }
 

@@ -40,17 +40,6 @@ static void close_surely(const struct ec_trials *t, const u8 *closed)
 			return;
 }
 
-/* Does @s not reply at its address, although the port at which it hangs is open? */
-static bool has_lost_address(const struct ec_slave *s, const struct ec_dg *own,
-			     const struct ec_dg *up, const u8 *dl)
-{
-	if (own->err || own->wkc)
-		return false;
-	return !ec_graph_parent(s) ||
-	       (!up->err && up->wkc == 1 &&
-		ec_graph_open_ports(get_unaligned_le16(dl)) & BIT(s->graph.parent_port));
-}
-
 /*
  * The own address of the slave that has the one meant for the guest. The frame that wrote it has
  * read the one before. If that was lost, it is the next slave of the ring, or the only one that has
@@ -170,7 +159,7 @@ int ec_trial_run(struct ec_trials *t, u16 station)
 	t->dl = check[0].err || check[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!check[1].err && check[1].wkc) {
 		trial_give_back(t, station, next &&
-				has_lost_address(next, &check[2], &check[3], up_dl));
+				ec_owed_has_lost(next, &check[2], &check[3], up_dl));
 		return -ENOLINK;
 	}
 	if (!(t->dl & EC_DLS_LINK(t->port)))

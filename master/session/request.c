@@ -145,7 +145,7 @@ static bool request_look(struct ec_requests *rq)
 	mutex_lock(&rq->lock);
 	for (i = 0; i < rq->n_lanes; i++) {
 		struct ec_lane *lane = &rq->lanes[i];
-		bool there = lane->config == EC_UAPI_NONE32 || lane_slave(s, lane), todo = false;
+		bool there = lane->config == EC_UAPI_NONE32 || lane_slave(s, lane), waits = false;
 		struct ec_request *r;
 
 		list_for_each_entry(r, &lane->requests, list) {
@@ -158,10 +158,10 @@ static bool request_look(struct ec_requests *rq)
 			else if (expired(r, now))
 				request_fail(r, -ETIMEDOUT);
 			else
-				todo = true;
+				waits = true;
 		}
-		more |= todo;
-		if (todo && there)
+		more |= waits;
+		if (waits && there)
 			request_queue(rq, rq->sessions->lanes, &lane->work);
 	}
 	mutex_unlock(&rq->lock);

@@ -7,8 +7,8 @@
 #include "cyc.h"
 #include "slow.h"
 #include "master/boundary/ioctl.h"
+#include "master/bus/known.h"
 #include "master/bus/scan_count.h"
-#include "master/bus/scan_station.h"
 
 #define MANY	100
 
@@ -342,24 +342,73 @@ static void link_claims_beyond_memory_refused(struct kunit *test)
 	all_are_well(b, MANY);
 }
 
+static u16 fresh(struct kunit *test, struct ec_bus *bus, u16 last, struct ec_slave **known,
+		 const u8 *claims)
+{
+	u16 station;
+
+	bus->next_station = last;
+	station = ec_known_fresh_station(bus, known, claims);
+	KUNIT_EXPECT_EQ(test, bus->next_station, station ?: last);
+	return station;
+}
+
 /* All addresses in use: the search ends. */
 static void link_station_search_ends(struct kunit *test)
 {
 	struct ec_slave **known = kvcalloc(EC_MAX_SLAVES + 1, sizeof(*known), GFP_KERNEL);
+	struct ec_bus *bus = kunit_kzalloc(test, sizeof(*bus), GFP_KERNEL);
 	u8 *claims = kvzalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
 
+	KUNIT_ASSERT_NOT_NULL(test, bus);
 	KUNIT_ASSERT_NOT_NULL(test, known);
 	KUNIT_ASSERT_NOT_NULL(test, claims);
-	KUNIT_EXPECT_EQ(test, ec_scan_station(0, known, claims), 1);
-	KUNIT_EXPECT_EQ(test, ec_scan_station(65535, known, claims), 1);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 0, known, claims), 1);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 65535, known, claims), 1);
 	/* 65535 is no slave's: the clocks use it for "none" */
-	KUNIT_EXPECT_EQ(test, ec_scan_station(65534, known, claims), 1);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 65534, known, claims), 1);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 65534, NULL, NULL), 1);
 	memset(claims, 1, EC_MAX_SLAVES + 1);
-	KUNIT_EXPECT_EQ(test, ec_scan_station(7, known, claims), 0);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 7, known, claims), 0);
 	claims[7] = 0;
-	KUNIT_EXPECT_EQ(test, ec_scan_station(7, known, claims), 7);
-	KUNIT_EXPECT_EQ(test, ec_scan_station(8, known, claims), 7);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 7, known, claims), 7);
+	KUNIT_EXPECT_EQ(test, fresh(test, bus, 8, known, claims), 7);
 	kvfree(known);
+	kvfree(claims);
+}
+
+/* That of a disconnected slave is given only if there is no other one: it may return with it. */
+static void link_station_of_disconnected_kept(struct kunit *test)
+{
+	static const char text[] =
+		"segment seed=3 response=100us transition=1ms\n"
+		"slave hub EK1100\nslave a drive in=8 out=8\n"
+		"branch hub 2\nslave c drive in=8 out=8\nbranch none\nslave x drive in=8 out=8\n";
+	struct bus *b = bus_up(test, text, 3);
+	u16 station = bus_slave(b, 2)->station;
+	u64 device = bus_slave(b, 2)->device;
+	u8 *claims = kvmalloc(EC_MAX_SLAVES + 1, GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, claims);
+	bus_idle(b);
+	bus_command(b, "unplug hub.2");
+	KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 20000), ~0ull);
+	bus_idle(b);
+	bus_table(b)->next_station = station - 1;
+	bus_command(b, "plug a.1 x.0");
+	KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 20000), ~0ull);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->station, station + 1);
+	bus_command(b, "plug hub.2 c.0");
+	KUNIT_ASSERT_NE(test, bus_wait(b, 4, EC_AL_PREOP, 20000), ~0ull);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 3)->station, station);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 3)->device, device);
+	bus_command(b, "unplug hub.2");
+	KUNIT_ASSERT_NE(test, bus_wait(b, 3, EC_AL_PREOP, 20000), ~0ull);
+	bus_idle(b);
+	memset(claims, 1, EC_MAX_SLAVES + 1);
+	claims[station] = 0;
+	bus_table(b)->next_station = 7;
+	KUNIT_EXPECT_EQ(test, ec_known_fresh_station(bus_table(b), NULL, claims), station);
 	kvfree(claims);
 }
 
@@ -428,6 +477,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(link_loss_ends_waiting_beside_slow_cycle),
 	KUNIT_CASE(link_claims_beyond_memory_refused),
 	KUNIT_CASE(link_station_search_ends),
+	KUNIT_CASE(link_station_of_disconnected_kept),
 	KUNIT_CASE(link_device_beside_cycle_waits_for_its_call),
 	{}
 };
