@@ -2,6 +2,7 @@
 /* An address is written by position while slaves before that position leave the ring. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
+#include "master/bus/ports.h"
 
 static const char text[] =
 	"segment seed=3 response=100us transition=1ms\n"
@@ -15,9 +16,14 @@ static const char text[] =
 /* in the segment, and in the ring */
 enum { N = 8, A1 = 1, B1 = 4, B1_AT = 6 };
 
+/* of a shorter bus, in the segment; in the ring X1 precedes B1 */
+enum { M_B1 = 3, M_B2, M = 6 };
+
 #define FRAMES	12	/* of a scan up to the addresses */
 
 static struct bus *hooked;
+static bool hook_loses;	/* the frame that writes addresses does not return */
+static bool hook_forgets;	/* B2 has lost its address as well */
 
 /* The scan asks right after it has read the addresses: has the failed hub a configuration? */
 static bool cut_now(const struct ec_slave *s)
@@ -26,8 +32,13 @@ static bool cut_now(const struct ec_slave *s)
 		.at_ns = ktime_get_ns(), .type = EC_SIM_FAULT_CUT, .slave = A1,
 	};
 
-	if (hooked)
-		ec_sim_add_fault(hooked->sim, &cut);
+	if (!hooked)
+		return true;
+	ec_sim_add_fault(hooked->sim, &cut);
+	if (hook_loses)
+		bus_command(hooked, "lose frame=1 register=0x10 when=back");
+	if (hook_forgets)
+		put_unaligned_le16(0x5555, bus_esc(hooked, M_B2)->mem + EC_REG_STATION);
 	hooked = NULL;
 	return true;
 }
@@ -112,9 +123,84 @@ static void address_while_slaves_leave(struct kunit *test)
 	}
 }
 
+/* A session with B2, and with B1; slaves are let in without a trial, as with loops=auto. */
+static struct cyc *run_b(struct kunit *test, const char *b1, bool maps)
+{
+	struct bus *b;
+	struct cyc *c;
+	char line[256];
+
+	snprintf(line, sizeof(line),
+		 "segment seed=3 response=100us transition=1ms\n"
+		 "slave hub EK1100\nslave a1 drive in=8 out=8\n"
+		 "branch hub 2\nslave fork EK1122\n"
+		 "slave b1 %s\nslave b2 drive in=8 out=8\n"
+		 "branch fork 3\nslave x1 drive in=8 out=8\n", b1);
+	b = bus_up(test, line, M);
+	bus_idle(b);
+	c = cyc_new(b, 1000);
+	cyc_domain(c);
+	if (!maps)
+		cyc_config(c, M - 2);
+	cyc_map_all(c, maps ? M - 2 : M - 1, maps ? 2 : 1, 0);
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
+	ec_ports_guard(bus_table(b), false);
+	cyc_run(c, 200);
+	return c;
+}
+
+/*
+ * A1 leaves after the addresses were read: B1 gets the one of X1, which has returned, and the reply
+ * is lost. It has its own back in the same scan.
+ */
+static void expect_given_back(struct cyc *c, bool forgets)
+{
+	struct bus *b = c->b;
+	struct ec_slave *s = ec_slave_ref(bus_slave(b, M - 2));
+	u32 ms, wrong = 0, other = 0;
+
+	bus_command(b, "off x1");
+	for (ms = 0; ms < 2000 && bus_n_slaves(b) != M - 1; ms++)
+		cyc_run(c, 1);
+	cyc_run(c, 200);
+	hook_loses = true;
+	hook_forgets = forgets;
+	cut_after_read(b);
+	bus_command(b, "on x1");
+	for (ms = 0; ms < 1000; ms++) {
+		cyc_run(c, 1);
+		wrong += !has_address(b, s, M_B1);
+		other += READ_ONCE(s->stop.gone) || READ_ONCE(s->al.status) != EC_AL_OP;
+	}
+	hook_loses = hook_forgets = false;
+	KUNIT_EXPECT_NULL(b->test, hooked);
+	KUNIT_EXPECT_GT_MSG(b->test, wrong, 0u, "not hit");
+	KUNIT_EXPECT_LE(b->test, wrong, 40u);
+	KUNIT_EXPECT_EQ(b->test, other, 0u);
+	ec_slave_unref(s);
+}
+
+/* Counting says nothing, as B2 has lost its address at the same time. */
+static void address_reply_lost_given_back_by_fmmu(struct kunit *test)
+{
+	struct cyc *c = run_b(test, "drive in=8 out=8", true);
+
+	expect_given_back(c, true);
+}
+
+static void address_reply_lost_given_back_without_process_data(struct kunit *test)
+{
+	struct cyc *c = run_b(test, "EK1100", false);
+
+	expect_given_back(c, false);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(address_after_slaves_left),
 	KUNIT_CASE(address_while_slaves_leave),
+	KUNIT_CASE(address_reply_lost_given_back_by_fmmu),
+	KUNIT_CASE(address_reply_lost_given_back_without_process_data),
 	{}
 };
 
