@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/slab.h>
 #include "border.h"
+#include "known.h"
 #include "slave.h"
 
 #define MAX_FOUND	64	/* ports; what is behind others is kept out, but not listed */
@@ -203,6 +204,26 @@ u32 ec_border_judge(struct ec_bus *bus, u64 device, unsigned int port, const str
 	return kept && was_let_in(b, device, port, kept, is) ? EC_PORT_NOT_KEPT : kept;
 }
 
+/*
+ * An entry for another port: the oldest one whose slave is not connected. What a user has let in
+ * stays as long as there is another one.
+ */
+static struct ec_border_found *border_reuse(const struct ec_bus *bus)
+{
+	const struct ec_border *b = &bus->border;
+	struct ec_border_found *f, *let = NULL;
+
+	lockdep_assert_held(&b->lock);
+	list_for_each_entry(f, &b->found, list) {
+		if (ec_known_is_connected(bus, f->device))
+			continue;
+		if (!f->let)
+			return f;
+		let = let ?: f;
+	}
+	return let;
+}
+
 /**
  * ec_border_note() - a device is behind a port that stays closed
  * @bus: bus
@@ -222,12 +243,21 @@ bool ec_border_note(struct ec_bus *bus, u64 device, unsigned int port, const str
 
 	raw_spin_lock_irqsave(&b->lock, flags);
 	f = border_find(b, device, port);
-	if (!f && more && b->n_found < MAX_FOUND) {
-		swap(f, more);
-		f->device = device;
-		f->port = port;
-		list_add_tail(&f->list, &b->found);
-		b->n_found++;
+	if (!f && more) {
+		struct ec_border_found *old = b->n_found < MAX_FOUND ? NULL : border_reuse(bus);
+
+		if (old) {
+			list_del(&old->list);
+			b->n_found--;
+		}
+		if (b->n_found < MAX_FOUND) {
+			swap(f, more);
+			f->device = device;
+			f->port = port;
+			list_add_tail(&f->list, &b->found);
+			b->n_found++;
+		}
+		more = more ?: old;
 	}
 	if (f) {
 		differs = f->is.kept != is->kept || !same_identity(&f->is, is);

@@ -345,6 +345,29 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 	}
 }
 
+static struct ec_slave *known_find(const struct ec_bus *bus, u64 number)
+{
+	struct ec_slave *s;
+
+	hlist_for_each_entry(s, head_of((struct hlist_head *)bus->known.present, number), by_device)
+		if (s->device == number)
+			return s;
+	return NULL;
+}
+
+/**
+ * ec_known_is_connected() - has a slave of the list a device number?
+ * @bus: bus
+ * @number: device number
+ *
+ * Context: The monitor thread, which alone changes the numbers.
+ * Return: whether one has it.
+ */
+bool ec_known_is_connected(const struct ec_bus *bus, u64 number)
+{
+	return known_find(bus, number);
+}
+
 /**
  * ec_known_slave() - the slave with a device number
  * @bus: bus
@@ -355,13 +378,8 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
  */
 struct ec_slave *ec_known_slave(const struct ec_bus *bus, u64 number)
 {
-	struct ec_slave *s;
-
 	ec_bus_assert_stays(bus);
-	hlist_for_each_entry(s, head_of((struct hlist_head *)bus->known.present, number), by_device)
-		if (s->device == number)
-			return s;
-	return NULL;
+	return known_find(bus, number);
 }
 
 /**
