@@ -10,6 +10,7 @@
 #include "quiet.h"
 #include "base/once64.h"
 #include "bus/absent.h"
+#include "bus/identify.h"
 #include "bus/known.h"
 #include "bus/line_errors.h"
 #include "bus/mailboxes.h"
@@ -172,6 +173,8 @@ static bool check_slaves(struct watch *w)
 		if (ec_slave_busy(s) || READ_ONCE(s->al.reads) != r[i].reads)
 			continue;
 		note_change(s, status, code);
+		if (ec_identify_is_due(s))
+			ec_slave_kick(s);
 		/* what was asked for comes late, or it has fallen back by itself: bring it up */
 		state = status & EC_AL_STATE_MASK;
 		if (READ_ONCE(s->note.error) ? state == READ_ONCE(s->al.awaited) :

@@ -288,12 +288,14 @@ struct ec_app_event {
  * @own_eeprom: no PREOP unless the EEPROM is assigned to it
  * @response_ns: time from mailbox request to response
  * @op_timeout_ns: how long it waits for outputs and SYNC signals on the way to OP
+ * @id_ns: time from the request of its identification to the answer
  * @data: values of the dictionary
  * @sdo_buf: for the SDO server
  * @state: AL state
  * @error: error indication
  * @code: AL status code
- * @identify: the identification is shown
+ * @identify: the identification is requested
+ * @id_due: when it is shown, EC_ESC_NEVER: it is, or nothing is requested
  * @al_to: state on the way, 0: none
  * @al_due: when it is reached
  * @al_deadline: when the wait for outputs ends
@@ -329,12 +331,14 @@ struct ec_app {
 	bool own_eeprom;
 	u64 response_ns;
 	u64 op_timeout_ns;
+	u64 id_ns;
 	u8 *data;
 	u8 *sdo_buf;
 	u8 state;
 	bool error;
 	u16 code;
 	bool identify;
+	u64 id_due;
 	u8 al_to;
 	u64 al_due;
 	u64 al_deadline;
@@ -374,6 +378,7 @@ struct ec_app {
  * @link_ns: time from cable and power to a link
  * @response_ns: time from mailbox request to response
  * @op_timeout_ns: time limit from SAFEOP to OP
+ * @id_ns: time from the request of its identification to the answer
  * @process_ns: delay through the controller, 0: default
  * @drift_ppb: error of its clock
  * @clock_start: its clock at power-on
@@ -400,6 +405,7 @@ struct ec_app_config {
 	u32 link_ns;
 	u64 response_ns;
 	u64 op_timeout_ns;
+	u64 id_ns;
 	u32 process_ns;
 	s32 drift_ppb;
 	u64 clock_start;

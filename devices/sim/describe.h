@@ -24,6 +24,7 @@
  *		fixed=N,N... (PDOs and assignments)  dc_modes=N,N... (AssignActivate)
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
  *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
+ *		id_delay=TIME (from the request of the identification to the answer)
  *		loops=fixed (0x0101 does not keep what is written)
  *		link=TIME (from cable and power to a link)
  *	branch NAME PORT		the next slave hangs there

@@ -120,6 +120,8 @@ int ec_desc_config(struct ec_desc *d, struct ec_app_config *c, struct ec_desc_ca
 	if (!ret)
 		ret = ec_desc_time(d, "op_timeout", EC_DESC_TIME_MAX, &c->op_timeout_ns);
 	if (!ret)
+		ret = ec_desc_time(d, "id_delay", EC_DESC_TIME_MAX, &c->id_ns);
+	if (!ret)
 		ret = ec_desc_time(d, "cable", 1000000, &cable->ns);
 	if (!ret)
 		ret = ec_desc_yes(d, "swap", &cable->swapped);

@@ -13,7 +13,7 @@ static void show(struct ec_app *app, u64 now)
 		code = 0;
 	if (app->error) {
 		status |= EC_AL_ERROR;
-	} else if (app->identify && app->model->params.id) {
+	} else if (app->identify && app->id_due == EC_ESC_NEVER && app->model->params.id) {
 		status |= EC_AL_ID;
 		code = app->model->params.id;
 	}
@@ -355,6 +355,10 @@ void ec_app_al_poll(struct ec_app *app, u64 now)
 {
 	if (app->al_to && now >= (app->al_waits ? app->al_deadline : app->al_due))
 		finish(app, now);
+	if (now >= app->id_due) {
+		app->id_due = EC_ESC_NEVER;
+		show(app, now);
+	}
 }
 
 /**
@@ -428,6 +432,10 @@ void ec_app_al_control(struct ec_app *app, u64 now)
 		return;
 	control = get_unaligned_le16(raw);
 	to = control & EC_AL_STATE_MASK;
+	if (!(control & EC_AL_ID))
+		app->id_due = EC_ESC_NEVER;
+	else if (!app->identify && app->id_ns)
+		app->id_due = now + app->id_ns;
 	app->identify = control & EC_AL_ID;
 
 	/* an error not acknowledged: nothing but INIT is heard */

@@ -30,6 +30,7 @@ static void power_on(struct ec_esc *esc, u64 now)
 		app->next_event = app->next_event->next;
 	esc->late.ran_ns = now;
 	app->eep_due = EC_ESC_NEVER;
+	app->id_due = EC_ESC_NEVER;
 	ec_app_diag_reset(app, now);
 	ec_app_pdo_build(app);
 	ec_app_mbox_reset(app);
@@ -217,6 +218,7 @@ void ec_app_rewake(struct ec_app *app, u64 now)
 		at = app->al_waits ? app->al_deadline : app->al_due;
 	at = min(at, ec_app_mbox_due(app));
 	at = min(at, app->eep_due);
+	at = min(at, app->id_due);
 	if (app->next_event)
 		at = min(at, app->next_event->at_ns);
 	if (app->esc->fault.app_mute)
@@ -405,6 +407,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->own_eeprom = cfg->own_eeprom;
 	app->response_ns = cfg->response_ns;
 	app->op_timeout_ns = cfg->op_timeout_ns;
+	app->id_ns = cfg->id_ns;
 	app->ip.refuse = cfg->no_ip;
 	app->foe.busy = cfg->foe_busy;
 	app->foe.page_ns = cfg->foe_page_ns;

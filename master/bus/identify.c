@@ -10,7 +10,10 @@
 #include "identify.h"
 #include "slave.h"
 
-/* One with identification 0 does not answer the request. */
+/*
+ * One with identification 0 does not answer the request. A scan waits no longer for a slow one; its
+ * request stands, and ec_slave_set_al() takes the reply.
+ */
 #define WAIT_NS		(50 * NSEC_PER_MSEC)
 #define POLLS		10	/* at least */
 #define POLL_US		500
@@ -20,6 +23,7 @@
 struct asked {
 	struct ec_slave *slave;
 	bool by_al;		/* with AL control, else from its memory */
+	bool replied;
 	u8 control[2];
 	u8 reply[REPLY];
 };
@@ -33,7 +37,7 @@ struct identify {
 
 static bool is_asked(const struct ec_slave *s)
 {
-	return !READ_ONCE(s->identified) && s->eeprom.data && s->has_general &&
+	return READ_ONCE(s->identify) == EC_IDENTIFY_DUE && s->eeprom.data && s->has_general &&
 	       !READ_ONCE(s->note.error) &&
 	       s->general.flags & (EC_SII_FLAG_ID_AL | EC_SII_FLAG_ID_MEM);
 }
@@ -58,11 +62,11 @@ static void identify_add(struct identify *id, struct ec_slave *s)
 	if (!a->by_al && !has_word(s))
 		return;
 	a->slave = s;
-	WRITE_ONCE(s->identified, true);
+	WRITE_ONCE(s->identify, EC_IDENTIFY_DONE);
 	id->n++;
 }
 
-/* AL control of those that have to be asked; @bits: EC_AL_ID, or 0 to end the request. */
+/* AL control of those that have to be asked, or have replied; @bits: EC_AL_ID, or 0 to end it. */
 static void identify_request(struct identify *id, u16 bits)
 {
 	unsigned int i, n = 0;
@@ -71,23 +75,21 @@ static void identify_request(struct identify *id, u16 bits)
 		struct asked *a = &id->list[i];
 
 		put_unaligned_le16(EC_AL_PREOP | bits, a->control);
-		if (a->by_al)
+		if (a->by_al && (bits || a->replied))
 			id->dg[n++] = EC_FPWR(a->slave->station, EC_REG_AL_CONTROL, 2, a->control);
 	}
 	if (n)
 		ec_xfer(id->links, id->dg, n);
 }
 
-/* The reply of a device: whether it is complete, with its identification */
-static bool identify_take(const struct asked *a, const struct ec_dg *dg, u16 *identification)
+static void identify_take(struct asked *a, const struct ec_dg *dg)
 {
-	if (dg->err || dg->wkc != 1)
-		return false;
-	if (!a->by_al)
-		*identification = get_unaligned_le16(a->reply);
-	else if (get_unaligned_le16(a->reply) == (EC_AL_PREOP | EC_AL_ID))
-		*identification = get_unaligned_le16(a->reply + EC_REG_AL_CODE - EC_REG_AL_STATUS);
-	return *identification;
+	u8 *value = a->by_al ? a->reply + EC_REG_AL_CODE - EC_REG_AL_STATUS : a->reply;
+
+	a->replied = !dg->err && dg->wkc == 1 &&
+		     (!a->by_al || get_unaligned_le16(a->reply) == (EC_AL_PREOP | EC_AL_ID));
+	if (a->replied)
+		WRITE_ONCE(a->slave->identification, get_unaligned_le16(value));
 }
 
 /* Read once from those that have not answered so far. Returns how many these are. */
@@ -98,7 +100,7 @@ static unsigned int read_replies(struct identify *id)
 	for (i = 0; i < id->n; i++) {
 		struct asked *a = &id->list[i];
 
-		if (READ_ONCE(a->slave->identification))
+		if (a->replied)
 			continue;
 		id->dg[n++] = a->by_al ?
 			EC_FPRD(a->slave->station, EC_REG_AL_STATUS, REPLY, a->reply) :
@@ -108,42 +110,52 @@ static unsigned int read_replies(struct identify *id)
 	n = 0;
 	for (i = 0; i < id->n; i++) {
 		struct asked *a = &id->list[i];
-		u16 identification = 0;
 
-		if (READ_ONCE(a->slave->identification))
+		if (a->replied)
 			continue;
-		if (identify_take(a, &id->dg[n++], &identification))
-			WRITE_ONCE(a->slave->identification, identification);
-		else
-			left += a->by_al;
+		identify_take(a, &id->dg[n++]);
+		left += a->by_al && !a->replied;
 	}
 	return left;
 }
 
 /**
- * ec_identify() - read the identification of a slave that was not in PREOP when it was found
- * @s: slave in PREOP, @lock held; groups are looked for again if it has one
+ * ec_identify() - request the identification of a slave that the scan did not ask, or end that
+ * @s: slave, @lock held
  *
- * Context: The slave's worker. Waits as ec_identify_all().
+ * Its reply is taken when its AL status is read next.
+ *
+ * Context: The slave's worker. Waits for bus traffic.
  */
 void ec_identify(struct ec_slave *s)
 {
+	bool ends = READ_ONCE(s->identify) == EC_IDENTIFY_SEEN;
+	u8 control[2];
+
 	lockdep_assert_held(&s->lock);
-	ec_identify_all(s->bus, &s, 1);
-	if (READ_ONCE(s->identification))
-		WRITE_ONCE(s->bus->regroup, true);
+	put_unaligned_le16(ends ? EC_AL_PREOP : EC_AL_PREOP | EC_AL_ID, control);
+	if (!ends)
+		WRITE_ONCE(s->identify, EC_IDENTIFY_STANDS);
+	if (ec_xfer_fpwr(s->bus->links, s->station, EC_REG_AL_CONTROL, control, 2))
+		WRITE_ONCE(s->identify, ends ? EC_IDENTIFY_SEEN : EC_IDENTIFY_CUT);
+	else if (ends)
+		WRITE_ONCE(s->identify, EC_IDENTIFY_DONE);
 }
 
 /**
- * ec_identify_is_due() - has a slave an identification that was not read?
+ * ec_identify_is_due() - is a request to be made or to be ended?
  * @s: slave
  *
  * Context: Any.
- * Return: whether it has.
+ * Return: whether it is, in its present state.
  */
 bool ec_identify_is_due(const struct ec_slave *s)
 {
-	return is_asked(s) && asks_by_al(s);
+	u8 is = READ_ONCE(s->identify);
+
+	return is != EC_IDENTIFY_DONE && is != EC_IDENTIFY_STANDS &&
+	       (is != EC_IDENTIFY_DUE || is_asked(s)) && !READ_ONCE(s->note.error) &&
+	       READ_ONCE(s->al.requested) == EC_AL_PREOP && asks_by_al(s);
 }
 
 /**
@@ -179,6 +191,9 @@ void ec_identify_all(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 		     (i < POLLS || ktime_get_ns() < until) && !READ_ONCE(bus->base->stopping); i++)
 			usleep_range(POLL_US, 2 * POLL_US);
 		identify_request(&id, 0);
+		for (i = 0; i < id.n; i++)
+			if (id.list[i].by_al && !id.list[i].replied)
+				WRITE_ONCE(id.list[i].slave->identify, EC_IDENTIFY_STANDS);
 	}
 	kvfree(id.list);
 	kvfree(id.dg);

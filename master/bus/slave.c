@@ -279,6 +279,33 @@ void ec_slave_list(struct ec_slave *slave)
 		report_failure(slave, slave->note.why, slave->note.error, &slave->note.cause);
 }
 
+/*
+ * A slave that has replied to the request of its identification late shows it instead of the code.
+ * The request ends when it leaves PREOP.
+ */
+static void take_identification(struct ec_slave *slave, u16 *status, u16 *code)
+{
+	u8 is = READ_ONCE(slave->identify);
+
+	if (is == EC_IDENTIFY_DUE)
+		return;
+	if ((*status & ~EC_AL_ID) != EC_AL_PREOP) {
+		if (is != EC_IDENTIFY_DONE)
+			WRITE_ONCE(slave->identify, is == EC_IDENTIFY_SEEN ? EC_IDENTIFY_DONE :
+									     EC_IDENTIFY_CUT);
+		return;
+	}
+	if (!(*status & EC_AL_ID))
+		return;
+	if (is == EC_IDENTIFY_STANDS) {
+		WRITE_ONCE(slave->identification, *code);
+		WRITE_ONCE(slave->identify, EC_IDENTIFY_SEEN);
+		WRITE_ONCE(slave->bus->regroup, true);
+	}
+	*status = EC_AL_PREOP;
+	*code = 0;
+}
+
 /**
  * ec_slave_set_al() - the AL status was read; a change is an event, once it is in the list
  * @slave: slave
@@ -297,6 +324,7 @@ void ec_slave_set_al(struct ec_slave *slave, u16 status, u16 code, enum ec_al_by
 	/* 0: not known before */
 	bool moved = state != was && was;
 
+	take_identification(slave, &status, &code);
 	if (status == before && code == READ_ONCE(slave->al.code))
 		return;
 	if (moved && by == EC_AL_BY_ITSELF)

@@ -42,6 +42,22 @@ struct ec_break {
 	u8 up_port;
 };
 
+/**
+ * enum ec_identify - the request of an identification by AL control
+ * @EC_IDENTIFY_DUE: it was not asked so far
+ * @EC_IDENTIFY_STANDS: asked in PREOP, the reply may come any time
+ * @EC_IDENTIFY_CUT: asked, and has left PREOP before it has replied
+ * @EC_IDENTIFY_SEEN: it has replied; the request has to be ended
+ * @EC_IDENTIFY_DONE: nothing is to be done
+ */
+enum ec_identify {
+	EC_IDENTIFY_DUE,
+	EC_IDENTIFY_STANDS,
+	EC_IDENTIFY_CUT,
+	EC_IDENTIFY_SEEN,
+	EC_IDENTIFY_DONE,
+};
+
 /** struct ec_slave_eeprom - the EEPROM of a slave as read: scan_sii.c */
 struct ec_slave_eeprom {
 	/** @data: image */
@@ -244,8 +260,8 @@ struct ec_slave {
 	u32 recv[EC_MAX_PORT];
 	/** @delay_only: it has receive times, but no other register of a clock (0x0928) */
 	bool delay_only;
-	/** @identified: it was asked for @identification, or has none */
-	bool identified;
+	/** @identify: enum ec_identify: has it been asked for @identification? */
+	u8 identify;
 	/** @listing: it is in the list that is being made; the monitor's */
 	bool listing;
 	/** @unshown: messages that did not show in the IRQ field: mailboxes.c */

@@ -169,6 +169,26 @@ static void sim_app_al_op_timeout(struct kunit *test)
 	}
 }
 
+/* The identification is shown some time after its request; another request does not begin anew. */
+static void sim_app_al_identification_delay(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a drive id=6\nslave b drive id=7 id_delay=60ms\n");
+	const u16 request = EC_AL_INIT | EC_AL_ID;
+
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(0), request, 1), 0x00060021u);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(1), request, 1), (u32)EC_AL_INIT);
+	b->now += 50000000;
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(1), request, 1), (u32)EC_AL_INIT);
+	b->now += 10000000;
+	KUNIT_EXPECT_EQ(test, app_al_status(b, STATION(1)), 0x00070021u);
+	KUNIT_EXPECT_EQ(test, app_al(b, STATION(1), EC_AL_INIT, 1), (u32)EC_AL_INIT);
+	/* ended before it was shown */
+	app_al(b, STATION(1), request, 1);
+	app_al(b, STATION(1), EC_AL_INIT, 1);
+	b->now += 100000000;
+	KUNIT_EXPECT_EQ(test, app_al_status(b, STATION(1)), (u32)EC_AL_INIT);
+}
+
 /* SYNC0 that starts so many ns from now; SAFEOP and outputs, then OP is requested */
 static u32 al_with_sync(struct bed *b, s64 start)
 {
@@ -349,6 +369,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_app_al_process_data),
 	KUNIT_CASE(sim_app_al_outputs),
 	KUNIT_CASE(sim_app_al_op_timeout),
+	KUNIT_CASE(sim_app_al_identification_delay),
 	KUNIT_CASE(sim_app_al_sync),
 	KUNIT_CASE(sim_app_al_sync_cycle),
 	KUNIT_CASE(sim_app_al_refuse),
