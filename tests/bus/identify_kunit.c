@@ -15,7 +15,7 @@ static u16 al_control(struct bus *b)
 	return get_unaligned_le16(bus_esc(b, X)->mem + EC_REG_AL_CONTROL);
 }
 
-/* The reply is seen without a scan, and the request ended. Neither is the AL status of the slave. */
+/* The reply is seen without a scan, and the request ended. It does not show in the AL status. */
 static void identify_late_reply_taken(struct kunit *test)
 {
 	u64 begin = ktime_get_ns(), ms;
