@@ -10,6 +10,7 @@
 #include "quiet.h"
 #include "base/once64.h"
 #include "bus/absent.h"
+#include "bus/doubt.h"
 #include "bus/identify.h"
 #include "bus/known.h"
 #include "bus/line_errors.h"
@@ -535,7 +536,7 @@ static void maybe_scan(struct watch *w)
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
 		return;
-	if (READ_ONCE(m->bus.rescan) || xchg(&m->bus.renew, false))
+	if (READ_ONCE(m->bus.rescan) || xchg(&m->bus.renew, false) || ec_doubt_is_due(&m->bus))
 		scan_next(w);
 	if (w->scanned || (w->same < STABLE_LOOKS &&
 			   !(w->moving_ns && ktime_get_ns() - w->moving_ns >= MOVING_NS)))
@@ -580,6 +581,9 @@ static void maybe_scan(struct watch *w)
 		ec_session_attach(&m->sessions);
 		if (!READ_ONCE(m->cycles.active))
 			ec_dc_measure(&m->dc);
+		if (!result.again)
+			ec_doubt_judge(&m->bus, result.changed, !READ_ONCE(m->cycles.active) &&
+				       ec_dc_is_contradicted(&m->dc));
 		want_states(m);
 	} else {
 		w->same = 0;

@@ -12,6 +12,7 @@
 #include <linux/wait.h>
 #include "../base/base.h"
 #include "border_table.h"
+#include "doubt.h"
 #include "known_table.h"
 #include "line_watch.h"
 #include "workers.h"
@@ -138,6 +139,8 @@ struct ec_bus {
 	u32 lists;
 	/** @thrown_away: scans in a row whose result contradicted the bus; the monitor's */
 	unsigned int thrown_away;
+	/** @doubt: contradictions of the graph */
+	struct ec_doubt doubt;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */
 	u64 complete_ns;
 	/** @mailboxes_ns: last poll of all mailboxes (ktime); the monitor's */

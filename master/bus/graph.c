@@ -82,10 +82,16 @@ static u8 port_at(const struct ec_slave *s, unsigned int step)
 	return ec_graph_order[(place[s->graph.upstream] + step) % EC_MAX_PORT];
 }
 
+/* and the number of a port */
+static unsigned int step_of(const struct ec_slave *s, unsigned int port)
+{
+	return (place[port] + EC_MAX_PORT - place[s->graph.upstream]) % EC_MAX_PORT;
+}
+
 /* Number of port 0 likewise: behind it is the processing unit; 0: the entry is port 0. */
 static unsigned int unit_step(const struct ec_slave *s)
 {
-	return (EC_MAX_PORT - place[s->graph.upstream]) % EC_MAX_PORT;
+	return step_of(s, 0);
 }
 
 /* Next open port without a slave behind it, of those behind the processing unit, or -1. */
@@ -142,7 +148,7 @@ struct ec_slave *ec_graph_parent(const struct ec_slave *s)
 bool ec_graph_next_arrival(struct ec_slave **slave, unsigned int *port)
 {
 	struct ec_slave *s = *slave, *next;
-	unsigned int step = (place[*port] + EC_MAX_PORT - place[s->graph.upstream]) % EC_MAX_PORT;
+	unsigned int step = step_of(s, *port);
 
 	while (++step < EC_MAX_PORT) {
 		next = s->graph.at[port_at(s, step)];
@@ -391,6 +397,25 @@ void ec_graph_fit(struct ec_slave **slaves, unsigned int n)
 			hang(slaves, slaves[i], join_before(slaves, slaves[i]));
 }
 
+/* The first slave that a frame along the graph does not pass in its turn. */
+static unsigned int out_of_turn(struct ec_slave *root, unsigned int n)
+{
+	unsigned int port = root->graph.upstream, turn = 0, arrivals, from, to;
+	struct ec_slave *s = root, *at = root;
+
+	for (arrivals = 0; s && arrivals < 2 * n; arrivals++) {
+		from = step_of(s, port);
+		to = EC_MAX_PORT;
+		if (ec_graph_next_arrival(&at, &port) && ec_graph_parent(at) == s)
+			to = step_of(s, at->graph.parent_port);
+		/* behind port 0 is the processing unit */
+		if (unit_step(s) >= from && unit_step(s) < to && s->position != turn++)
+			return min(turn, s->position + 1) - 1;
+		s = at;
+	}
+	return n;
+}
+
 /**
  * ec_graph_misfit() - look for a contradiction between ring order and ports
  * @slaves: as for ec_graph_fit(), after it
@@ -398,16 +423,19 @@ void ec_graph_fit(struct ec_slave **slaves, unsigned int n)
  *
  * Context: As ec_graph_leave().
  * Return: position of the first slave with an open port that leads nowhere, or without one
- * upstream; @n: there is none, or what a slave says of its ports was guessed.
+ * upstream, or that a frame does not pass in its turn; @n: there is none, or what a slave says of
+ * its ports was guessed.
  */
 unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n)
 {
 	unsigned int i, p, first = n, roots = 0, free = 0;
+	struct ec_slave *root = NULL;
 
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = slaves[i];
 		bool bad = !ec_graph_parent(s) && roots++;
 
+		root = ec_graph_parent(s) ? root : s;
 		if (READ_ONCE(s->reply.silent) || !s->regs[EC_REG_TYPE])
 			return n;
 		for (p = 0; p < EC_MAX_PORT; p++)
@@ -419,6 +447,6 @@ unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n)
 	}
 	/* the one that leads to the other device of a ring */
 	if (n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links))
-		return n;
-	return first;
+		first = n;
+	return first == n && root ? out_of_turn(root, n) : first;
 }

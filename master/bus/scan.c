@@ -214,7 +214,8 @@ static void note_ports(struct scan *sc)
 	for (i = 0; i < sc->n; i++) {
 		u16 dl = get_unaligned_le16(sc->regs[i].dl);
 
-		sc->regs[i].ports = (dl ^ sc->slaves[i]->dl_status) & EC_SCAN_PORTS;
+		sc->regs[i].ports = sc->bus->doubt.look ||
+				    (dl ^ sc->slaves[i]->dl_status) & EC_SCAN_PORTS;
 		/* the read has cleared the event, also if the scan fails */
 		if (each(sc, i) && !sc->regs[i].partial)
 			sc->slaves[i]->dl_seen = dl;
@@ -299,10 +300,10 @@ static void note_end(struct scan *sc, u64 began_ns, u64 frames)
 
 	WRITE_ONCE(bus->scan_us, (u32)div_u64(ktime_get_ns() - began_ns, 1000));
 	ec_write64(&bus->scan_frames, ec_links_sent(bus->links) - frames);
-	if (sc->changed || (bus->scan_noted && !sc->n_thrown))
+	if (sc->changed || (bus->scan_noted && !ec_scan_is_partial(sc)))
 		ec_report(bus->base, EC_EVENT_SCAN_END, bus->n_slaves, bus->scan_us,
 			  bus->scan_frames, sc->changed);
-	if (sc->n_thrown)
+	if (ec_scan_is_partial(sc))
 		return;
 	bus->listed_station = bus->next_station;
 	bus->scan_noted = false;
@@ -342,7 +343,7 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 	ret = ret ?: ec_scan_proof(&sc) ?: ec_scan_publish(&sc);
 	if (!ret) {
 		result->changed = sc.changed;
-		result->again = sc.n_thrown;
+		result->again = ec_scan_is_partial(&sc);
 		note_end(&sc, t0, frames);
 	}
 	scan_free(&sc);

@@ -49,6 +49,7 @@ struct scan {
 	struct stretch *stretch;	/* in ring order */
 	unsigned int n_stretches;
 	unsigned int n_thrown;		/* of these */
+	bool moving;			/* the ring has changed since its addresses were read */
 	struct ec_slave **known;	/* slaves of the last scan by station address */
 	u8 *claims;			/* slaves that have the address now, up to 2 */
 	u16 *aliases;			/* first slave with each alias, ring position + 1 */
@@ -59,6 +60,12 @@ struct scan {
 static inline u16 ec_scan_address(const struct scan *sc, unsigned int i)
 {
 	return get_unaligned_le16(sc->regs[i].station);
+}
+
+/* Is the result not that of the whole bus? Then another scan follows. */
+static inline bool ec_scan_is_partial(const struct scan *sc)
+{
+	return sc->n_thrown || sc->moving;
 }
 
 /* DL status: link, loop and communication of all ports */

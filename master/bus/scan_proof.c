@@ -2,11 +2,14 @@
 /*
  * A scan takes many frames. What it has found in a stretch of the ring is valid only if that was
  * the same all the time: else it may be a list of slaves that never existed, in which one is
- * missing that never left.
+ * missing that never left. And ports were read after the addresses: a slave that came in between
+ * is in no list, but a port leads to it. So ports away from these stretches are taken only if the
+ * whole ring was the same.
  */
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "graph.h"
 #include "scan_count.h"
 #include "scan_int.h"
 #include "scan_proof.h"
@@ -33,6 +36,7 @@ struct proof {
 	struct scan *sc;
 	struct reply *r;
 	struct ec_dg *dg;	/* by position, and by station address of the slave found there */
+	u8 type[1];		/* the last of @dg counts */
 };
 
 static bool answers_as(const struct proof *p, unsigned int i, u16 station)
@@ -120,9 +124,60 @@ static int ask_found(struct proof *p)
 		p->dg[2 * i] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, p->r[i].station);
 		p->dg[2 * i + 1] = EC_FPRD(sc->slaves[i]->station, EC_REG_DL_STATUS, 2, p->r[i].dl);
 	}
-	ret = ec_xfer(sc->bus->links, p->dg, 2 * sc->n);
+	p->dg[2 * i] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, p->type);
+	ret = ec_xfer(sc->bus->links, p->dg, 2 * sc->n + 1);
 	note_seen(p);
 	return ret;
+}
+
+/* Each slave is where it was found, with the same ports open, and there is no other one. */
+static bool ring_stands(const struct proof *p)
+{
+	const struct scan *sc = p->sc;
+	const struct ec_dg *count = &p->dg[2 * sc->n];
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++) {
+		const struct ec_slave *s = sc->slaves[i];
+		const struct regs *r = &sc->regs[i];
+
+		if (r->gone)
+			return false;
+		if (!r->there || READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
+			continue;
+		if (!answers_as(p, i, s->station) || p->dg[2 * i + 1].wkc != 1 ||
+		    ec_graph_open_ports(get_unaligned_le16(p->r[i].dl)) !=
+		    ec_graph_open_ports(get_unaligned_le16(r->dl)))
+			return false;
+	}
+	return !count->err && count->back == sc->n;
+}
+
+/* Slaves of a stretch, the one before it, the one after it, and at which these hang. */
+static void mark_stretch(const struct scan *sc, const struct stretch *t, bool mark)
+{
+	unsigned int end = t->new + t->n_new, i;
+	struct ec_slave *s;
+
+	for (i = t->new; i < end; i++)
+		sc->slaves[i]->listing = mark;
+	for (s = t->new ? sc->slaves[t->new - 1] : NULL; s; s = ec_graph_parent(s))
+		s->listing = mark;
+	for (s = end < sc->n ? sc->slaves[end] : NULL; s; s = ec_graph_parent(s))
+		s->listing = mark;
+}
+
+/* Slaves at which no stretch hangs keep the ports that they have in the list. */
+static void leave_ports(struct scan *sc)
+{
+	unsigned int i, k;
+
+	for (k = 0; k < sc->n_stretches; k++)
+		mark_stretch(sc, &sc->stretch[k], true);
+	for (i = 0; i < sc->n; i++)
+		sc->regs[i].ports &= sc->slaves[i]->listing;
+	for (k = 0; k < sc->n_stretches; k++)
+		mark_stretch(sc, &sc->stretch[k], false);
 }
 
 static bool is_found(const struct scan *sc, const struct ec_slave *s)
@@ -190,7 +245,12 @@ static int prove(struct proof *p)
 	struct scan *sc = p->sc;
 	unsigned int k;
 	int ret = ask_found(p);
-	bool counts = false;
+	bool counts;
+
+	sc->moving = !ret && sc->bus->thrown_away < NEW_MAX && !ring_stands(p);
+	if (sc->moving)
+		leave_ports(sc);
+	counts = sc->moving;
 
 	for (k = 0; k < sc->n_stretches && !ret; k++) {
 		enum doubt doubt = check_found(p, &sc->stretch[k]);
@@ -198,7 +258,7 @@ static int prove(struct proof *p)
 		ret = check_lost(sc, &sc->stretch[k], &doubt);
 		counts |= note_doubt(sc, &sc->stretch[k], doubt);
 	}
-	if (counts || !sc->n_thrown)
+	if (counts || !ec_scan_is_partial(sc))
 		sc->bus->thrown_away = counts ? sc->bus->thrown_away + 1 : 0;
 	return ret;
 }
@@ -229,6 +289,17 @@ static int prove_silence(struct scan *sc)
 	return ret ?: min(count, 0);
 }
 
+/* Known slaves with other ports; their neighbors may be the same. */
+static bool has_ports(const struct scan *sc)
+{
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		if (sc->regs[i].ports)
+			return true;
+	return false;
+}
+
 /**
  * ec_scan_proof() - is the bus what the scan has found?
  * @sc: scan that has read everything, with its stretches; @thrown is set in those where it is not
@@ -240,15 +311,16 @@ int ec_scan_proof(struct scan *sc)
 {
 	struct proof p = { .sc = sc };
 	int ret = prove_silence(sc);
+	bool change = sc->n_stretches || has_ports(sc);
 
-	if (!ret && !sc->n_stretches)
+	if (!ret && !change)
 		sc->bus->thrown_away = 0;
 	/* an empty list needs no check of the bus */
-	if (ret || !sc->n || !sc->n_stretches)
+	if (ret || !sc->n || !change)
 		return ret;
 	ret = -ENOMEM;
 	p.r = kvcalloc(sc->n, sizeof(*p.r), GFP_KERNEL);
-	p.dg = kvcalloc(2 * sc->n, sizeof(*p.dg), GFP_KERNEL);
+	p.dg = kvcalloc(2 * sc->n + 1, sizeof(*p.dg), GFP_KERNEL);
 	if (p.r && p.dg)
 		ret = prove(&p);
 	kvfree(p.r);

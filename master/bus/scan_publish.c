@@ -173,9 +173,9 @@ static void fit(const struct scan *sc, const struct list *l)
 	make_room_behind(sc, l);
 	ec_graph_fit(l->slaves, l->n);
 	first = ec_graph_misfit(l->slaves, l->n);
-	if (sc->n_thrown)
+	if (ec_scan_is_partial(sc))
 		return;
-	if (first < l->n) {
+	if (first < l->n || sc->bus->doubt.look) {
 		for (i = 0; i < l->n; i++)
 			ec_graph_leave(l->slaves[i]);
 		ec_graph_fit(l->slaves, l->n);

@@ -94,6 +94,21 @@ int ec_dc_measure(struct ec_dc *dc)
 	return ret;
 }
 
+/**
+ * ec_dc_is_contradicted() - do receive times contradict the topology?
+ * @dc: clocks
+ *
+ * Context: The monitor thread.
+ * Return: whether they do, as measured last.
+ */
+bool ec_dc_is_contradicted(const struct ec_dc *dc)
+{
+	ec_for_each_slave(s, dc->bus)
+		if (READ_ONCE(ec_clock_of(s)->delay_unreliable))
+			return true;
+	return false;
+}
+
 /*
  * The application time of the cycle may differ a lot from the time before activation. Wait for
  * its first cycle, so that the clocks begin with the time they continue with. The cycle wakes

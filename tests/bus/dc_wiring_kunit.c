@@ -293,7 +293,7 @@ static void wiring_that_does_not_fit(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "slave a drive in=8 out=8\nslave b drive in=8 out=8\n"
 			       "slave c drive in=8 out=8\n", 3);
-	u32 i;
+	u32 i, scans;
 
 	bus_idle(b);
 	for (i = 0; i < 3; i++)
@@ -315,6 +315,11 @@ static void wiring_that_does_not_fit(struct kunit *test)
 		   "wire a.1 -> b.1\nwire b.0 -> c.0\n", 3);
 	bus_idle(b);
 	KUNIT_EXPECT_FALSE(test, bus_slave(b, 0)->graph.inconsistent);
+	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->graph.inconsistent);
+	/* it is looked at again a few times */
+	scans = bus_table(b)->scan_count;
+	msleep(60000);
+	KUNIT_EXPECT_EQ(test, bus_table(b)->scan_count - scans, 4u);
 	KUNIT_EXPECT_TRUE(test, bus_slave(b, 2)->graph.inconsistent);
 	/* an EEPROM that cannot be read changes nothing of that */
 	bus_fault(b, EC_SIM_FAULT_EEPROM_NOACK, 0, 0, ~0u, 0);

@@ -3,6 +3,7 @@
 #include <linux/prandom.h>
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
+#include "master/bus/graph.h"
 
 static const char text[] =
 	"segment seed=7 response=100us transition=1ms\n"
@@ -82,6 +83,95 @@ static void graph_moved_slave_is_not_read_again(struct kunit *test)
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 4), c2);
 	KUNIT_EXPECT_EQ(test, c1->device, device);
 	KUNIT_EXPECT_EQ(test, c1->position, 3);
+}
+
+/* a1 and b1 hang at free ports alike: their order decides. */
+static const char alike[] =
+	"segment seed=7 response=100us transition=1ms\n"
+	"slave top EK1100\nslave e drive in=8 out=8\n"
+	"branch top 2\nslave r EK1100\nslave m EK1100\nslave k drive in=8 out=8\n"
+	"branch m 2\nslave a1 drive in=8 out=8\n"
+	"branch r 2\nslave b1 drive in=8 out=8\n"
+	"branch none\nslave x1 drive in=8 out=8\nslave x2 drive in=8 out=8\n";
+
+#define ALIKE	7	/* connected at first */
+
+/* No list has a port that leads nowhere, until there is a whole one. */
+static void expect_consistent(struct bus *b, u32 n, u32 frame)
+{
+	u32 i, ms, odd = 0;
+
+	for (ms = 0; ms < 400; ms++) {
+		for (i = 0; i < bus_n_slaves(b); i++)
+			odd += bus_slave(b, i)->graph.inconsistent;
+		usleep_range(1000, 1001);
+	}
+	KUNIT_EXPECT_EQ_MSG(b->test, odd, 0u, "frame %u", frame);
+	settle(b, 100);
+	KUNIT_ASSERT_EQ(b->test, bus_n_slaves(b), n);
+}
+
+/* While a scan looks at one place, a slave comes to another one: its port may be read open. */
+static void graph_port_opens_in_scan(struct kunit *test)
+{
+	struct bus *b = bus_up(test, alike, ALIKE);
+	char words[40];
+	u32 frame;
+
+	bus_idle(b);
+	for (frame = 1; frame <= 40; frame++) {
+		bus_command(b, "plug e.1 x1.0");
+		snprintf(words, sizeof(words), "plug k.1 x2.0 frame=%u", frame);
+		bus_command(b, words);
+		expect_consistent(b, ALIKE + 2, frame);
+		snprintf(words, sizeof(words), "frame %u", frame);
+		bus_expect_graph(b, words);
+		bus_command(b, "unplug x1.0");
+		bus_command(b, "unplug x2.0");
+		settle(b, 300);
+		bus_expect_graph(b, words);
+	}
+}
+
+/* Two branches that hang at each other's port contradict the ring order alone. */
+static void graph_crossed_branches(struct kunit *test)
+{
+	enum { R = 2, M, A = 5, B };
+	struct bus *b = bus_up(test, alike, ALIKE);
+	struct ec_slave **s = bus_table(b)->slaves;
+
+	bus_idle(b);
+	down_write(&bus_table(b)->topo);
+	ec_show_change_begin(&bus_table(b)->base->show);
+	KUNIT_EXPECT_EQ(test, ec_graph_misfit(s, ALIKE), (unsigned int)ALIKE);
+	swap(s[R]->graph.at[2], s[M]->graph.at[2]);
+	swap(s[A]->graph.at[0], s[B]->graph.at[0]);
+	KUNIT_EXPECT_EQ(test, ec_graph_misfit(s, ALIKE), (unsigned int)A);
+	ec_show_change_end(&bus_table(b)->base->show);
+	up_write(&bus_table(b)->topo);
+	bus_command(b, "plug e.1 x1.0");
+	settle(b, 500);
+	bus_expect_graph(b, "crossed branches");
+}
+
+/* Receive times that were read wrong are read again. */
+static void graph_wrong_receive_times(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	struct ec_slave *mid = bus_slave(b, MID);
+
+	bus_idle(b);
+	down_write(&bus_table(b)->topo);
+	ec_show_change_begin(&bus_table(b)->base->show);
+	mid->recv[1] = mid->recv[0] - 1000;
+	ec_graph_note_ports(mid);
+	ec_show_change_end(&bus_table(b)->base->show);
+	up_write(&bus_table(b)->topo);
+	bus_command(b, "plug a2.1 x1.0");
+	settle(b, 500);
+	KUNIT_EXPECT_EQ(test, mid->graph.upstream, 1);
+	settle(b, 1500);
+	bus_expect_graph(b, "wrong receive times");
 }
 
 /* What is known of a device that comes back is not read again, unless its EEPROM is another one. */
@@ -254,6 +344,9 @@ static void graph_random_events(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(graph_follows, step_gen_params),
 	KUNIT_CASE(graph_moved_slave_is_not_read_again),
+	KUNIT_CASE(graph_port_opens_in_scan),
+	KUNIT_CASE(graph_crossed_branches),
+	KUNIT_CASE(graph_wrong_receive_times),
 	KUNIT_CASE(graph_eeprom_of_known_device),
 	KUNIT_CASE(graph_devices_return_often),
 	KUNIT_CASE(graph_found_beside_bouncing_contact),
