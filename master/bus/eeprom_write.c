@@ -259,8 +259,10 @@ static int take_effect(struct writing *w)
 			return ret;
 	}
 	ret = ec_xfer_fprd(s->bus->links, s->station, EC_REG_ALIAS, alias, 2);
-	if (!ret)
+	if (!ret) {
 		w->job->register_alias = get_unaligned_le16(alias);
+		WRITE_ONCE(s->register_alias, w->job->register_alias);
+	}
 	return 0;
 }
 

@@ -257,6 +257,11 @@ static bool is_addressed(const struct scan *sc, unsigned int i)
 	       sc->claims[station] == 1 && !ec_scan_unreadable(sc->bus, i);
 }
 
+static bool has_alias_of(const struct scan *sc, unsigned int i, const struct ec_slave *s)
+{
+	return get_unaligned_le16(sc->regs[i].station + 2) == READ_ONCE(s->register_alias);
+}
+
 /* An unknown slave: it keeps its address if no slave has had that. */
 static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 {
@@ -281,16 +286,27 @@ static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 	take_failure(sc, s);
 	s->kept_station = sc->regs[i].there && old != NO_STATION && sc->claims[old] == 1 ? old : 0;
 	/* by its address it is the same */
-	if (known && sc->regs[i].there && sc->claims[old] == 1) {
+	if (known && sc->regs[i].there && sc->claims[old] == 1 && has_alias_of(sc, i, known)) {
 		scan_station_take_part(s, known);
 		s->found = known->eeprom.data ? known->found : 0;
 		s->work.renew = READ_ONCE(known->work.renew);
 		if (s->work.renew)
 			s->device = known->device;
 	}
+	WRITE_ONCE(s->register_alias, get_unaligned_le16(sc->regs[i].station + 2));
 	sc->regs[i].was = sc->regs[i].there ? old : 0;
 	put_unaligned_le16(station, sc->regs[i].station);
 	return 0;
+}
+
+/*
+ * A slave that was connected to another master may have any address, also that of a slave which
+ * was disconnected. When the two were exchanged since the last scan, the place is another one.
+ */
+static bool is_same(const struct scan *sc, unsigned int i, const struct ec_slave *s,
+		    const struct rows *r)
+{
+	return i < r->front || sc->n - i <= r->back || has_alias_of(sc, i, s);
 }
 
 /* Which slave of the scan is which known one; returns how many need an address, @at, or -errno. */
@@ -309,7 +325,8 @@ static int assign(struct scan *sc, u16 *at)
 			continue;
 		}
 		s = sc->known[ec_scan_address(sc, i)];
-		if (s && is_usable(s) && sc->regs[i].there && owns_station(sc, i, s, &r)) {
+		if (s && is_usable(s) && sc->regs[i].there && owns_station(sc, i, s, &r) &&
+		    is_same(sc, i, s, &r)) {
 			sc->slaves[i] = ec_slave_ref(s);
 			same_before &= from_front(sc, i) == s;
 			continue;

@@ -236,6 +236,8 @@ struct ec_slave {
 	char name[EC_UAPI_STRING];
 
 	/* of the last scan: scan_*.c and known.c, under bus->topo */
+	/** @register_alias: register 0x0012 */
+	u16 register_alias;
 	/** @device: device number */
 	u64 device;
 	/** @by_device: in bus->known.present while it is in the list */

@@ -133,6 +133,35 @@ static void graph_port_opens_in_scan(struct kunit *test)
 	}
 }
 
+/* A foreign device with the address of a slave is exchanged for that slave between two scans. */
+static void graph_exchanged_for_its_double(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=7 response=100us transition=1ms\n"
+			       "slave hub EK1100\nslave a drive in=8 out=8\n"
+			       "branch hub 2\nslave d drive in=8 out=8\n"
+			       "slave c drive in=8 out=8 alias=7\n"
+			       "branch none\nslave x drive in=4 out=4 alias=9\n", 4);
+	const struct ec_esc *c = bus_esc(b, 3);
+	const struct ec_slave *s;
+	char words[40];
+
+	bus_idle(b);
+	snprintf(words, sizeof(words), "old x station=%u", bus_slave(b, 3)->station);
+	bus_command(b, "unplug c.0");
+	settle(b, 300);
+	bus_command(b, words);
+	bus_command(b, "plug a.1 x.0");
+	settle(b, 300);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->alias, 9);
+	bus_command(b, "unplug x.0");
+	bus_command(b, "plug d.1 c.0");
+	settle(b, 300);
+	bus_expect_graph(b, "the exchange");
+	s = bus_slave(b, 3);
+	KUNIT_EXPECT_EQ(test, s->alias, 7);
+	KUNIT_EXPECT_EQ(test, memcmp(s->eeprom.data, c->eep.data, s->eeprom.bytes), 0);
+}
+
 /* Two branches that hang at each other's port contradict the ring order alone. */
 static void graph_crossed_branches(struct kunit *test)
 {
@@ -345,6 +374,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(graph_follows, step_gen_params),
 	KUNIT_CASE(graph_moved_slave_is_not_read_again),
 	KUNIT_CASE(graph_port_opens_in_scan),
+	KUNIT_CASE(graph_exchanged_for_its_double),
 	KUNIT_CASE(graph_crossed_branches),
 	KUNIT_CASE(graph_wrong_receive_times),
 	KUNIT_CASE(graph_eeprom_of_known_device),
