@@ -8,7 +8,7 @@
 
 #define RANDOM_SLAVES	PORT_EVENTS_SLAVES
 #define RANDOM_HISTORY	4	/* cycles */
-#define RANDOM_SETTLED	1000	/* cycles: the master has seen what was before */
+#define RANDOM_SETTLED	5	/* cycles: all values that it sends back were sent to it in OP */
 
 /**
  * struct random_slave - what is known of a slave of the segment
