@@ -221,7 +221,8 @@ static void scan_bounce_known(struct kunit *test)
 	memcpy(regs, s->regs, sizeof(regs));
 	bus_fault(b, EC_SIM_FAULT_CUT, 4, 1, 0, 0);
 	msleep(500);
-	KUNIT_EXPECT_EQ(test, bounces.times, 1u);
+	/* another scan follows, as the ports of this one were not read */
+	KUNIT_EXPECT_EQ(test, bounces.times, 2u);
 	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 5u);
 	KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, 2), s);
 	KUNIT_EXPECT_MEMEQ(test, s->regs, regs, sizeof(regs));
