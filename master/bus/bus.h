@@ -12,7 +12,7 @@
 #include <linux/wait.h>
 #include "../base/base.h"
 #include "border_table.h"
-#include "doubt.h"
+#include "doubt_state.h"
 #include "known_table.h"
 #include "line_watch.h"
 #include "workers.h"
