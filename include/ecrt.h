@@ -2049,9 +2049,13 @@ typedef struct {
  * step are executed in the order of the calls, those of PS and SO after the startup SDOs and IDNs,
  * each time that the slave makes the step. A command that fails on the way up stops the slave in
  * the state before, and the reason names it; on the way down it is reported and the slave goes
- * down. There is no mailbox in INIT and BOOT: IP, IB and BI allow registers only. Steps down are
- * those made while the master is active; after ecrt_master_deactivate() and ecrt_release_master()
- * the slave has no configuration.
+ * down. There is no mailbox in INIT and BOOT: IP, IB and BI allow registers only.
+ *
+ * A step down over several states, as OP, has its own commands. Without them the master makes the
+ * steps between neighbors that have commands, as OS and SP, one after the other. So it does when
+ * the application deactivates or releases the master or exits: the slaves go to PREOP with their
+ * commands, for which all of them have 2 s after the end of the process data. Then they go there
+ * without the rest. ecrt_master_deactivate_slaves() runs the commands while process data continue.
  *
  * What the master writes itself is refused: station address, DL and AL control, event mask, FMMUs,
  * SyncManagers, clocks and SYNC signals, and objects of PDOs, for which ecrt_slave_config_sdo()

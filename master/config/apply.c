@@ -222,6 +222,37 @@ static bool needs_init(const struct ec_slave *s)
 	return c && ec_startup_has(c, EC_TRANSITION_IP);
 }
 
+/*
+ * The next state on the way down to @to: the application may have commands for steps between
+ * neighbors, and none for the step over several states.
+ */
+static u8 next_down(const struct ec_slave *s, u8 cur, u8 to)
+{
+	static const u8 between[] = { EC_AL_SAFEOP, EC_AL_PREOP };
+	const struct ec_config *c = ec_setup_of(s)->active_config;
+	unsigned int i;
+
+	if (!c || !s->work.ours || ec_startup_has(c, EC_TRANSITION(cur, to)))
+		return to;
+	for (i = 0; i < ARRAY_SIZE(between); i++)
+		if (cur > between[i] && between[i] > to &&
+		    (ec_startup_has(c, EC_TRANSITION(cur, between[i])) ||
+		     ec_startup_leaves(c, between[i], to)))
+			return between[i];
+	return to;
+}
+
+/* One or more steps down, and the way to and from BOOT, which leads through INIT. */
+static struct ec_result go_down(struct ec_slave *s, u8 cur, u8 want)
+{
+	u8 to = want == EC_AL_BOOT ? EC_AL_INIT : want;
+
+	if (cur == EC_AL_BOOT)
+		return to_init(s);
+	to = next_down(s, cur, to);
+	return to == EC_AL_INIT ? to_init(s) : step_down(s, to);
+}
+
 /* One step towards the requested state. @there: result: it is in that state. */
 static struct ec_result apply_step(struct ec_slave *s, bool *there)
 {
@@ -254,16 +285,11 @@ static struct ec_result apply_step(struct ec_slave *s, bool *there)
 		*there = want != EC_AL_OP || ec_apply_op_only_on(s) >= 0;
 		return EC_RESULT(*there ? 0 : -EIO);
 	}
-	if (want == EC_AL_BOOT)
-		return cur == EC_AL_INIT ? leave_init(s, EC_AL_BOOT) : to_init(s);
-	if (cur > want || cur == EC_AL_BOOT) {
-		if (want == EC_AL_INIT || cur == EC_AL_BOOT)
-			return to_init(s);
-		return step_down(s, want);
-	}
+	if (cur != EC_AL_INIT && (cur > want || cur == EC_AL_BOOT || want == EC_AL_BOOT))
+		return go_down(s, cur, want);
 	switch (cur) {
 	case EC_AL_INIT:
-		return leave_init(s, EC_AL_PREOP);
+		return leave_init(s, want == EC_AL_BOOT ? EC_AL_BOOT : EC_AL_PREOP);
 	case EC_AL_PREOP:
 		return ec_apply_to_safeop(s, setup->active_config);
 	case EC_AL_SAFEOP:

@@ -357,6 +357,29 @@ bool ec_startup_has(const struct ec_config *c, u8 transition)
 }
 
 /**
+ * ec_startup_leaves() - has a state commands for steps down?
+ * @c: configuration
+ * @from: AL state where they begin
+ * @to: the lowest one where they end
+ *
+ * Context: The slave's worker, or process with the lock of the session held.
+ * Return: whether it has.
+ */
+bool ec_startup_leaves(const struct ec_config *c, u8 from, u8 to)
+{
+	const struct ec_startup *u;
+
+	lockdep_assert(lockdep_is_held(c->wanted->lock) ||
+		       (c->slave && lockdep_is_held(&c->slave->lock)));
+	list_for_each_entry(u, &c->startup, list)
+		if (EC_TRANSITION_FROM(u->transition) == from &&
+		    EC_TRANSITION_TO(u->transition) < from &&
+		    EC_TRANSITION_TO(u->transition) >= to)
+			return true;
+	return false;
+}
+
+/**
  * ec_startup_run() - run the commands of a transition
  * @s: slave, in the state where it begins
  * @c: configuration

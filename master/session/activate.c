@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Begin and end of the cyclic exchange of a session. */
+#include <linux/delay.h>
 #include <linux/slab.h>
 #include "../base/report.h"
 #include "../bus/ports.h"
@@ -18,9 +19,12 @@
 #include "request_layout.h"
 #include "session_attach.h"
 #include "session_groups.h"
+#include "session_slave.h"
 #include "session_status.h"
 #include "../clock/dc.h"
 #include "../clock/dc_app.h"
+
+#define DOWN_MS		2000	/* for commands before steps down, of all slaves */
 
 static const struct ec_cycle_ops cycle_ops = {
 	.cycle = ec_requests_notice,
@@ -182,44 +186,6 @@ int ec_session_activate(struct ec_session *s)
 }
 
 /**
- * ec_session_deactivate() - stop process data, free what was configured
- * @s: session
- *
- * The caller ends the session, or holds the list of slaves.
- *
- * Context: Process, session lock held. May sleep.
- * Return: 0, or -EINVAL when it was not active.
- */
-int ec_session_deactivate(struct ec_session *s)
-{
-	struct ec_sessions *ss = s->sessions;
-
-	lockdep_assert_held(s->wanted.lock);
-	if (!s->wanted.active)
-		return -EINVAL;
-	ec_cycle_set_active(ss->cycles, NULL);
-	ec_cycle_thread_stop(&s->cycle);
-	ec_session_note_counts(s, false, true);
-	ec_access_change(ss->links, EC_ACCESS_DIRECT);
-	ec_cycle_stats_end(&s->cycle);
-	s->wanted.active = false;
-	ec_ports_guard(ss->bus, false);
-	s->timeout_log.open = false;
-	ec_requests_end(s);
-	ec_session_clear(s);
-	free_cycle(&s->cycle);
-	ec_shared_put(s->cycle.shared);
-	s->cycle.shared = NULL;
-	ec_sessions_forget_times(ss);
-	if ((u32)atomic_read(&ss->links->access.timeouts) != s->timeout_log.logged)
-		ec_warn(ss, "%u%s\n",
-			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged,
-			ec_timeouts_text(&s->timeout_log));
-	ec_report(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
-	return 0;
-}
-
-/**
  * ec_session_slaves_down() - take the slaves to PREOP, the cycle continues
  * @s: session
  *
@@ -240,5 +206,90 @@ int ec_session_slaves_down(struct ec_session *s)
 	ec_for_each_config(c, &s->wanted)
 		if (c->slave)
 			ec_slave_request(c->slave, EC_AL_PREOP);
+	return 0;
+}
+
+/* Is a slave to go down, with commands of the application for that? */
+static bool leads_down(const struct ec_config *c)
+{
+	return ec_session_owns(c) && READ_ONCE(c->slave->al.status) & EC_AL_BEYOND_PREOP &&
+	       !READ_ONCE(c->slave->stop.gone) && !READ_ONCE(c->slave->reply.silent) &&
+	       (ec_startup_leaves(c, EC_AL_OP, EC_AL_PREOP) ||
+		ec_startup_leaves(c, EC_AL_SAFEOP, EC_AL_PREOP));
+}
+
+/* How many are; @busy: those whose worker is on the way. */
+static unsigned int n_down(const struct ec_session *s, bool busy)
+{
+	unsigned int n = 0;
+
+	ec_for_each_config(c, &s->wanted)
+		n += leads_down(c) && (!busy || atomic_read(&c->slave->work.runs));
+	return n;
+}
+
+/*
+ * The commands of the application for steps down are executed before the slaves lose their
+ * configurations. Nothing is awaited for applications without such commands.
+ */
+static void run_commands_down(struct ec_session *s)
+{
+	struct ec_base *base = s->sessions->base;
+	u64 end = ktime_get_ns() + DOWN_MS * (u64)NSEC_PER_MSEC;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (!n_down(s, false) || READ_ONCE(base->stopping))
+		return;
+	ec_session_slaves_down(s);
+	/* what is shown does not change while the session waits */
+	ec_show_change_end(&base->show);
+	while (n_down(s, true) && ktime_get_ns() < end && !READ_ONCE(base->stopping) &&
+	       ec_links_is_up(s->sessions->links))
+		usleep_range(500, 1000);
+	ec_show_change_begin(&base->show);
+	ec_for_each_config(c, &s->wanted)
+		if (leads_down(c))
+			ec_slave_warn(c->slave,
+				      "commands for steps down not finished before the end of the session, limit %u ms\n",
+				      DOWN_MS);
+}
+
+/**
+ * ec_session_deactivate() - stop process data, free what was configured
+ * @s: session
+ *
+ * The caller ends the session, or holds the list of slaves. Slaves with commands for steps down
+ * go to PREOP first, for which all of them have DOWN_MS.
+ *
+ * Context: Process, ec_sessions_lock() held. May sleep.
+ * Return: 0, or -EINVAL when it was not active.
+ */
+int ec_session_deactivate(struct ec_session *s)
+{
+	struct ec_sessions *ss = s->sessions;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (!s->wanted.active)
+		return -EINVAL;
+	ec_cycle_set_active(ss->cycles, NULL);
+	ec_cycle_thread_stop(&s->cycle);
+	ec_session_note_counts(s, false, true);
+	ec_access_change(ss->links, EC_ACCESS_DIRECT);
+	ec_cycle_stats_end(&s->cycle);
+	ec_requests_end(s);
+	run_commands_down(s);
+	s->wanted.active = false;
+	ec_ports_guard(ss->bus, false);
+	s->timeout_log.open = false;
+	ec_session_clear(s);
+	ec_cycle_free(&s->cycle);
+	ec_shared_put(s->cycle.shared);
+	s->cycle.shared = NULL;
+	ec_sessions_forget_times(ss);
+	if ((u32)atomic_read(&ss->links->access.timeouts) != s->timeout_log.logged)
+		ec_warn(ss, "%u%s\n",
+			atomic_read(&ss->links->access.timeouts) - s->timeout_log.logged,
+			ec_timeouts_text(&s->timeout_log));
+	ec_report(ss->base, EC_EVENT_DEACTIVATED, s->owner_pid);
 	return 0;
 }
