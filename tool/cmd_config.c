@@ -142,9 +142,11 @@ const struct cmd cmd_config = {
 		"sync_managers[] (index, direction, watchdog, pdos[] (index, entries[] (index,\n"
 		"subindex, size_bits))), sdos[] (index, subindex, complete_access, size_bytes,\n"
 		"data_hex), idns[] (drive, idn, name, state, size_bytes, data_hex; null from an older\n"
-		"module), writes[] (kind: SDO (index, subindex, complete_access), IDN (drive, idn) or\n"
-		"register (register); size_bytes, not_replayed (reason or null), data_hex; null from an\n"
-		"older module), flags[] (key, value), eoe_ip (as of ip, or null),\n"
+		"module), commands[] (step, kind as of writes, size_bytes, timeout_ms, write_hex,\n"
+		"expect_hex, mask_hex, each or null; null from an older module), writes[] (kind: SDO\n"
+		"(index, subindex, complete_access), IDN (drive, idn) or register (register);\n"
+		"size_bytes, not_replayed (reason or null), data_hex; null from an older module),\n"
+		"flags[] (key, value), eoe_ip (as of ip, or null),\n"
 		"dc (assign_activate, sync[] (cycle_ns, shift_ns))",
 	.flags = CMD_HISTORIC,
 };

@@ -22,7 +22,8 @@ const char *config_name(const struct ect_config *c, char *buf, size_t size)
 	return buf;
 }
 
-static int failed(struct dev *d, int err, const struct ect_config *c)
+/* Return: 1 */
+int config_failed(struct dev *d, int err, const struct ect_config *c)
 {
 	char name[CONFIG_NAME];
 
@@ -38,7 +39,7 @@ static int entries(struct dev *d, const struct ect_config *c, const char *in, un
 		int err = ect_config_entry(d->h, c->index, sm, pdo, i, &e);
 
 		if (err)
-			return failed(d, err, c);
+			return config_failed(d, err, c);
 		out_object(NULL);
 		out_u("index", e.index, "%s    PDO entry 0x%04x", in, e.index);
 		out_u("subindex", e.subindex, ":%02x", e.subindex);
@@ -66,7 +67,7 @@ static int sync_manager(struct dev *d, const struct ect_config *c, const char *i
 		int err = ect_config_pdo(d->h, c->index, s->sm, i, &p);
 
 		if (err) {
-			ret = failed(d, err, c);
+			ret = config_failed(d, err, c);
 			break;
 		}
 		out_object(NULL);
@@ -91,7 +92,7 @@ static int sync_managers(struct dev *d, const struct ect_config *c, const char *
 		int err = ect_config_sm(d->h, c->index, i, &s);
 
 		if (err)
-			ret = failed(d, err, c);
+			ret = config_failed(d, err, c);
 		else if (s.pdo_count)
 			ret = sync_manager(d, c, in, &s);
 	}
@@ -108,7 +109,7 @@ static int sdo(struct dev *d, const struct ect_config *c, const char *in, unsign
 	char indent[16];
 
 	if (err)
-		return failed(d, err, c);
+		return config_failed(d, err, c);
 	snprintf(indent, sizeof(indent), "%s    ", in);
 	out_object(NULL);
 	out_u("index", s.index, "%s  0x%04x", in, s.index);
@@ -181,7 +182,7 @@ static int idns(struct dev *d, const struct ect_config *c, const char *in)
 			out_array("idns");
 		}
 		if (err && err != -ENOENT)
-			return failed(d, err, c);
+			return config_failed(d, err, c);
 		if (err)
 			break;
 		idn(&i, data, in);
@@ -250,7 +251,7 @@ static int writes(struct dev *d, const struct ect_config *c, const char *in)
 		if (!pos)
 			out_array("writes");
 		if (err && err != -ENOENT)
-			return failed(d, err, c);
+			return config_failed(d, err, c);
 		if (err)
 			break;
 		if (!pos)
@@ -272,7 +273,7 @@ static int flags(struct dev *d, const struct ect_config *c, const char *in)
 		int err = ect_config_flag(d->h, c->index, i, &f);
 
 		if (err)
-			return failed(d, err, c);
+			return config_failed(d, err, c);
 		out_object(NULL);
 		out_str("key", f.key, "%s  %s", in, f.key);
 		out_i("value", f.value, ": %d\n", f.value);
@@ -295,7 +296,7 @@ static int ip(struct dev *d, const struct ect_config *c, const char *in)
 	if (err == -ENOTTY)
 		i.which = 0;
 	else if (err)
-		return failed(d, err, c);
+		return config_failed(d, err, c);
 	if (!i.which) {
 		out_null("eoe_ip", NULL);
 		return 0;
@@ -427,6 +428,7 @@ int config_info(struct dev *d, const struct ect_config *c, const char *in)
 	ret = sync_managers(d, c, in);
 	ret = ret ? ret : sdos(d, c, in);
 	ret = ret ? ret : idns(d, c, in);
+	ret = ret ? ret : config_commands(d, c, in);
 	ret = ret ? ret : writes(d, c, in);
 	ret = ret ? ret : flags(d, c, in);
 	ret = ret ? ret : ip(d, c, in);

@@ -208,6 +208,38 @@ struct ect_write {
 int ect_config_write(struct ect_handle *h, unsigned int index, unsigned int pos,
 		     struct ect_write *to, void *data, size_t size);
 
+/* a command of the application before a slave makes a step to another AL state */
+struct ect_step_command {
+	uint32_t struct_size;
+	uint16_t index;		/* of the object, IDN, or address of a register */
+	uint8_t subindex;	/* or drive */
+	uint8_t kind;		/* ECT_WRITE_* */
+	uint8_t complete;	/* of an SDO: complete access */
+	uint8_t from;		/* AL state */
+	uint8_t to;		/* AL state */
+	uint8_t writes;		/* a value is written */
+	uint8_t checks;		/* a value is read and compared */
+	uint8_t reserved[3];
+	uint32_t timeout_ms;	/* until it must be as expected */
+	uint32_t bytes;		/* of each value; the buffer may be shorter */
+};
+
+/**
+ * ect_config_command() - a command for a step, in the order in which they are executed
+ * @h: master
+ * @index: of the configuration
+ * @pos: which, from 0
+ * @to: result, with its @struct_size
+ * @data: for the value to write, then the value expected and its mask, @bytes of struct
+ *	ect_step_command each, as far as the command has them
+ * @size: bytes at @data
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: As ect_config_idn().
+ */
+int ect_config_command(struct ect_handle *h, unsigned int index, unsigned int pos,
+		       struct ect_step_command *to, void *data, size_t size);
+
 /* a feature flag of a configuration */
 struct ect_flag {
 	uint32_t struct_size;

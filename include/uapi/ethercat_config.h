@@ -90,6 +90,23 @@ struct ec_ioc_config_write {
 	__u64 data;
 };
 
+/* a command of the application for a transition, see struct ec_ioc_sc_command */
+struct ec_ioc_config_command {
+	__u32 flags;		/* out: EC_COMMAND_FLAG_* */
+	__u32 index;		/* in */
+	__u32 command_pos;	/* in */
+	__u16 object;		/* index, IDN, or address of a register */
+	__u8 subindex;		/* or drive */
+	__u8 kind;		/* EC_WRITE_KIND_* */
+	__u8 from;		/* AL state */
+	__u8 to;		/* AL state */
+	__u16 reserved;
+	__u32 timeout_ms;
+	__u32 size;		/* in: buffer size; out: bytes of @data: the value to write, the */
+	__u32 reserved2;	/* value expected and its mask, as the flags say */
+	__u64 data;
+};
+
 /* options of a domain, see struct ec_ioc_domain_options */
 #define EC_DOMAIN_OPT_OVERLAP	1	/* inputs at logical addresses of outputs */
 #define EC_DOMAIN_OPT_SEPARATE	2	/* LRD and LWR instead of LRW */

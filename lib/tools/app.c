@@ -168,6 +168,28 @@ int ect_config_write(struct ect_handle *h, unsigned int index, unsigned int pos,
 	return ret ? ret : ect_give(h, to, &own, sizeof(own));
 }
 
+int ect_config_command(struct ect_handle *h, unsigned int index, unsigned int pos,
+		       struct ect_step_command *to, void *data, size_t size)
+{
+	struct ec_ioc_config_command i = {
+		.index = index, .command_pos = pos, .size = (u32)min(size, (size_t)0xffffffff),
+		.data = (uintptr_t)data,
+	};
+	struct ect_step_command own;
+	int ret = ect_command(h, EC_IOC_CONFIG_COMMAND, &i);
+	u32 parts = (i.flags & EC_COMMAND_FLAG_WRITE ? 1 : 0) +
+		    (i.flags & EC_COMMAND_FLAG_CHECK ? 2 : 0);
+
+	own = (struct ect_step_command){
+		.index = i.object, .subindex = i.subindex, .kind = i.kind,
+		.complete = !!(i.flags & EC_COMMAND_FLAG_COMPLETE), .from = i.from, .to = i.to,
+		.writes = !!(i.flags & EC_COMMAND_FLAG_WRITE),
+		.checks = !!(i.flags & EC_COMMAND_FLAG_CHECK), .timeout_ms = i.timeout_ms,
+		.bytes = parts ? i.size / parts : 0,
+	};
+	return ret ? ret : ect_give(h, to, &own, sizeof(own));
+}
+
 int ect_config_flag(struct ect_handle *h, unsigned int index, unsigned int flag,
 		    struct ect_flag *to)
 {

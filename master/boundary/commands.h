@@ -35,6 +35,9 @@ CMD(EC_IOC_CONFIG_IDN, ec_ioc_config_idn, 0, SHOW_CONFIG(ec_ioc_config_idn),
 CMD(EC_IOC_CONFIG_FLAG, ec_ioc_config_flag, 0, SHOW_CONFIG(ec_ioc_config_flag))
 CMD(EC_IOC_CONFIG_WRITE, ec_ioc_config_write, 0, SHOW_CONFIG(ec_ioc_config_write),
 	OUT(ec_ioc_config_write, EC_MAX_SDO_SIZE), FLAGS(EC_SDO_FLAG_COMPLETE))
+CMD(EC_IOC_CONFIG_COMMAND, ec_ioc_config_command, 0, SHOW_CONFIG(ec_ioc_config_command),
+	OUT(ec_ioc_config_command, 3 * EC_MAX_SDO_SIZE), RSV2(ec_ioc_config_command),
+	FLAGS(EC_COMMAND_FLAG_WRITE | EC_COMMAND_FLAG_CHECK | EC_COMMAND_FLAG_COMPLETE))
 CMD(EC_IOC_CONFIG_WHY, ec_ioc_config_why, 0, SHOW_CONFIG(ec_ioc_config_why),
 	RSV1(ec_ioc_config_why))
 CMD(EC_IOC_CONFIG_IP, ec_ioc_config_ip, 0, INDEX(EC_CLASS_SHOW_CONFIG, ec_ioc_sc_ip, config),

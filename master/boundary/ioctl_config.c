@@ -138,8 +138,10 @@ static int find_startup(struct ec_call *call, u8 type, u32 n, const struct ec_st
 		if (ret)
 			return ret;
 	}
-	return ec_refuse(call, -ENOENT, "configuration %u has %u startup %ss", call->config->index,
-			 call->config->n_startup[type], type == EC_STARTUP_SDO ? "SDO" : "IDN");
+	return ec_refuse(call, -ENOENT, "configuration %u has %u %ss", call->config->index,
+			 call->config->n_startup[type],
+			 type == EC_STARTUP_SDO ? "startup SDO" :
+			 type == EC_STARTUP_IDN ? "startup IDN" : "command");
 }
 
 int ec_ioc_config_sdo(struct ec_call *call)
@@ -168,6 +170,31 @@ int ec_ioc_config_idn(struct ec_call *call)
 	i->idn = u->index;
 	i->drive = u->sub;
 	i->state = EC_TRANSITION_FROM(u->transition);
+	i->size = u->size;
+	return ec_ioc_copy_out(call, u->data, u->size);
+}
+
+int ec_ioc_config_command(struct ec_call *call)
+{
+	static const u8 kinds[EC_STARTUP_TYPES] = {
+		[EC_STARTUP_SDO] = EC_WRITE_KIND_SDO, [EC_STARTUP_IDN] = EC_WRITE_KIND_IDN,
+		[EC_STARTUP_REG] = EC_WRITE_KIND_REG,
+	};
+	struct ec_ioc_config_command *i = call->arg;
+	const struct ec_startup *u = NULL;
+	int ret = find_startup(call, EC_STARTUP_COMMAND, i->command_pos, &u);
+
+	if (ret)
+		return ret;
+	i->flags = (u->how & EC_STARTUP_WRITES ? EC_COMMAND_FLAG_WRITE : 0) |
+		   (u->how & EC_STARTUP_CHECKS ? EC_COMMAND_FLAG_CHECK : 0) |
+		   (u->complete ? EC_COMMAND_FLAG_COMPLETE : 0);
+	i->object = u->index;
+	i->subindex = u->sub;
+	i->kind = kinds[u->kind];
+	i->from = EC_TRANSITION_FROM(u->transition);
+	i->to = EC_TRANSITION_TO(u->transition);
+	i->timeout_ms = u->timeout_ms;
 	i->size = u->size;
 	return ec_ioc_copy_out(call, u->data, u->size);
 }

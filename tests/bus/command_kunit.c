@@ -3,52 +3,7 @@
  * Commands of the application for each transition of a slave: when they are executed, in which
  * order, what they read back, and what a failure does.
  */
-#include "replay.h"
-#include "master/boundary/ioctl.h"
-
-#define RAM	0x0f80	/* registers that the chip does not use */
-#define STEP(from, to)	EC_TRANSITION(EC_AL_##from, EC_AL_##to)
-#define PUT	EC_COMMAND_FLAG_WRITE
-#define CHECK	EC_COMMAND_FLAG_CHECK
-
-struct command {
-	u8 step, kind;
-	u16 index;
-	u8 sub;
-	u32 flags, bytes, timeout_ms;
-	u64 data, expect, mask;
-};
-
-static int add(struct cyc *c, struct command x)
-{
-	u8 values[24];
-	struct ec_ioc_sc_command i = {
-		.flags = x.flags, .from = EC_TRANSITION_FROM(x.step), .to = x.step & 0xf,
-		.kind = x.kind, .index = x.index, .subindex = x.sub, .timeout_ms = x.timeout_ms,
-		.data = (uintptr_t)values,
-	};
-
-	if (x.flags & PUT) {
-		memcpy(values, &x.data, x.bytes);
-		i.size += x.bytes;
-	}
-	if (x.flags & CHECK) {
-		memcpy(values + i.size, &x.expect, x.bytes);
-		memcpy(values + i.size + x.bytes, &x.mask, x.bytes);
-		i.size += 2 * x.bytes;
-	}
-	return ec_ioc(&c->b->app, EC_IOC_SC_COMMAND, &i);
-}
-
-static void must_add(struct cyc *c, struct command x)
-{
-	KUNIT_ASSERT_EQ_MSG(c->b->test, add(c, x), 0, "%s", c->b->app.reason);
-}
-
-static u8 *ram(struct bus *b)
-{
-	return &bus_esc(b, DRIVE)->mem[RAM];
-}
+#include "step_command.h"
 
 /* The slave is brought to a state; what of the registers was written on the way. */
 static u32 went(struct cyc *c, u8 state)
@@ -131,6 +86,36 @@ static void expect_all_kinds(struct cyc *c)
 {
 	KUNIT_EXPECT_EQ(c->b->test, get_unaligned_le16(ram(c->b)), 0x0403);
 	KUNIT_EXPECT_EQ(c->b->test, replay_value(c->b, TYPES, 8, 4), 0x9abcdef0ull);
+}
+
+/* What was configured is shown as it is, in the order of the calls. */
+static void command_shown(struct kunit *test)
+{
+	struct cyc *c = replay_configure(test);
+	u32 v[3] = { 0 };
+	struct ec_ioc_config_command i = {
+		.command_pos = 1, .size = sizeof(v), .data = (uintptr_t)v,
+	};
+
+	all_kinds(c);
+	replay_into_op(c);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CONFIG_COMMAND, &i), 0);
+	KUNIT_EXPECT_EQ(test, i.flags, (u32)(PUT | CHECK));
+	KUNIT_EXPECT_EQ(test, i.kind, EC_WRITE_KIND_SDO);
+	KUNIT_EXPECT_EQ(test, i.object, TYPES);
+	KUNIT_EXPECT_EQ(test, i.subindex, 8);
+	KUNIT_EXPECT_EQ(test, EC_TRANSITION(i.from, i.to), EC_TRANSITION_PS);
+	KUNIT_EXPECT_EQ(test, i.size, 12u);
+	KUNIT_EXPECT_EQ(test, v[0], 0x12345678u);
+	KUNIT_EXPECT_EQ(test, v[2], ~0u);
+	i = (struct ec_ioc_config_command){ .command_pos = 8 };
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CONFIG_COMMAND, &i), 0);
+	KUNIT_EXPECT_EQ(test, i.kind, EC_WRITE_KIND_REG);
+	KUNIT_EXPECT_EQ(test, i.size, 6u);
+	i = (struct ec_ioc_config_command){ .command_pos = 9 };
+	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_CONFIG_COMMAND, &i), -ENOENT);
+	HAS(test, c->b->app.reason, "9 commands");
+	cyc_release(c);
 }
 
 /* A slave that was without power gets them again. */
@@ -268,69 +253,6 @@ static void command_fails_down(struct kunit *test)
 	cyc_release(c);
 }
 
-/* What of the registers of the slave is written when the application ends its session. */
-static u32 ended(struct cyc *c, bool release)
-{
-	struct bus *b = c->b;
-	u32 i, bits = 0;
-
-	memset(ram(b), 0, 16);
-	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, release ? EC_IOC_RELEASE : EC_IOC_DEACTIVATE,
-					NULL), 0);
-	for (i = 0; i < 16; i++)
-		bits |= ram(b)[i] ? BIT(i) : 0;
-	KUNIT_ASSERT_NE(b->test, bus_wait(b, 2, EC_AL_PREOP, 10000), ~0ull);
-	if (!release)
-		KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_RELEASE, NULL), 0);
-	bus_idle(b);
-	return bits;
-}
-
-/* A session in OP whose slave has a register for each of @steps, up to one that is 0. */
-static struct cyc *in_op_with(struct cyc *c, const u8 *steps)
-{
-	u32 i;
-
-	for (i = 0; steps[i]; i++)
-		must_add(c, (struct command){ .step = steps[i], .kind = EC_REQUEST_REG,
-					      .index = RAM + i, .flags = PUT, .bytes = 1,
-					      .data = 0xa0 + i });
-	replay_into_op(c);
-	return c;
-}
-
-/* They are executed when the call returns; OP stands for OS and SP if it has commands. */
-static void command_session_ends(struct kunit *test)
-{
-	static const struct {
-		u8 steps[6];
-		bool release;
-		u32 bits;
-	} rows[] = {
-		{ { STEP(OP, SAFEOP), STEP(SAFEOP, PREOP) }, false, BIT(0) | BIT(1) },
-		{ { STEP(OP, SAFEOP), STEP(SAFEOP, PREOP) }, true, BIT(0) | BIT(1) },
-		{ { STEP(OP, SAFEOP) }, true, BIT(0) },
-		{ { STEP(SAFEOP, PREOP) }, true, BIT(0) },
-		{ { STEP(OP, PREOP), STEP(OP, SAFEOP), STEP(SAFEOP, PREOP) }, true, BIT(0) },
-		/* it does not go to INIT */
-		{ { STEP(OP, SAFEOP), STEP(OP, INIT), STEP(SAFEOP, INIT), STEP(PREOP, INIT) }, true,
-		  BIT(0) },
-		{ { STEP(OP, INIT), STEP(PREOP, INIT) }, true, 0 },
-	};
-	struct cyc *c = replay_configure(test);
-	u32 i;
-
-	for (i = 0; i < ARRAY_SIZE(rows); i++) {
-		in_op_with(c, rows[i].steps);
-		KUNIT_EXPECT_EQ_MSG(test, ended(c, rows[i].release), rows[i].bits, "row %u", i);
-		c = cyc_new(c->b, 1000);
-		cyc_domain(c);
-		cyc_map_all(c, DRIVE, 1, 0);
-	}
-	KUNIT_EXPECT_EQ(test, bus_log_lines("commands for steps down not finished"), 0u);
-	cyc_release(c);
-}
-
 /* Steps between neighbors on the way to INIT and BOOT. */
 static void command_by_neighbors(struct kunit *test)
 {
@@ -346,65 +268,6 @@ static void command_by_neighbors(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, went(c, EC_AL_BOOT), 14u);
 	KUNIT_EXPECT_EQ(test, went(c, EC_AL_OP), 0u);
 	cyc_release(c);
-}
-
-/* One that fails does not keep the others from being executed. */
-static void command_fails_at_end(struct kunit *test)
-{
-	static const u8 steps[] = { STEP(OP, SAFEOP), STEP(SAFEOP, PREOP), 0 };
-	struct cyc *c = replay_configure(test);
-
-	must_add(c, (struct command){ STEP(OP, SAFEOP), EC_REQUEST_SDO, 0x5fff, 3, PUT, 4 });
-	in_op_with(c, steps);
-	KUNIT_EXPECT_EQ(test, ended(c, true), (u32)BIT(1));
-	KUNIT_EXPECT_GE(test, bus_log_lines("OP to SAFEOP command SDO 0x5fff:03"), 1u);
-}
-
-/*
- * A check that never succeeds, a slave without power, a mailbox that does not answer, a cut cable:
- * the end of the session is limited.
- */
-static void ends_within(struct kunit *test, enum ec_sim_fault_type fault, int slave, u32 arg,
-			bool limit)
-{
-	struct cyc *c = replay_configure(test);
-	struct bus *b = c->b;
-	u32 lines = bus_log_lines("commands for steps down not finished");
-	u64 t0, ms;
-
-	must_add(c, (struct command){ STEP(OP, PREOP), EC_REQUEST_SDO, TYPES, 8, CHECK, 4, 60000,
-				      0, 7, ~0u });
-	replay_into_op(c);
-	if (slave)
-		bus_fault(b, fault, slave, 0, arg, 0);
-	t0 = ktime_get_ns();
-	cyc_release(c);
-	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
-	KUNIT_EXPECT_GE(test, ms, limit ? 2000u : 0u);
-	KUNIT_EXPECT_LT(test, ms, limit ? 2500u : 500u);
-	if (!slave)
-		KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 10000), ~0ull);
-	KUNIT_EXPECT_GT(test, bus_log_lines("commands for steps down not finished"), lines);
-}
-
-static void command_end_check(struct kunit *test)
-{
-	ends_within(test, 0, 0, 0, true);
-}
-
-static void command_end_power(struct kunit *test)
-{
-	ends_within(test, EC_SIM_FAULT_POWER_OFF, DRIVE, 0, false);
-}
-
-static void command_end_mailbox(struct kunit *test)
-{
-	ends_within(test, EC_SIM_FAULT_MAILBOX, DRIVE, EC_SIM_MAILBOX_LOST, true);
-}
-
-static void command_end_cable(struct kunit *test)
-{
-	ends_within(test, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, false);
 }
 
 static void command_invalid(struct kunit *test)
@@ -440,7 +303,7 @@ static void command_invalid(struct kunit *test)
 	u32 i;
 
 	for (i = 0; i < ARRAY_SIZE(rows); i++) {
-		KUNIT_EXPECT_EQ_MSG(test, add(c, rows[i].command), -EINVAL, "row %u", i);
+		KUNIT_EXPECT_EQ_MSG(test, add_command(c, rows[i].command), -EINVAL, "row %u", i);
 		HAS(test, c->b->app.reason, rows[i].text);
 	}
 	KUNIT_EXPECT_EQ(test, ec_ioc(&c->b->app, EC_IOC_SC_COMMAND, &odd), -EINVAL);
@@ -451,16 +314,17 @@ static void command_invalid(struct kunit *test)
 				      1, 0, 0, EC_AL_SAFEOP, 0xf });
 	for (i = 1; i < EC_MAX_SC_COMMANDS; i++)
 		must_add(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0, PUT, 1 });
-	KUNIT_EXPECT_EQ(test, add(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0,
+	KUNIT_EXPECT_EQ(test, add_command(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0,
 						       PUT, 1 }), -ENOSPC);
 	replay_into_op(c);
-	KUNIT_EXPECT_EQ(test, add(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0,
+	KUNIT_EXPECT_EQ(test, add_command(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0,
 						       PUT, 1 }), -EBUSY);
 	cyc_release(c);
 }
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(command_every_step),
+	KUNIT_CASE(command_shown),
 	KUNIT_CASE(command_order_and_return),
 	KUNIT_CASE(command_fails),
 	KUNIT_CASE(command_waits),
@@ -468,13 +332,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(command_without_slave),
 	KUNIT_CASE(command_without_link),
 	KUNIT_CASE(command_fails_down),
-	KUNIT_CASE(command_session_ends),
 	KUNIT_CASE(command_by_neighbors),
-	KUNIT_CASE(command_fails_at_end),
-	KUNIT_CASE(command_end_check),
-	KUNIT_CASE(command_end_power),
-	KUNIT_CASE(command_end_mailbox),
-	KUNIT_CASE(command_end_cable),
 	KUNIT_CASE(command_invalid),
 	{}
 };

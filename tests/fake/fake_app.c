@@ -95,6 +95,37 @@ static int config_write(struct ec_ioc_config_write *x)
 	return 0;
 }
 
+/* configuration 1: what writes, what checks, what does both, and one longer than is shown */
+static int config_command(struct ec_ioc_config_command *x)
+{
+	static const struct ec_ioc_config_command commands[] = {
+		{ .object = 0x0f80, .kind = EC_WRITE_KIND_REG, .from = 1, .to = 2,
+		  .flags = EC_COMMAND_FLAG_WRITE, .size = 2 },
+		{ .object = 0x8000, .subindex = 3, .kind = EC_WRITE_KIND_SDO, .from = 2, .to = 4,
+		  .flags = EC_COMMAND_FLAG_WRITE | EC_COMMAND_FLAG_CHECK, .size = 12,
+		  .timeout_ms = 250 },
+		{ .object = 91, .subindex = 1, .kind = EC_WRITE_KIND_IDN, .from = 4, .to = 8,
+		  .flags = EC_COMMAND_FLAG_CHECK, .size = 8 },
+		{ .object = 0x2000, .kind = EC_WRITE_KIND_SDO, .from = 8, .to = 4,
+		  .flags = EC_COMMAND_FLAG_WRITE | EC_COMMAND_FLAG_COMPLETE, .size = 1040 },
+		{ .object = 0x0f81, .kind = 9, .from = 3, .to = 1,
+		  .flags = EC_COMMAND_FLAG_WRITE, .size = 1 },
+	};
+	__u8 *data = (__u8 *)(uintptr_t)x->data;
+	__u64 address = x->data;
+	__u32 room = x->size;
+
+	if (getenv("FAKE_NO_COMMAND"))
+		return fake_fail(ENOTTY, "");
+	if (x->index != 1 || x->command_pos >= LEN(commands))
+		return fake_fail(ENOENT, "configuration has 5 commands");
+	*x = commands[x->command_pos];
+	x->data = address;
+	for (__u32 i = 0; i < x->size && i < room; i++)
+		data[i] = (__u8)(i + 1);
+	return 0;
+}
+
 static int config_flag(struct ec_ioc_config_flag *x)
 {
 	static const char *const key[] = { "AssignToPdi", "WaitBeforeSAFEOPms" };
@@ -229,6 +260,8 @@ int fake_app(unsigned long request, void *arg)
 		return config_flag(arg);
 	case EC_IOC_CONFIG_WRITE:
 		return config_write(arg);
+	case EC_IOC_CONFIG_COMMAND:
+		return config_command(arg);
 	case EC_IOC_CONFIG_WHY:
 		return config_why(arg);
 	case EC_IOC_CONFIG_IP:

@@ -464,6 +464,25 @@ END
 	FAKE_NO_IDN=1 out config -j | json 'd["masters"][0]["configs"][0]["idns"] is None'
 }
 
+@test "commands for steps are shown; an older module without them is shown as unknown" {
+	export FAKE_BUS=app
+	out config -v | grep -A2 'Commands for transitions:$' |
+		grep -qx '  INIT to PREOP: register 0x0f80, 2 byte'
+	out config -v | grep -qx '  PREOP to SAFEOP: SDO 0x8000:03, 4 byte, time limit 250 ms'
+	out config -v | grep -qx '  SAFEOP to OP: IDN of drive 1, 0x005b, 4 byte, time limit 0 ms'
+	out config -v | grep -qx '  OP to SAFEOP: SDO 0x2000 C, 1040 byte'
+	out config -j | json '[(x["step"], x["write_hex"] or x["mask_hex"]) for x in
+		d["masters"][0]["configs"][0]["commands"]][:3] == [("INIT to PREOP", "0102"),
+		("PREOP to SAFEOP", "01020304"), ("SAFEOP to OP", "05060708")]'
+	out config -j | json '[(x["timeout_ms"], x["expect_hex"], x["mask_hex"]) for x in
+		d["masters"][0]["configs"][0]["commands"]][:2] == [(None, None, None),
+		(250, "05060708", "090a0b0c")]'
+	out config -j | json 'd["masters"][0]["configs"][1]["commands"] == []'
+	[ -z "$(FAKE_NO_COMMAND=1 out config -v | grep 'Commands')" ]
+	FAKE_NO_COMMAND=1 out config -j |
+		json 'd["masters"][0]["configs"][0]["commands"] is None'
+}
+
 @test "writes of the application are shown, with the reason why one is not replayed" {
 	export FAKE_BUS=app
 	out config -v | grep -A5 'Writes of the application:$' | grep -qx '  SDO 0x8000:02, 2 byte'

@@ -113,6 +113,10 @@ static void fill(unsigned long nr, uint64_t *arg, unsigned int k)
 	case EC_IOC_CONFIG_WRITE:
 		((struct ec_ioc_config_write *)arg)->write_pos = k % 2;
 		break;
+	case EC_IOC_CONFIG_COMMAND:
+		((struct ec_ioc_config_command *)arg)->index = 1;
+		((struct ec_ioc_config_command *)arg)->command_pos = k % 2;
+		break;
 	case EC_IOC_CONFIG_IP:
 		((struct ec_ioc_sc_ip *)arg)->config = k % 2;
 		break;
