@@ -71,6 +71,8 @@
 #define EC_HAVE_REG_ACCESS
 /* ecrt_slave_config_flag() */
 #define EC_HAVE_FLAGS
+/* its flag IgnoresFRMW */
+#define EC_HAVE_FLAG_IGNORES_FRMW
 /* ec_soe_request_t and its functions */
 #define EC_HAVE_SOE_REQUESTS
 /* ecrt_master_scan_progress() */
@@ -2245,8 +2247,12 @@ EC_PUBLIC_API int ecrt_slave_config_state(const ec_slave_config_t *sc,
  * refused its PDO mapping or assignment and has other objects in the place of the registered
  * entries; otherwise the slave stays in PREOP. "ExpectedRevision": if the slave has another
  * revision number, the log reports it at activation, "ethercat slaves" marks the slave, and
- * "ethercat slaves -v" shows both numbers; the slave is used nevertheless. Other names have
- * no effect; "ethercat config -v" shows them.
+ * "ethercat slaves -v" shows both numbers; the slave is used nevertheless. "IgnoresFRMW": if not
+ * 0, the slave does not process FRMW (%EC_HAVE_FLAG_IGNORES_FRMW): the clocks of all slaves get
+ * the time of the reference clock by ARMW instead, at its ring position. While that position is
+ * not certain, as after a change at a port until the next bus scan, or with slaves before it at
+ * whose ports others may join by themselves, the time is only read, and the clocks drift. It is
+ * always certain for the first slave. Other names have no effect; "ethercat config -v" shows them.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL @key is NULL, empty or too long; %-ENOSPC more than 64 of the

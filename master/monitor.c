@@ -28,6 +28,7 @@
 #include "session/session_attach.h"
 #include "session/session_status.h"
 #include "clock/dc.h"
+#include "clock/dc_armw.h"
 
 #define PERIOD_MS	20
 #define SLACK_MS	4	/* by which a look may be earlier while all is well */
@@ -684,6 +685,7 @@ static void note_path(struct watch *w)
 	struct ec_dc *dc = &w->m->dc;
 	bool event = w->irq & EC_ECAT_EVENT_DL && w->dl_stays < STAYS;
 
+	ec_dc_armw_locate(dc, w->scanned && !event, w->path);
 	if (w->scanned && !event && !READ_ONCE(dc->changed) && !ec_dc_busy(dc))
 		ec_dc_path_is_known(dc, w->path);
 }

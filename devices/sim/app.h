@@ -374,6 +374,7 @@ struct ec_app {
  * @no_ack: only INIT clears its error indication
  * @own_eeprom: no PREOP unless the EEPROM is assigned to it
  * @no_lrw: its controller does not process LRW
+ * @no_frmw: its controller does not process FRMW
  * @loops_fixed: its controller does not keep what is written to 0x0101
  * @link_ns: time from cable and power to a link
  * @response_ns: time from mailbox request to response
@@ -401,6 +402,7 @@ struct ec_app_config {
 	bool no_ack;
 	bool own_eeprom;
 	bool no_lrw;
+	bool no_frmw;
 	bool loops_fixed;
 	u32 link_ns;
 	u64 response_ns;

@@ -23,7 +23,7 @@
  *		sm_out=N sm_in=N (SyncManagers of a drive or io)
  *		fixed=N,N... (PDOs and assignments)  dc_modes=N,N... (AssignActivate)
  *		transition_preop|boot|safeop|op=TIME (steps towards OP)
- *		ack=no (AL errors)  own_eeprom=yes  lrw=no  swap=yes (cables)
+ *		ack=no (AL errors)  own_eeprom=yes  lrw=no  frmw=no  swap=yes (cables)
  *		id_delay=TIME (from the request of the identification to the answer)
  *		loops=fixed (0x0101 does not keep what is written)
  *		link=TIME (from cable and power to a link)

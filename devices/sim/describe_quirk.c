@@ -84,7 +84,7 @@ int ec_desc_steps(struct ec_desc *d, struct ec_app_config *c)
 		[EC_APP_STEP_SAFEOP] = "transition_safeop",
 		[EC_APP_STEP_OP] = "transition_op",
 	};
-	bool ack = true, lrw = true;
+	bool ack = true, lrw = true, frmw = true;
 	int ret = 0;
 
 	for (u32 i = 0; i < EC_APP_STEPS && !ret; i++) {
@@ -97,8 +97,11 @@ int ec_desc_steps(struct ec_desc *d, struct ec_app_config *c)
 		ret = ec_desc_yes(d, "own_eeprom", &c->own_eeprom);
 	if (!ret)
 		ret = ec_desc_yes(d, "lrw", &lrw);
+	if (!ret)
+		ret = ec_desc_yes(d, "frmw", &frmw);
 	c->no_ack = !ack;
 	c->no_lrw = !lrw;
+	c->no_frmw = !frmw;
 	return ret;
 }
 

@@ -401,6 +401,8 @@ static int physical(struct ec_esc *esc, struct ec_dgram *d,
 	switch (d->cmd) {
 	case EC_CMD_ARMW:
 	case EC_CMD_FRMW:
+		if (d->cmd == EC_CMD_FRMW && esc->cfg.no_frmw)
+			return 0;
 		rd = match;
 		wr = !match;
 		break;
@@ -421,8 +423,10 @@ static int physical(struct ec_esc *esc, struct ec_dgram *d,
 		memcpy(esc->sim->scratch, d->data, d->len);
 		in = esc->sim->scratch;
 	}
-	if (rd && read_data(esc, d, bcast, ctx))
+	if (rd && read_data(esc, d, bcast, ctx)) {
 		add++;
+		esc->armw_reads += d->cmd == EC_CMD_ARMW;
+	}
 	if (wr && ec_esc_phys_write(esc, d->ado, in, d->len, ctx)) {
 		if (match)
 			add += ec_cmd_reads(d->cmd) &&

@@ -53,6 +53,7 @@ struct ec_esc;
  * @refuse_unwritten: an input SM is not readable before the PDI wrote it once
  * @dc_delay_only: with EC_FEAT_DC: receive times, but no clock that can be set
  * @loops_fixed: 0x0101 does not keep what is written: it stays 0, auto
+ * @no_frmw: FRMW is ignored, as a command that the controller does not know
  * @link_ns: time from cable and power at both ends to a link; the longer one of both ends
  *
  * ec_esc_config_init() gives a complete set; change what differs.
@@ -83,6 +84,7 @@ struct ec_esc_config {
 	bool refuse_unwritten;
 	bool dc_delay_only;
 	bool loops_fixed;
+	bool no_frmw;
 	u32 link_ns;
 };
 
@@ -421,6 +423,7 @@ struct ec_esc_late {
  * @reset_step: letters of the reset sequence seen
  * @open_regs: last frame that opened the protected registers, 0: none
  * @open_all: last frame that opened the whole controller
+ * @armw_reads: ARMW that have read from this slave
  * @app: private to the application side
  * @app_ops: its entry points, may be NULL
  * @app_wake_ns: next time @poll is wanted, EC_ESC_NEVER = not; set it with
@@ -470,6 +473,7 @@ struct ec_esc {
 	u8 reset_step;
 	u64 open_regs;
 	u64 open_all;
+	u32 armw_reads;
 	void *app;
 	const struct ec_esc_app_ops *app_ops;
 	u64 app_wake_ns;

@@ -65,7 +65,7 @@ void ec_esc_quick_update(struct ec_esc *esc)
 	q->wd_ns = ec_esc_wd_ns(esc);
 	q->bcast = normal && !esc->fault.miss_broadcast &&
 		   !(esc->cfg.features & EC_FEAT_NO_UNUSED);
-	q->time = normal && open && !(esc->mem[EC_REG_WRITE_PROTECT] & 1) &&
+	q->time = normal && open && !esc->cfg.no_frmw && !(esc->mem[EC_REG_WRITE_PROTECT] & 1) &&
 		  ec_esc_has_clock(esc) &&
 		  !(esc->cfg.features & EC_FEAT_NO_UNUSED);
 	q->data = normal && open && !esc->cfg.refuse_unwritten &&

@@ -446,6 +446,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 			ec.features |= EC_FEAT_DC64;
 	}
 	ec.loops_fixed = cfg->loops_fixed;
+	ec.no_frmw = cfg->no_frmw;
 	ec.link_ns = cfg->link_ns;
 	ec.eeprom = image;
 	ec.eeprom_len = model->eeprom_len;

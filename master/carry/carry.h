@@ -12,6 +12,7 @@
 #include <linux/list.h>
 #include <linux/spinlock.h>
 #include "../link/links.h"
+#include "armw.h"
 #include "post.h"
 #include "share.h"
 
@@ -52,6 +53,8 @@ struct ec_carry {
 	const struct ec_carry_ops *ops;
 	/** @ref_minus_ktime: time of the reference clock less ktime, ns, or NULL; immutable */
 	const atomic64_t *ref_minus_ktime;
+	/** @armw: how the time of the reference clock is sent, or NULL; immutable */
+	const struct ec_armw *armw;
 	/**
 	 * @clocks_held: posts do not give the time of the reference clock to other clocks;
 	 * written by the cycle owner

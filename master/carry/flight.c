@@ -78,7 +78,7 @@ static void build(struct ec_flight *f, struct ec_slot *slot, u8 *frame)
 /*
  * Write the time of the reference clock into a frame that sets clocks. If that clock does not
  * reply, the other clocks take the time in the drift compensation datagram, and an old one would
- * slow them down.
+ * slow them down. What the cycle holds, or ARMW needs and is not certain, is only read.
  */
 static void stamp(const struct ec_carry *c, u8 *frame, size_t len, u64 sent_ns)
 {
@@ -90,11 +90,13 @@ static void stamp(const struct ec_carry *c, u8 *frame, size_t len, u64 sent_ns)
 		return;
 	put_unaligned_le64(atomic64_read(c->ref_minus_ktime) + sent_ns, time);
 	while (ec_frame_iter_next(&it, &d) == 1) {
+		u16 adp = d.adp;
+
 		if (d.cmd != EC_CMD_FRMW || d.ado != EC_REG_DC_SYSTIME || d.len > sizeof(time))
 			continue;
 		memcpy(d.data, time, d.len);
-		if (READ_ONCE(c->clocks_held))
-			d.data[-EC_DGRAM_HDR] = EC_CMD_FPRD;
+		*d.hdr = READ_ONCE(c->clocks_held) ? EC_CMD_FPRD : ec_armw_command(c->armw, &adp);
+		put_unaligned_le16(adp, d.hdr + 2);
 	}
 }
 

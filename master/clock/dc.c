@@ -376,6 +376,7 @@ void ec_dc_end(struct ec_dc *dc)
 	WRITE_ONCE(dc->mode, EC_DC_IDLE);
 	/* the cycle has ended, maybe while it held the clocks */
 	WRITE_ONCE(dc->links->carry->clocks_held, false);
+	WRITE_ONCE(dc->armw.wanted, false);
 	ec_dc_app_forget(dc);
 	WRITE_ONCE(dc->choice, EC_DC_ANY);
 	WRITE_ONCE(dc->wanted, false);
@@ -402,6 +403,9 @@ void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, 
 	dc->base = base;
 	dc->links = links;
 	links->carry->ref_minus_ktime = &dc->ref_minus_ktime;
+	dc->armw.changes[0] = &dc->path_events;
+	dc->armw.changes[1] = &bus->trials;
+	links->carry->armw = &dc->armw;
 	dc->bus = bus;
 	dc->service = service;
 	bus->ext[EC_EXT_CLOCK] = dc;

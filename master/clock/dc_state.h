@@ -9,6 +9,7 @@
 #include <linux/wait.h>
 #include <linux/workqueue.h>
 #include "../bus/slave.h"
+#include "../carry/armw.h"
 
 struct ec_base;
 struct ec_bus;
@@ -257,6 +258,12 @@ struct ec_dc {
 	u32 path_scanned;
 	/** @path_known: ec_dc_path() for which the delays are right, else the clocks are held */
 	u32 path_known;
+	/** @armw: ring position of the reference clock, for slaves that ignore FRMW */
+	struct ec_armw armw;
+	/** @armw_since_ns: since when that position is not certain (ktime), 0: it is */
+	u64 armw_since_ns;
+	/** @armw_logged: the log says why; both are the monitor's */
+	bool armw_logged;
 	/** @extra_dgrams: drift compensation datagrams that the cycle adds to one per send */
 	u32 extra_dgrams;
 	/** @since_ns: since when drift is compensated (ktime) */

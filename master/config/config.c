@@ -308,7 +308,8 @@ int ec_config_flag_set(struct ec_config *c, const char *key, s32 value)
 	/* the EEPROM is the slave's from PREOP on anyway */
 	if (strcmp(key, EC_FLAG_WAIT_SAFEOP) && strcmp(key, EC_FLAG_ANY_PDOS) &&
 	    strcmp(key, EC_FLAG_REVISION) && strcmp(key, EC_FLAG_SERIAL) &&
-	    strcmp(key, EC_FLAG_REPEAT) && strcmp(key, EC_FLAG_HOLD) && strcmp(key, "AssignToPdi"))
+	    strcmp(key, EC_FLAG_REPEAT) && strcmp(key, EC_FLAG_HOLD) &&
+	    strcmp(key, EC_FLAG_NO_FRMW) && strcmp(key, "AssignToPdi"))
 		ec_info(c->wanted, "slave %s: flag %s has no effect\n", c->name, key);
 	flag->value = value;
 	list_add_tail(&flag->list, &c->flags);

@@ -81,6 +81,9 @@ struct ec_config_fmmu {
 /* not 0: the same frame may be sent several times in a cycle, as its ESI says */
 #define EC_FLAG_REPEAT		"FrameRepeatSupport"
 
+/* not 0: the slave ignores FRMW; clocks get the time by ARMW */
+#define EC_FLAG_NO_FRMW		"IgnoresFRMW"
+
 /* a named number that other masters know; in the order of the calls */
 struct ec_config_flag {
 	struct list_head list;

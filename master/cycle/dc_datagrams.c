@@ -220,19 +220,36 @@ static void take_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 se
 static bool answered(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 		     const u8 *data, u16 len)
 {
-	bool frmw = data[-EC_DGRAM_HDR] == EC_CMD_FRMW;
+	/* FRMW or ARMW */
+	bool writes = data[-EC_DGRAM_HDR] != EC_CMD_FPRD;
 	u16 wkc = get_unaligned_le16(data + len);
 	u8 sent[8];
 
 	put_unaligned_le64(f->time, sent);
 	if (!wkc ||
-	    (frmw && !memcmp(data, sent, len) && (k->silent || wkc != k->wkc))) {
+	    (writes && !memcmp(data, sent, len) && (k->silent || wkc != k->wkc))) {
 		k->silent++;
 		return false;
 	}
-	k->wkc = frmw ? wkc : 0;
+	k->wkc = writes ? wkc : 0;
 	k->silent = 0;
 	return true;
+}
+
+/* The command for the time of the reference clock, and its @adp. */
+static u8 sync_command(const struct ec_dc_datagrams *k, u16 *adp)
+{
+	/* slaves upstream of the reference clock must not get an unknown time */
+	bool quiet = k->path_held || READ_ONCE(k->dc->mode) == EC_DC_READ ||
+		     (k->dc->clocks_upstream && !k->time);
+	u16 ref = *adp;
+	u8 cmd = quiet ? EC_CMD_FPRD : ec_armw_command(&k->dc->armw, adp);
+
+	if (likely(cmd != EC_CMD_ARMW) || (!k->unsure && !k->silent))
+		return cmd;
+	/* without a reply of that clock anything may be at its place */
+	*adp = ref;
+	return EC_CMD_FPRD;
 }
 
 /**
@@ -250,11 +267,8 @@ static bool answered(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 now)
 {
-	u16 ref = READ_ONCE(k->dc->ref_station);
-	/* slaves upstream of the reference clock must not get an unknown time */
-	bool quiet = k->path_held || READ_ONCE(k->dc->mode) == EC_DC_READ ||
-		     (k->dc->clocks_upstream && !k->time);
-	u8 cmd = quiet ? EC_CMD_FPRD : EC_CMD_FRMW;
+	u16 ref = READ_ONCE(k->dc->ref_station), adp = ref;
+	u8 cmd = sync_command(k, &adp);
 	unsigned int i;
 	u8 t[8], *p;
 
@@ -270,7 +284,7 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 	k->sent += (k->silent ?: !k->wkc) % 4;
 	put_unaligned_le64(k->sent, t);
 	for (i = 0; i < syncs(dc); i++) {
-		p = ec_frame_add(fb, cmd, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
+		p = ec_frame_add(fb, cmd, index, adp, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memcpy(p, t, time_bytes(dc));
 	}
 	if (dc & REF_TIME) {
@@ -350,6 +364,7 @@ void ec_dc_datagrams_judge(struct ec_dc_datagrams *k, struct ec_status *st)
 	if (k->asked & MONITOR)
 		WRITE_ONCE(st->dc_monitor, k->back & MONITOR ?
 			   k->diff & ~(u32)EC_DC_DIFF_AHEAD : ~0u);
+	k->unsure = k->asked & ~k->back & SYNC_SLAVES;
 	k->asked = 0;
 	k->back = 0;
 }

@@ -30,6 +30,8 @@ struct ec_dc_datagrams {
 	u64 sent;
 	/** @wkc: working counter of the last reply of the reference clock */
 	u16 wkc;
+	/** @unsure: the last receive had no reply to @asked: no ARMW before the next one */
+	bool unsure;
 	/** @silent: sends without a reply of the reference clock since then, as far as is known */
 	u32 silent;
 	/** @time: last time of the reference clock, ns */

@@ -23,6 +23,7 @@
 #include "session_status.h"
 #include "../clock/dc.h"
 #include "../clock/dc_app.h"
+#include "../clock/dc_armw.h"
 
 #define DOWN_MS		2000	/* for commands before steps down, of all slaves */
 
@@ -124,6 +125,7 @@ static void activate_cycle(struct ec_session *s)
 	/* the thread's own time is the grid of the SYNC signals: its cycle keeps a phase to it */
 	if (c->thread)
 		ec_dc_app_forget(ss->dc);
+	ec_dc_armw_want(ss->dc, ec_clocks_need_armw(s));
 	if (ec_clocks_begin_now(s))
 		ec_dc_begin(ss->dc, ec_clocks_choice(s));
 	c->shared->status->dc_ref = READ_ONCE(ss->dc->ref_station) != 0;
@@ -282,7 +284,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_ports_guard(ss->bus, false);
 	s->timeout_log.open = false;
 	ec_session_clear(s);
-	ec_cycle_free(&s->cycle);
+	free_cycle(&s->cycle);
 	ec_shared_put(s->cycle.shared);
 	s->cycle.shared = NULL;
 	ec_sessions_forget_times(ss);

@@ -45,6 +45,22 @@ bool ec_clocks_used(const struct ec_session *s)
 }
 
 /**
+ * ec_clocks_need_armw() - has the session a slave that ignores FRMW?
+ * @s: session
+ *
+ * Context: Process, session lock held.
+ * Return: whether it has, on the bus or not.
+ */
+bool ec_clocks_need_armw(const struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	ec_for_each_config(c, &s->wanted)
+		if (ec_config_flag(c, EC_FLAG_NO_FRMW))
+			return true;
+	return false;
+}
+
+/**
  * ec_clocks_begin_now() - do the clocks begin with the activation?
  * @s: session
  *

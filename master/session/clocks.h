@@ -6,6 +6,7 @@
 #include "session.h"
 
 u16 ec_clocks_choice(const struct ec_session *s);
+bool ec_clocks_need_armw(const struct ec_session *s);
 bool ec_clocks_used(const struct ec_session *s);
 bool ec_clocks_begin_now(const struct ec_session *s);
 void ec_session_clocks(struct ec_sessions *ss);

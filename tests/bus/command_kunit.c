@@ -314,11 +314,11 @@ static void command_invalid(struct kunit *test)
 				      1, 0, 0, EC_AL_SAFEOP, 0xf });
 	for (i = 1; i < EC_MAX_SC_COMMANDS; i++)
 		must_add(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0, PUT, 1 });
-	KUNIT_EXPECT_EQ(test, add_command(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0,
-						       PUT, 1 }), -ENOSPC);
+	KUNIT_EXPECT_EQ(test, add_command(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG,
+					       RAM, 0, PUT, 1 }), -ENOSPC);
 	replay_into_op(c);
-	KUNIT_EXPECT_EQ(test, add_command(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG, RAM, 0,
-						       PUT, 1 }), -EBUSY);
+	KUNIT_EXPECT_EQ(test, add_command(c, (struct command){ STEP(OP, INIT), EC_REQUEST_REG,
+					       RAM, 0, PUT, 1 }), -EBUSY);
 	cyc_release(c);
 }
 

@@ -20,7 +20,7 @@ const struct fuzz_seed fuzz_seeds[] = {
 	SEED("slave x file=image.bin\n"),
 	SEED("slave a drive mbox_words=no mbox_protocols=no assign_out=none assign_in=0,0x1A00 ack=no\n"
 	     "slave b drive transition=1ms transition_safeop=5s transition_op=1min own_eeprom=yes\n"
-	     "slave c drive lrw=no swap=yes\nslave d io swap=yes\n"),
+	     "slave c drive lrw=no frmw=no swap=yes\nslave d io swap=yes\n"),
 	SEED("slave a drive in=40 sm_in=3 sm_out=2 mapping=lenient\nslave b io sm_in=2 in=9\n"),
 	SEED("slave a drive fixed=0x1600,0x1C13 dc_modes=0,0x0500\nfault at=1ms jump a by=-1.5s\n"
 	     "fault at=2ms jump a by=9min\n"),

@@ -256,6 +256,23 @@ static void sim_quirk_lrw_is_not_processed(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_LRW, 0x1000, 0, data, 16), 0);
 }
 
+/* FRMW passes: neither read nor written nor counted; ARMW is processed. */
+static void sim_quirk_frmw_is_not_processed(struct kunit *test)
+{
+	struct bed *b = app_bed(test, "slave a drive product=1\nslave d drive product=2 frmw=no\n"
+				"slave e drive product=3\n");
+	u8 data[2] = { 0 };
+
+	bed_put(b, S, 0x0f80, 0x4711, 2);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FRMW, S, 0x0f80, data, 2), 2);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), 0x0f80, 2), 0ull);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(2), 0x0f80, 2), 0x4711ull);
+	/* no slave reads at the address of this one: the others are written */
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_FRMW, STATION(1), 0x0f80, data, 2), 2);
+	KUNIT_EXPECT_EQ(test, bed_tx(b, EC_CMD_ARMW, 0, 0x0f80, data, 2), 3);
+	KUNIT_EXPECT_EQ(test, bed_get(b, STATION(1), 0x0f80, 2), 0x4711ull);
+}
+
 /* IN and OUT of the second slave are exchanged: it is processed on the way back */
 static void sim_quirk_swapped_slave_comes_later(struct kunit *test)
 {
@@ -422,6 +439,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_quirk_assignment_at_power_on),
 	KUNIT_CASE(sim_quirk_eeprom_must_be_assigned),
 	KUNIT_CASE(sim_quirk_lrw_is_not_processed),
+	KUNIT_CASE(sim_quirk_frmw_is_not_processed),
 	KUNIT_CASE(sim_quirk_swapped_slave_comes_later),
 	KUNIT_CASE(sim_quirk_clock_jumps),
 	KUNIT_CASE(sim_quirk_operation_modes),
