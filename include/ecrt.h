@@ -132,6 +132,8 @@
 #define EC_HAVE_TRANSITION_COMMANDS
 /* ecrt_master_unit() and the next ones: units of domains that fail alone */
 #define EC_HAVE_UNITS
+/* ecrt_master_read_eeprom(), ecrt_master_write_eeprom(), ecrt_master_write_alias() */
+#define EC_HAVE_EEPROM
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -761,6 +763,83 @@ EC_PUBLIC_API int ecrt_master_read_idn(ec_master_t *master,
 		uint16_t slave_position, uint8_t drive_no, uint16_t idn,
 		uint8_t *target, size_t target_size, size_t *result_size,
 		uint16_t *error_code);
+
+/* @flags of ecrt_master_write_eeprom() and ecrt_master_write_alias() */
+typedef enum {
+	EC_EEPROM_WRITE_FORCE = 1,	/* while the slave runs; the image of another device */
+	EC_EEPROM_WRITE_UNREACHABLE = 2, /* an image that may make the slave unreachable */
+	EC_EEPROM_WRITE_CHECKSUM = 4,	/* write the right checksum in any case */
+	EC_EEPROM_WRITE_DRY_RUN = 8	/* check and compare, write nothing */
+} ec_eeprom_write_flags_t;
+
+typedef struct {
+	uint32_t differ;		/* words that differed */
+	uint32_t written;		/* words written and read back */
+	uint16_t register_alias;	/* register 0x0012 of the slave */
+	uint8_t renewed;		/* the master has read the slave again */
+} ec_eeprom_written_t;
+
+/**
+ * ecrt_master_read_eeprom() - read the EEPROM of a slave
+ * @master: an open master; need not be reserved
+ * @slave_position: in the ring
+ * @word: first word
+ * @target: out: the words, little-endian
+ * @target_size: buffer size, bytes
+ * @result_size: out: bytes read, fewer where the image ends
+ *
+ * Extension (%EC_HAVE_EEPROM). The image is that of the last bus scan; no traffic.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL no such slave or bad arguments; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_read_eeprom(ec_master_t *master,
+		uint16_t slave_position, uint16_t word, uint8_t *target,
+		size_t target_size, size_t *result_size);
+
+/**
+ * ecrt_master_write_eeprom() - write the EEPROM of a slave
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @word: first word; 0 for a whole image
+ * @data: words, little-endian
+ * @size: bytes, even
+ * @flags: of ec_eeprom_write_flags_t
+ * @written: out, may be NULL: what was done
+ *
+ * Extension (%EC_HAVE_EEPROM), as "ethercat sii_write". The image is checked first; only words
+ * that differ are written, words 0 to 7 after all others, and all are read back. When a call is
+ * interrupted, the same call continues. With @word other than 0 the words before and behind are
+ * those of the last bus scan. Then the master reads the slave again, unless it is in SAFEOP or OP.
+ *
+ * Context: Process. Waits for bus traffic; a word takes some milliseconds.
+ * Return: 0; %-EINVAL no such slave, or bad arguments; %-EBADMSG refused without
+ * %EC_EEPROM_WRITE_UNREACHABLE; %-EPERM the image of another device without
+ * %EC_EEPROM_WRITE_FORCE, or @master not opened for writing; %-EFBIG larger than the EEPROM;
+ * %-EBUSY the slave runs, has a configuration, or is being configured; %-EIO not all words were
+ * written; %-EINTR, %-ECANCELED, %-ENODEV, %-ENETDOWN, %-ENOMEM. The reason is reported.
+ */
+EC_PUBLIC_API int ecrt_master_write_eeprom(ec_master_t *master,
+		uint16_t slave_position, uint16_t word, const uint8_t *data,
+		size_t size, uint32_t flags, ec_eeprom_written_t *written);
+
+/**
+ * ecrt_master_write_alias() - write the alias of a slave into its EEPROM
+ * @master: a master opened for writing; need not be reserved
+ * @slave_position: in the ring
+ * @alias: 0: none
+ * @flags: %EC_EEPROM_WRITE_FORCE, %EC_EEPROM_WRITE_CHECKSUM if the checksum may be wrong before
+ * @written: out, may be NULL: @register_alias and @renewed
+ *
+ * Extension (%EC_HAVE_EEPROM), as "ethercat alias": words 4 and 7. The master uses the alias at
+ * once; many slaves set their register at power-on only.
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: As ecrt_master_write_eeprom().
+ */
+EC_PUBLIC_API int ecrt_master_write_alias(ec_master_t *master,
+		uint16_t slave_position, uint16_t alias, uint32_t flags,
+		ec_eeprom_written_t *written);
 
 /**
  * ecrt_master_activate() - lay out the process image and start cyclic operation

@@ -324,6 +324,28 @@ int __wrap_ioctl(int fd, unsigned long cmd, ...)
 	case EC_IOC_SDO_UPLOAD:
 		answer_sdo(arg);
 		break;
+	case EC_IOC_SII: {
+		struct ec_ioc_sii *i = arg;
+
+		/* 32 bytes, in pieces of 10 */
+		i->size = i->size < 10 ? i->size : 10;
+		if (i->offset + i->size > 32)
+			i->size = i->offset < 32 ? 32 - i->offset : 0;
+		for (__u32 k = 0; k < i->size; k++)
+			((__u8 *)(uintptr_t)i->data)[k] = (__u8)(i->offset + k);
+		break;
+	}
+	case EC_IOC_SII_WRITE:
+		memcpy(fake.values, (void *)(uintptr_t)((struct ec_ioc_sii_write *)arg)->data,
+		       ((struct ec_ioc_sii_write *)arg)->size);
+		((struct ec_ioc_sii_write *)arg)->differ = 3;
+		((struct ec_ioc_sii_write *)arg)->written = 2;
+		((struct ec_ioc_sii_write *)arg)->register_alias = 7;
+		((struct ec_ioc_sii_write *)arg)->renewed = 1;
+		break;
+	case EC_IOC_ALIAS:
+		((struct ec_ioc_alias *)arg)->register_alias = 5;
+		break;
 	case EC_IOC_SDO_INFO:
 		if (((struct ec_ioc_sdo_info *)arg)->what != EC_SDO_INFO_FORGET)
 			answer_info(arg);

@@ -180,7 +180,7 @@ library_works() {
 		-pthread -o "$o/session" session.c request.c soe.c foe.c dict.c eoe.c \
 		events.c extension.c rules.c kernel_cycle.c ../fake/*.c \
 		"$top"/lib/*.c "$top"/lib/ecrt/*.c \
-		"$top"/master/wire/{al,coe,emergency,event{,_text},port_text,replay}.c &&
+		"$top"/master/wire/{al,coe,emergency,event{,_text},port_text,replay,sii}.c &&
 	"$o/session" 2>"$o/session.err" || { cat "$o/session.err"; return 1; }
 }
 

@@ -188,6 +188,67 @@ static void the_rest(void)
 	ecrt_release_master(m);
 }
 
+static void read_eeprom(ec_master_t *m)
+{
+	uint8_t buf[64];
+	size_t size = 99;
+
+	CHECK(!ecrt_master_read_eeprom(m, 3, 0, buf, sizeof(buf), &size));
+	CHECK(size == 32 && buf[0] == 0 && buf[31] == 31);
+	CHECK(((struct ec_ioc_sii *)fake.arg)->slave.position == 3);
+	CHECK(!ecrt_master_read_eeprom(m, 3, 4, buf, 12, &size));
+	CHECK(size == 12 && buf[0] == 8 && buf[11] == 19);
+	CHECK(ecrt_master_read_eeprom(m, 3, 4, NULL, 12, &size) == -EINVAL);
+	CHECK(ecrt_master_read_eeprom(m, 3, 4, buf, 12, NULL) == -EINVAL);
+	CHECK(ecrt_master_read_eeprom(NULL, 3, 4, buf, 12, &size) == -EINVAL);
+}
+
+/* A whole image as it is; words of it with the rest of the image that the master has. */
+static void write_eeprom(ec_master_t *m)
+{
+	const struct ec_ioc_sii_write *arg = (void *)fake.arg;
+	const uint8_t data[16] = { 0xaa, 0xbb, 0xcc, 0xdd };
+	ec_eeprom_written_t w;
+
+	CHECK(!ecrt_master_write_eeprom(m, 2, 0, data, 16, EC_EEPROM_WRITE_DRY_RUN, &w));
+	CHECK(arg->size == 16 && arg->flags == EC_SII_FLAG_DRY_RUN && fake.values[14] == 0);
+	CHECK(w.differ == 3 && w.written == 2 && w.register_alias == 7 && w.renewed == 1);
+	CHECK(!ecrt_master_write_eeprom(m, 2, 4, data, 4, EC_EEPROM_WRITE_FORCE, NULL));
+	CHECK(arg->size == 32 && arg->flags == EC_SII_FLAG_FORCE && arg->slave.position == 2);
+	CHECK(fake.values[7] == 7 && fake.values[8] == 0xaa && fake.values[11] == 0xdd);
+	CHECK(fake.values[12] == 12 && fake.values[14] == 14 && fake.values[31] == 31);
+	CHECK(!ecrt_master_write_eeprom(m, 2, 0, data, 16, EC_EEPROM_WRITE_CHECKSUM |
+					EC_EEPROM_WRITE_UNREACHABLE, &w));
+	CHECK(arg->flags == EC_SII_FLAG_UNSAFE && fake.values[14] == 0x92 && !fake.values[15]);
+	CHECK(!ecrt_master_write_eeprom(m, 2, 15, data, 4, 0, NULL) && arg->size == 34);
+	CHECK(ecrt_master_write_eeprom(m, 2, 17, data, 4, 0, &w) == -EINVAL);
+	CHECK(ecrt_master_write_eeprom(m, 2, 0, data, 3, 0, &w) == -EINVAL);
+	CHECK(ecrt_master_write_eeprom(m, 2, 0, data, 0, 0, &w) == -EINVAL);
+	CHECK(ecrt_master_write_eeprom(m, 2, 0, NULL, 4, 0, &w) == -EINVAL);
+	CHECK(ecrt_master_write_eeprom(m, 2, 0xffff, data, 4, 0, &w) == -EINVAL);
+	CHECK(ecrt_master_write_eeprom(NULL, 2, 0, data, 4, 0, &w) == -EINVAL);
+	CHECK(!w.differ && !w.written && !w.renewed);
+}
+
+static void eeprom(void)
+{
+	ec_master_t *m = start();
+	ec_eeprom_written_t w = { 0 };
+
+	read_eeprom(m);
+	write_eeprom(m);
+	CHECK(!ecrt_master_write_alias(m, 1, 4711, EC_EEPROM_WRITE_CHECKSUM, &w));
+	CHECK(((struct ec_ioc_alias *)fake.arg)->alias == 4711 && w.register_alias == 5);
+	CHECK(((struct ec_ioc_alias *)fake.arg)->flags == EC_SII_FLAG_REPAIR);
+	CHECK(ecrt_master_write_alias(NULL, 1, 4711, 0, &w) == -EINVAL);
+	fake.refuse = EC_IOC_ALIAS;
+	fake.err = EBUSY;
+	CHECK(ecrt_master_write_alias(m, 1, 4711, 0, &w) == -EBUSY && !w.register_alias);
+	fake.refuse = EC_IOC_SII;
+	CHECK(ecrt_master_write_eeprom(m, 2, 4, (const uint8_t *)"ab", 2, 0, &w) == -EBUSY);
+	ecrt_release_master(m);
+}
+
 void extensions(void)
 {
 	nobody();
@@ -197,4 +258,5 @@ void extensions(void)
 	reasons();
 	clock_state();
 	the_rest();
+	eeprom();
 }

@@ -84,6 +84,32 @@ static void complete(void)
 	CALL(ecrt_release_master)(m);
 }
 
+/* What is written is what is there: nothing differs. */
+static void eeprom(void)
+{
+	ec_master_t *m = CALL(ecrt_open_master)(0);
+	ec_eeprom_written_t w = { .differ = 9 };
+	uint8_t image[4096];
+	size_t size = 0;
+
+	NEED(m);
+	IS(CALL(ecrt_master_read_eeprom)(m, MOTOR, 0, image, sizeof(image), &size), 0);
+	YES(size > 128);
+	IS(CALL(ecrt_master_write_eeprom)(m, MOTOR, 0, image, size & ~(size_t)1,
+					  EC_EEPROM_WRITE_DRY_RUN, &w), 0);
+	IS(w.differ, 0);
+	image[16] ^= 1;
+	IS(CALL(ecrt_master_write_eeprom)(m, MOTOR, 8, image + 16, 2,
+					  EC_EEPROM_WRITE_FORCE | EC_EEPROM_WRITE_DRY_RUN, &w), 0);
+	IS(w.differ, 1);
+	IS(w.written, 0);
+	/* another vendor, without force */
+	SAYS(CALL(ecrt_master_write_eeprom)(m, MOTOR, 8, image + 16, 2, 0, &w), -EPERM);
+	IS(CALL(ecrt_master_write_alias)(m, MOTOR, EC_READ_U16(image + 8), 0, &w), 0);
+	SAYS(CALL(ecrt_master_write_alias)(m, NOWHERE, 1, 0, &w), -EINVAL);
+	CALL(ecrt_release_master)(m);
+}
+
 static void reasons(void)
 {
 	ec_slave_config_t *nobody, *other;
@@ -237,6 +263,7 @@ const struct api_case extension_cases[] = {
 	{ "memory before activation", preset },
 	{ "an orderly end", orderly },
 	{ "whole objects are read", complete },
+	{ "the EEPROM is read and written", eeprom },
 	{ "reasons", reasons },
 	{ "two configurations of one slave", twins },
 	{ "the whole time, the state of a clock", clocks },

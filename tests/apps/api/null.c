@@ -35,6 +35,9 @@ static void master(void)
 	IS(ecrt_master_select_reference_clock(NULL, NULL), -EINVAL);
 	IS(ecrt_master(NULL, &u.info), -EINVAL);
 	IS(ecrt_master_scan_progress(NULL, &u.progress), -EINVAL);
+	IS(ecrt_master_read_eeprom(NULL, 0, 0, data, 4, &size), -EINVAL);
+	IS(ecrt_master_write_eeprom(NULL, 0, 0, data, 4, 0, NULL), -EINVAL);
+	IS(ecrt_master_write_alias(NULL, 0, 1, 0, NULL), -EINVAL);
 	IS(ecrt_master_get_slave(NULL, 0, &u.slave), -EINVAL);
 	IS(ecrt_master_get_sync_manager(NULL, 0, 0, &u.sync), -EINVAL);
 	IS(ecrt_master_get_pdo(NULL, 0, 0, 0, &u.pdo), -EINVAL);
