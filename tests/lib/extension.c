@@ -219,7 +219,7 @@ static void write_eeprom(ec_master_t *m)
 	CHECK(fake.values[12] == 12 && fake.values[14] == 14 && fake.values[31] == 31);
 	CHECK(!ecrt_master_write_eeprom(m, 2, 0, data, 16, EC_EEPROM_WRITE_CHECKSUM |
 					EC_EEPROM_WRITE_UNREACHABLE, &w));
-	CHECK(arg->flags == EC_SII_FLAG_UNSAFE && fake.values[14] == 0x92 && !fake.values[15]);
+	CHECK(arg->flags == EC_SII_FLAG_UNSAFE && fake.values[14] == 0x74 && !fake.values[15]);
 	CHECK(!ecrt_master_write_eeprom(m, 2, 15, data, 4, 0, NULL) && arg->size == 34);
 	CHECK(ecrt_master_write_eeprom(m, 2, 17, data, 4, 0, &w) == -EINVAL);
 	CHECK(ecrt_master_write_eeprom(m, 2, 0, data, 3, 0, &w) == -EINVAL);
