@@ -133,6 +133,19 @@ class Eeprom(Bus):
             self.assertEqual(struct.unpack_from("<II", head, 16), bench.SLAVES[pos][1], pos)
             self.assertEqual(struct.unpack_from("<H", head, 8)[0], bench.ALIAS.get(pos, 0), pos)
 
+    def test_write(self):
+        """An alias and its checksum, word by word: nothing else changes, and it is kept."""
+        slave = self.s[bench.DRIVE1]
+        before = self.read(slave, 0, 64)
+        after = bytearray(before)
+        struct.pack_into("<H", after, 8, 4711)
+        after[14] = bench.crc8(after[:14])
+        for word in (4, 7):
+            slave.eeprom_write(word, bytes(after[2 * word:2 * word + 2]))
+        self.assertEqual(self.read(slave, 0, 64), bytes(after))
+        self.assertEqual(self.m.config_init(), len(bench.SLAVES))
+        self.assertEqual(self.read(self.m.slaves[bench.DRIVE1], 0, 64), bytes(after))
+
     def test_categories(self):
         for pos in (bench.DO1, bench.AXIS2):
             s, word, found = self.s[pos], 0x40, {}
