@@ -2,8 +2,8 @@
 /*
  * By which command the time of the reference clock goes to the other clocks: FRMW, which addresses
  * that clock by its station address, or ARMW for slaves that ignore FRMW. ARMW addresses a ring
- * position: if another slave is there, its time goes to all others. So it is only sent while the
- * position is certain; else the time is only read.
+ * position: the time of another slave at that position would go to all others. So it is only sent
+ * while the position is certain; else the time is only read.
  */
 #ifndef EC_ARMW_H
 #define EC_ARMW_H
@@ -17,7 +17,7 @@ struct ec_armw {
 	bool wanted;
 	/**
 	 * @at: ec_armw_at(): station address and ring position of that clock, and the changes of
-	 * ports after which it is there; 0: unknown. Written by the monitor
+	 * ports after which it has that position; 0: unknown. Written by the monitor
 	 */
 	aligned_u64 at;
 	/** @changes: numbers whose sum counts the changes of ports; immutable */
