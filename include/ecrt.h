@@ -2671,7 +2671,7 @@ EC_PUBLIC_API int ecrt_domain_set_max_age(ec_domain_t *domain, unsigned int send
 
 /* what is done when the working counters of a unit are incomplete */
 typedef enum {
-	EC_UNIT_CONTINUE = 0,	/* nothing; the application looks at its domains */
+	EC_UNIT_CONTINUE = 0,	/* nothing; the application reads the states of its domains */
 	EC_UNIT_ZERO = 1,	/* its outputs are zero until they are complete again */
 	EC_UNIT_HOLD = 2,	/* its outputs keep their last values until then */
 	EC_UNIT_SAFEOP = 3,	/* its outputs are zero and its slaves go to SAFEOP, for good */
@@ -2780,7 +2780,7 @@ EC_PUBLIC_API int ecrt_domain_set_unit(ec_domain_t *domain, int unit);
  * then the next send has its outputs. After a failure with %EC_UNIT_SAFEOP or %EC_UNIT_STOP the
  * first call requests OP for the slaves again: call until it returns 0.
  *
- * Context: Process. May sleep, for a short time; not for the cycle.
+ * Context: Process. May sleep; not for the cycle.
  * Return: 0; %-EINPROGRESS the working counters are not complete, try again; %-EINVAL not active;
  * %-ENOENT no such unit; %-EPERM @master did not reserve it, and does not hold the unit; %-EBUSY
  * another application holds it.
@@ -2832,7 +2832,7 @@ EC_PUBLIC_API int ecrt_master_unit_hold(ec_master_t *master, const char *name, s
  *
  * Extension (%EC_HAVE_UNITS). The next cycle sends them, all of them or none. One system call.
  *
- * Context: Process. May sleep, for a short time.
+ * Context: Process. May sleep, while the other application is deactivated for one.
  * Return: 0; %-EPERM @master does not hold the unit; %-EINVAL another size, or not active any more.
  */
 EC_PUBLIC_API int ecrt_master_unit_write(ec_master_t *master, unsigned int unit,
@@ -2842,13 +2842,13 @@ EC_PUBLIC_API int ecrt_master_unit_write(ec_master_t *master, unsigned int unit,
  * ecrt_master_unit_read() - get the data of a unit
  * @master: holder of the unit
  * @unit: number of the unit
- * @data: out: the data of its domains; outputs as they are sent
+ * @data: out: the data of its domains, with the outputs that are sent
  * @size: bytes of @data, as ecrt_master_unit_hold() returned them
  * @state: out, may be NULL
  *
  * Extension (%EC_HAVE_UNITS). Values of different slaves may be of two cycles. One system call.
  *
- * Context: Process. May sleep, for a short time.
+ * Context: Process. May sleep, while the other application is deactivated for one.
  * Return: as ecrt_master_unit_write().
  */
 EC_PUBLIC_API int ecrt_master_unit_read(ec_master_t *master, unsigned int unit,

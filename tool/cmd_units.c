@@ -83,8 +83,8 @@ static int units(struct dev *d, const char *name, bool *found)
 		} else if (!strcmp(name, u.name)) {
 			*found = true;
 			err = ect_unit_take(d->h, i);
-			return err ? dev_fail(d, err, "Master%u: cannot take the authority of unit %s",
-					      d->master, name) : 0;
+			return err ? dev_fail(d, err, "Master%u: cannot stop unit %s", d->master,
+					      name) : 0;
 		}
 	}
 }
@@ -129,7 +129,7 @@ static int run(struct tool *t, int argc, char **argv)
 	if (argc == 2 && !strcmp(argv[0], "take"))
 		return take(t, argv[1]);
 	if (argc)
-		return usage_error("'%s': use no argument, or take and the name of a unit", argv[0]);
+		return usage_error("'%s': use no argument, or take and a name", argv[0]);
 	out_array("masters");
 	ret = dev_each(t, false, each);
 	out_end();

@@ -47,7 +47,7 @@ struct ec_ioc_unit_authority {
 };
 
 /* another application gives the outputs of a unit that is offered, until it closes its file */
-#define EC_UNIT_HOLD_END	1	/* or with this flag */
+#define EC_UNIT_HOLD_END	1	/* or ends to hold this one */
 
 struct ec_ioc_unit_hold {
 	__u32 flags;		/* in: EC_UNIT_HOLD_END */
@@ -61,7 +61,7 @@ struct ec_ioc_unit_hold {
 struct ec_ioc_unit_data {
 	__u32 flags;
 	__u32 unit;		/* in: index */
-	__u32 size;		/* in: of @data, out: used of it */
+	__u32 size;		/* in: of @data: what EC_IOC_UNIT_HOLD has returned */
 	__u32 state;		/* out */
 	__u64 data;		/* in: user pointer */
 };

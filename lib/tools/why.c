@@ -152,6 +152,7 @@ static bool apply_rules(struct why *w)
 	why_late_frames(w);
 	why_absent(w);
 	why_ports(w);
+	why_units(w);
 	why_slaves(w);
 	why_domains(w);
 	why_clocks(w);

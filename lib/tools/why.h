@@ -103,6 +103,9 @@ void why_absent(struct why *w);
 void why_ports(struct why *w);
 void why_slaves(struct why *w);
 void why_domains(struct why *w);
+
+/* why_units.c */
+void why_units(struct why *w);
 void why_clocks(struct why *w);
 void why_counters(struct why *w);
 void why_emergencies(struct why *w);

@@ -47,6 +47,19 @@
 	X(OUTPUT_HOLD, "output_stall", FAULT, "", \
 	  "find out why the application gives no outputs: does it still run, does it wait for something?", \
 	  "output stall: the application gives no outputs; the kernel holds the last ones (EC_CYCLE_HOLD)") \
+	/* sync units */ \
+	X(UNIT_DOWN, "unit_failed", FAULT, "faults", \
+	  "repair the cause: 'ethercat log' names it; then let the application give authority: ecrt_master_unit_authority(), or restart it", \
+	  "unit %s has failed: by its policy its outputs are zero and its slaves in SAFEOP") \
+	X(UNIT_STOPPED, "unit_failed", FAULT, "faults", \
+	  "repair the cause: 'ethercat log' names it; then let the application give authority to this unit: ecrt_master_unit_authority(), or restart it", \
+	  "unit %s has failed: by its policy all outputs are zero, and all slaves in SAFEOP") \
+	X(UNIT_LEASE, "unit_lease", FAULT, "lease_cycles", \
+	  "find out why the application that gives these outputs does not: does it still run, does it wait for something?", \
+	  "unit %s: no new outputs within its lease of %u cycle(s); its outputs are %s") \
+	X(UNIT_NO_AUTHORITY, "no_authority", WARNING, "", \
+	  "let the application give authority: ecrt_master_unit_authority(); 'ethercat log' says if it was taken", \
+	  "unit %s has no authority: its outputs are %s") \
 	X(OVERRUNS, "overruns", WARNING, "skipped cycles", \
 	  "check the settings for real time: 'ethercat rtcheck'; see 'ethercat cycle -v'", \
 	  "%llu of %llu cycles skipped: the cycle owner was late by a period or more") \

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands for sync units. */
 #include <linux/nospec.h>
+#include "../cycle/units.h"
 #include "../cycle/units_hold.h"
 #include "../config/domain.h"
 #include "../config/unit.h"
@@ -70,15 +71,18 @@ int ec_ioc_unit_info(struct ec_call *call)
 	return 0;
 }
 
-/* The running session with its lock held, or NULL without. */
+/*
+ * The running session, locked, or NULL without. Nothing that is shown changes, so the mutex alone
+ * is enough: a holder of a unit that comes in each cycle does not disturb readers.
+ */
 static struct ec_session *lock_active(struct ec_call *call)
 {
 	struct ec_sessions *ss = &call->master->sessions;
 
-	ec_sessions_lock(ss);
+	mutex_lock(&ss->lock);
 	if (ss->session && ss->session->wanted.active)
 		return ss->session;
-	ec_sessions_unlock(ss);
+	mutex_unlock(&ss->lock);
 	return NULL;
 }
 
@@ -93,6 +97,7 @@ static int may_give(struct ec_call *call, const struct ec_session *s, u32 unit)
 {
 	const struct ec_cyc_unit *u = &s->cycle.units->unit[unit];
 
+	lockdep_assert_held(s->wanted.lock);
 	if (u->holder == call->file)
 		return 0;
 	if (u->holder)
@@ -132,7 +137,7 @@ int ec_ioc_unit_authority(struct ec_call *call)
 	if (!s)
 		return inactive(call);
 	ret = authority(call, s, i->unit, i->authority);
-	ec_sessions_unlock(&call->master->sessions);
+	mutex_unlock(&call->master->sessions.lock);
 	return ret;
 }
 
@@ -143,8 +148,9 @@ static int hold(struct ec_call *call, struct ec_session *s, struct ec_ioc_unit_h
 	if (unit < 0)
 		return ec_refuse(call, unit, "there is no unit %s", i->name);
 	if (i->flags & EC_UNIT_HOLD_END) {
-		ec_units_leave(&s->cycle, call->file);
-		return 0;
+		ret = ec_units_leave(&s->cycle, unit, call->file);
+		return ret ? ec_refuse(call, -EPERM, "this application does not hold unit %s",
+				       i->name) : 0;
 	}
 	if (s->cycle.owner == call->file)
 		return ec_refuse(call, -EPERM,
@@ -177,11 +183,11 @@ int ec_ioc_unit_hold(struct ec_call *call)
 	if (!s)
 		return inactive(call);
 	ret = hold(call, s, i);
-	ec_sessions_unlock(&call->master->sessions);
+	mutex_unlock(&call->master->sessions.lock);
 	return ret;
 }
 
-/* The unit that the caller holds, with the lock of the session, or ERR_PTR without. */
+/* The unit that the caller holds; the session is locked then. Or ERR_PTR, and it is not. */
 static struct ec_cyc_unit *lock_held(struct ec_call *call, u32 unit, u32 size)
 {
 	struct ec_session *s = lock_active(call);
@@ -201,7 +207,7 @@ static struct ec_cyc_unit *lock_held(struct ec_call *call, u32 unit, u32 size)
 	else
 		ret = ec_refuse(call, -EINVAL, "unit %s has %u bytes, not %u", u->what.name,
 				u->bytes, size);
-	ec_sessions_unlock(&call->master->sessions);
+	mutex_unlock(&call->master->sessions.lock);
 	return ERR_PTR(ret);
 }
 
@@ -214,7 +220,7 @@ int ec_ioc_unit_write(struct ec_call *call)
 		return PTR_ERR(u);
 	ec_units_write(&call->master->sessions.session->cycle, u->what.index, call->data);
 	i->state = ec_units_state(u);
-	ec_sessions_unlock(&call->master->sessions);
+	mutex_unlock(&call->master->sessions.lock);
 	return 0;
 }
 
@@ -236,6 +242,6 @@ int ec_ioc_unit_read(struct ec_call *call)
 		to += d->size;
 	}
 	i->state = ec_units_state(u);
-	ec_sessions_unlock(&call->master->sessions);
+	mutex_unlock(&call->master->sessions.lock);
 	return 0;
 }

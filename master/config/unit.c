@@ -96,6 +96,7 @@ u8 ec_unit_repeats(const struct ec_wanted *w, const struct ec_domain *d)
 {
 	const struct ec_unit *u = unit_of(w, d);
 
+	lockdep_assert_held(w->lock);
 	return u ? u->what.repeats : 1;
 }
 
@@ -183,7 +184,7 @@ int ec_units_check(const struct ec_wanted *w, bool by_kernel, char *why, size_t 
  * @a: unit
  * @b: unit of another session, or a description
  *
- * Context: Process, locks of both sessions held.
+ * Context: Process. Both stay unchanged meanwhile.
  * Return: true: they differ in more than their domains.
  */
 bool ec_unit_differs(const struct ec_unit *a, const struct ec_unit *b)

@@ -17,6 +17,7 @@
 #include "cycle_run.h"
 #include "receive.h"
 #include "send.h"
+#include "units_hold.h"
 #include "units_run.h"
 #include "waiters.h"
 
@@ -196,7 +197,7 @@ static void feed(struct ec_cycle_thread *t)
  * ec_cycle_run_deal() - give an application the buffers that follow those of the cycle
  * @t: cycle
  *
- * Its initial outputs are those of the image.
+ * Its initial outputs are those that are sent.
  *
  * Context: The cycle thread, or before it starts. RT-safe.
  */
@@ -210,8 +211,11 @@ void ec_cycle_run_deal(struct ec_cycle_thread *t)
 	x->app_input = (t->back + 1) % EC_EXCHANGE_BUFFERS;
 	WRITE_ONCE(x->outputs, (t->front + 2) % EC_EXCHANGE_BUFFERS);
 	WRITE_ONCE(x->inputs, (t->back + 2) % EC_EXCHANGE_BUFFERS);
-	if (t->bytes)
-		memcpy(ec_cycle_run_buffer(t, n) + 1, t->cycle->shared->image, t->bytes);
+	if (!t->bytes)
+		return;
+	memcpy(ec_cycle_run_buffer(t, n) + 1, t->cycle->shared->image, t->bytes);
+	if (t->cycle->units)
+		ec_units_overlay(t->cycle, (u8 *)(ec_cycle_run_buffer(t, n) + 1));
 }
 
 /* The previous application may have exited at any point: the next one gets all buffers again. */
@@ -320,10 +324,10 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 		ec_cycle_receive(c);
 	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
 	c->clock.lead = t->lock.time - t->next_ns;
-	feed(t);
-	choose_source(t);
 	if (unlikely(c->units))
 		ec_units_lease(c);
+	feed(t);
+	choose_source(t);
 	if (t->ops && t->ops->cycle)
 		t->ops->cycle(c);
 	if (ec_cycle_run_status(t)->state <= EC_CYCLE_STATE_STALLED) {

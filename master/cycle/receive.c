@@ -229,7 +229,7 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		WRITE_ONCE(st->age, judge_age(c, d, i));
 		note_wkc(c, d, i, wkc, state);
 	}
-	if (unlikely(c->units) && !READ_ONCE(c->slaves_down))
+	if (unlikely(c->units))
 		ec_units_judge(c, c->sent | c->back);
 	c->judged = c->send;
 	c->sent = 0;
@@ -309,8 +309,11 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	u64 now = 0;
 	u16 irq = 0;
 
-	if (!ec_links_attached(l))
+	if (!ec_links_attached(l)) {
+		if (c->units)
+			ec_units_outage(c);
 		return -ENODEV;
+	}
 	/* replies may stay in the device until they are taken below */
 	rcu_read_lock();
 	ec_links_poll_cycle(l);

@@ -4,6 +4,7 @@
 #define EC_RECEIVE_H
 
 #include "cycle.h"
+#include "units_run.h"
 
 int ec_cycle_do_receive(struct ec_cycle *c);
 void ec_cycle_log_stale(struct ec_cycle *c);
@@ -19,8 +20,11 @@ static inline int ec_cycle_receive(struct ec_cycle *c)
 {
 	int ret = ec_links_enter(c->links);
 
-	if (ret)
+	if (ret) {
+		if (ret == -ENODEV && c->units)
+			ec_units_outage(c);
 		return ret;
+	}
 	ret = ec_cycle_do_receive(c);
 	ec_links_leave(c->links);
 	return ret;

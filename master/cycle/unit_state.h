@@ -3,6 +3,7 @@
 #ifndef EC_UNIT_STATE_H
 #define EC_UNIT_STATE_H
 
+#include <linux/atomic.h>
 #include <linux/minmax.h>
 #include <linux/types.h>
 #include "../base/events.h"
@@ -25,9 +26,10 @@ struct ec_unit_place {
 	u16 inputs;
 };
 
-/* struct ec_cyc_unit.wish */
+/* struct ec_cyc_unit.wish: bits; a GIVE is not accepted while another one waits */
 #define EC_UNIT_GIVE	1
 #define EC_UNIT_TAKE	2
+#define EC_UNIT_HOLDER	4	/* it has another holder, or none any more */
 
 /**
  * struct ec_cyc_unit - a sync unit while active
@@ -40,18 +42,20 @@ struct ec_unit_place {
  * @authority: the outputs of the application are sent
  * @leased: outputs were given once, so the lease runs
  * @ended: the lease has ended
- * @same: receives in a row that contradict @run
+ * @same: receives in a row in which it was complete, while it has failed
+ * @off: receives in a row in which a slave was not in OP
+ * @waits: receives since it was complete, while all is stopped because of it
  * @unfed: cycles since all of @feeds were given
  * @fed: domains given since
  * @faults: failures, and ends of the lease
  * @told: what the last event has said
  * @rate: of these events
- * @wish: EC_UNIT_GIVE, EC_UNIT_TAKE or 0: a command for the cycle owner
- * @op: all its slaves are in OP, but for those of groups that may be absent; of who looks at them
+ * @wish: EC_UNIT_GIVE, EC_UNIT_TAKE, EC_UNIT_HOLDER: commands for the cycle owner
+ * @op: all its slaves are in OP, but for those of groups that are absent; of the monitor
  * @down: its slaves are to be in SAFEOP; the cycle owner sets it, a command clears it
  * @holder: open file of another application that gives its outputs, or NULL; under the lock of the
  *	configuration, as is @back
- * @held: it has one; for the cycle owner
+ * @held: it has one; of the cycle owner
  * @bytes: of its domains; immutable, as is @buffers
  * @buffers: three buffers for outputs of a holder, or NULL: it is not offered
  * @word: as struct ec_exchange @outputs
@@ -69,12 +73,14 @@ struct ec_cyc_unit {
 	bool leased;
 	bool ended;
 	u32 same;
+	u32 off;
+	u32 waits;
 	u32 unfed;
 	u64 fed;
 	u32 faults;
 	u32 told;
 	struct ec_event_rate rate;
-	u32 wish;
+	atomic_t wish;
 	bool op;
 	bool down;
 	const void *holder;
@@ -93,13 +99,15 @@ struct ec_cyc_unit {
  * @of_config: unit of each slave configuration, EC_NO_UNIT: none
  * @queue: runs @alarm
  * @alarm: takes slaves to SAFEOP, or to OP again
+ * @seen: bits EC_UNIT_SEEN_* of each slave configuration; under the lock of the configuration
+ * @wished: a unit has a wish
  * @image: sent instead of that of the application, for domains in @replaced; of the cycle owner,
- *	as are the next three
+ *	as are the next five
  * @replaced: domains whose outputs are not those of the application, bit n: domain n
  * @used: domains of the application
  * @stopped: a unit with EC_UNIT_POLICY_STOP has failed: index + 1, 0: none
- * @down: all slaves are to be in SAFEOP; as struct ec_cyc_unit @down
- * @holders: units that another application holds; under the lock of the configuration
+ * @holders: units that another application holds
+ * @bad: exchanges in a row in which a domain was not complete
  * @n: entries in @unit
  * @unit: units
  */
@@ -109,17 +117,23 @@ struct ec_cyc_units {
 	u8 *of_config;
 	struct workqueue_struct *queue;
 	struct work_struct *alarm;
+	u8 *seen;
+	atomic_t wished;
 	u8 *image;
 	u64 replaced;
 	u64 used;
 	u32 stopped;
-	bool down;
 	u32 holders;
+	u32 bad[EC_MAX_DOMAINS];
 	unsigned int n;
 	struct ec_cyc_unit unit[];
 };
 
 #define EC_NO_UNIT	0xff
+#define EC_UNIT_PATIENCE	1000
+
+#define EC_UNIT_SEEN_OP	1	/* its slave was in OP since it was attached */
+#define EC_UNIT_SEEN_DOWN	2	/* a policy has requested SAFEOP of it */
 
 /**
  * ec_units_state() - the state of a unit for the status page and tools
@@ -136,6 +150,38 @@ static inline u32 ec_units_state(const struct ec_cyc_unit *u)
 	       (READ_ONCE(u->down) ? EC_UNIT_DOWN : 0) |
 	       (READ_ONCE(u->held) ? EC_UNIT_HAS_HOLDER : 0) |
 	       min(READ_ONCE(u->faults), 0xffffu) << 16;
+}
+
+/**
+ * ec_units_may_have() - may a unit have authority now?
+ * @us: units
+ * @u: one of them
+ *
+ * Not while its lease has ended or another unit has stopped all. The one that has stopped all waits
+ * for units that would stop all again, and EC_UNIT_PATIENCE receives for others with a policy.
+ *
+ * Context: Any. RT-safe: bounded by the units.
+ * Return: true: it is complete, and nothing else is against it.
+ */
+static inline bool ec_units_may_have(const struct ec_cyc_units *us, const struct ec_cyc_unit *u)
+{
+	u32 stopped = READ_ONCE(us->stopped);
+	unsigned int i;
+
+	if (READ_ONCE(u->run) != EC_UNIT_RUN_COMPLETE || READ_ONCE(u->ended))
+		return false;
+	if (stopped && stopped != u->what.index + 1)
+		return false;
+	for (i = 0; stopped && i < us->n; i++) {
+		const struct ec_cyc_unit *x = &us->unit[i];
+
+		if (READ_ONCE(x->run) == EC_UNIT_RUN_FAILED &&
+		    (x->what.policy == EC_UNIT_POLICY_STOP ||
+		     (x->what.policy != EC_UNIT_POLICY_CONTINUE &&
+		      READ_ONCE(u->waits) < EC_UNIT_PATIENCE)))
+			return false;
+	}
+	return true;
 }
 
 #endif

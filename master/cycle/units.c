@@ -65,7 +65,8 @@ static int make_configs(struct ec_cyc_units *us, const struct ec_wanted *w)
 	unsigned int i, k;
 
 	us->of_config = kvmalloc(w->n_configs ?: 1, GFP_KERNEL_ACCOUNT);
-	if (!us->of_config)
+	us->seen = kvzalloc(w->n_configs ?: 1, GFP_KERNEL_ACCOUNT);
+	if (!us->of_config || !us->seen)
 		return -ENOMEM;
 	memset(us->of_config, EC_NO_UNIT, w->n_configs);
 	for (i = 0; i < us->n; i++)
@@ -94,7 +95,7 @@ static void make_unit(struct ec_cyc_units *us, const struct ec_unit *from)
 
 /**
  * ec_units_make() - prepare the sync units of an activation
- * @c: cycle with a layout; ec_units_end() frees it, also after an error
+ * @c: cycle with a layout; ec_units_end() frees what @c has then
  * @queue: runs @alarm
  * @alarm: takes slaves to the states that ec_units_keep_down() says
  *
@@ -150,7 +151,16 @@ void ec_units_end(struct ec_cyc_units *us)
 	kvfree(us->image);
 	kvfree(us->areas);
 	kvfree(us->of_config);
+	kvfree(us->seen);
 	kvfree(us);
+}
+
+/* Let the cycle owner do something. */
+static void post(struct ec_cyc_units *us, struct ec_cyc_unit *u, int wish)
+{
+	atomic_or(wish, &u->wish);
+	/* a reader of this finds the wish */
+	atomic_set_release(&us->wished, 1);
 }
 
 /**
@@ -158,30 +168,26 @@ void ec_units_end(struct ec_cyc_units *us)
  * @c: active cycle with units
  * @unit: index
  *
- * A unit that is not complete does not get it, nor one that another has stopped. If its policy has taken slaves to SAFEOP, they go to
- * OP again.
+ * If its policy has taken slaves to SAFEOP, OP is requested for them.
  *
  * Context: Process, lock of the configuration held.
- * Return: 0: the next receive gives it; -EINPROGRESS: its working counters are not complete.
+ * Return: 0: the cycle gives it with its next receive or send; -EINPROGRESS as long as
+ * ec_units_may_have() says no, or another command waits for the cycle.
  */
 int ec_units_give(struct ec_cycle *c, u32 unit)
 {
 	struct ec_cyc_units *us = c->units;
 	struct ec_cyc_unit *u = &us->unit[unit];
-	bool all = READ_ONCE(us->stopped) == unit + 1 && READ_ONCE(us->down);
 
 	lockdep_assert_held(c->wanted->lock);
-	if (READ_ONCE(u->down) || all) {
+	if (READ_ONCE(u->down)) {
 		WRITE_ONCE(u->down, false);
-		if (all)
-			WRITE_ONCE(us->down, false);
 		queue_work(us->queue, us->alarm);
 		return -EINPROGRESS;
 	}
-	if (READ_ONCE(u->run) != EC_UNIT_RUN_COMPLETE ||
-	    (us->stopped && us->stopped != unit + 1))
+	if (!ec_units_may_have(us, u) || atomic_read(&u->wish) & ~EC_UNIT_GIVE)
 		return -EINPROGRESS;
-	WRITE_ONCE(u->wish, EC_UNIT_GIVE);
+	post(us, u, EC_UNIT_GIVE);
 	return 0;
 }
 
@@ -190,31 +196,117 @@ int ec_units_give(struct ec_cycle *c, u32 unit)
  * @c: active cycle with units
  * @unit: index
  *
- * The outputs of the next send are zero.
+ * The outputs of the next send that begins after this are zero.
  *
  * Context: Process, lock of the configuration held.
  */
 void ec_units_take(struct ec_cycle *c, u32 unit)
 {
 	lockdep_assert_held(c->wanted->lock);
-	WRITE_ONCE(c->units->unit[unit].wish, EC_UNIT_TAKE);
+	post(c->units, &c->units->unit[unit], EC_UNIT_TAKE);
 }
 
-/* One of a group that may be absent does not count until it is in OP. */
-static bool is_in_op(const struct ec_config *c)
+/**
+ * ec_units_take_over() - another application gets the session
+ * @c: active cycle
+ *
+ * As at the begin, units that need authority have none.
+ *
+ * Context: Process, lock of the configuration held.
+ */
+void ec_units_take_over(struct ec_cycle *c)
 {
-	return ec_config_status(c) & EC_STATUS_SC_OP || ec_group_is_optional(c->group);
+	unsigned int i;
+
+	lockdep_assert_held(c->wanted->lock);
+	for (i = 0; c->units && i < c->units->n; i++)
+		if (c->units->unit[i].what.flags & EC_UNIT_FLAG_AUTHORITY)
+			ec_units_take(c, i);
 }
 
-static bool has_all_in_op(const struct ec_cyc_unit *u, const struct ec_wanted *w)
+/**
+ * ec_units_hold() - another application gives the outputs of a unit from now on
+ * @c: active cycle with units
+ * @unit: index
+ * @holder: its open file
+ *
+ * It begins with zeros, and without authority.
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: 0, also for the one that holds it; -EACCES it is not offered; -EBUSY another one holds
+ * it, or it has authority.
+ */
+int ec_units_hold(struct ec_cycle *c, u32 unit, const void *holder)
 {
+	struct ec_cyc_unit *u = &c->units->unit[unit];
+
+	lockdep_assert_held(c->wanted->lock);
+	if (!(u->what.flags & EC_UNIT_FLAG_OFFERED))
+		return -EACCES;
+	if (u->holder == holder)
+		return 0;
+	if (u->holder || READ_ONCE(u->authority) || atomic_read(&u->wish) & EC_UNIT_GIVE)
+		return -EBUSY;
+	ec_units_clear(u);
+	WRITE_ONCE(u->holder, holder);
+	post(c->units, u, EC_UNIT_HOLDER);
+	return 0;
+}
+
+/**
+ * ec_units_leave() - a file does not hold a unit any more
+ * @c: active cycle
+ * @unit: index, or EC_UNIT_NONE: all that it holds
+ * @holder: open file
+ *
+ * They lose authority before anything else than the outputs of the holder is sent.
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: 0, or -ENOENT: it holds none.
+ */
+int ec_units_leave(struct ec_cycle *c, u32 unit, const void *holder)
+{
+	struct ec_cyc_units *us = c->units;
+	int ret = -ENOENT;
+	unsigned int i;
+
+	lockdep_assert_held(c->wanted->lock);
+	for (i = 0; us && i < us->n; i++) {
+		struct ec_cyc_unit *u = &us->unit[i];
+
+		if (u->holder != holder || (unit != EC_UNIT_NONE && unit != i))
+			continue;
+		WRITE_ONCE(u->holder, NULL);
+		post(us, u, EC_UNIT_HOLDER);
+		ret = 0;
+	}
+	return ret;
+}
+
+/* A slave of a group that may be absent counts once it was in OP, until it is disconnected. */
+static bool is_in_op(struct ec_cyc_units *us, const struct ec_config *c)
+{
+	u8 *seen = &us->seen[c->index];
+
+	if (!c->slave)
+		*seen &= ~EC_UNIT_SEEN_OP;
+	if (ec_config_status(c) & EC_STATUS_SC_OP) {
+		*seen |= EC_UNIT_SEEN_OP;
+		return true;
+	}
+	return ec_group_is_optional(c->group) && !(*seen & EC_UNIT_SEEN_OP);
+}
+
+static bool has_all_in_op(struct ec_cyc_units *us, const struct ec_cyc_unit *u,
+			  const struct ec_wanted *w)
+{
+	bool all = true;
 	unsigned int i;
 
 	ec_for_each_domain(d, w)
 		for (i = 0; u->domains >> d->index & 1 && i < d->n_fmmus; i++)
-			if (!is_in_op(d->fmmus[i].config))
-				return false;
-	return true;
+			all &= is_in_op(us, d->fmmus[i].config);
+	return all;
 }
 
 /**
@@ -227,11 +319,18 @@ static bool has_all_in_op(const struct ec_cyc_unit *u, const struct ec_wanted *w
  */
 void ec_units_look(struct ec_cycle *c)
 {
+	struct ec_cyc_units *us = c->units;
 	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
-	for (i = 0; c->units && i < c->units->n; i++)
-		WRITE_ONCE(c->units->unit[i].op, has_all_in_op(&c->units->unit[i], c->wanted));
+	for (i = 0; us && i < us->n; i++)
+		WRITE_ONCE(us->unit[i].op, has_all_in_op(us, &us->unit[i], c->wanted));
+}
+
+/* May the unit take its slaves out of OP now? */
+static bool is_down(const struct ec_cyc_units *us, u32 unit)
+{
+	return unit < us->n && READ_ONCE(us->unit[unit].down);
 }
 
 /**
@@ -247,8 +346,27 @@ bool ec_units_keep_down(const struct ec_cycle *c, u32 config)
 	const struct ec_cyc_units *us = c->units;
 
 	lockdep_assert_held(c->wanted->lock);
-	if (!us)
+	/* EC_NO_UNIT is beyond the last one, as is 0 - 1 */
+	return us && (is_down(us, READ_ONCE(us->stopped) - 1) ||
+		      is_down(us, us->of_config[config]));
+}
+
+/**
+ * ec_units_turns() - does a policy want another state of a slave than before?
+ * @c: active cycle with units
+ * @config: index of its configuration
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: true: once for each change.
+ */
+bool ec_units_turns(struct ec_cycle *c, u32 config)
+{
+	bool down = ec_units_keep_down(c, config);
+	u8 *seen = &c->units->seen[config];
+
+	lockdep_assert_held(c->wanted->lock);
+	if (down == !!(*seen & EC_UNIT_SEEN_DOWN))
 		return false;
-	return READ_ONCE(us->down) || (us->of_config[config] != EC_NO_UNIT &&
-				       READ_ONCE(us->unit[us->of_config[config]].down));
+	*seen ^= EC_UNIT_SEEN_DOWN;
+	return true;
 }

@@ -44,63 +44,15 @@ int ec_units_buffers(struct ec_cyc_unit *u, const struct ec_wanted *w)
 }
 
 /**
- * ec_units_hold() - another application gives the outputs of a unit from now on
- * @c: active cycle with units
- * @unit: index
- * @holder: its open file
+ * ec_units_clear() - a unit gets a holder: it begins with zeros
+ * @u: unit with buffers
  *
- * It begins with zeros, and without authority.
- *
- * Context: Process, lock of the configuration held.
- * Return: 0, also for the one that holds it; -EACCES it is not offered; -EBUSY another one holds
- * it, or it has authority.
+ * Context: Process. One caller at a time for @u.
  */
-int ec_units_hold(struct ec_cycle *c, u32 unit, const void *holder)
+void ec_units_clear(struct ec_cyc_unit *u)
 {
-	struct ec_cyc_units *us = c->units;
-	struct ec_cyc_unit *u = &us->unit[unit];
-
-	lockdep_assert_held(c->wanted->lock);
-	if (!(u->what.flags & EC_UNIT_FLAG_OFFERED))
-		return -EACCES;
-	if (u->holder == holder)
-		return 0;
-	if (u->holder || READ_ONCE(u->authority) || READ_ONCE(u->wish) == EC_UNIT_GIVE)
-		return -EBUSY;
-	u->holder = holder;
 	memset(buffer(u, u->back), 0, u->bytes);
 	pass(u);
-	us->holders++;
-	/* the cycle that sees it finds these zeros */
-	smp_store_release(&u->held, true);
-	return 0;
-}
-
-/**
- * ec_units_leave() - a file holds no units any more
- * @c: active cycle
- * @holder: open file
- *
- * Its units lose authority.
- *
- * Context: Process, lock of the configuration held.
- */
-void ec_units_leave(struct ec_cycle *c, const void *holder)
-{
-	struct ec_cyc_units *us = c->units;
-	unsigned int i;
-
-	lockdep_assert_held(c->wanted->lock);
-	for (i = 0; us && i < us->n; i++) {
-		struct ec_cyc_unit *u = &us->unit[i];
-
-		if (u->holder != holder)
-			continue;
-		u->holder = NULL;
-		WRITE_ONCE(u->held, false);
-		us->holders--;
-		WRITE_ONCE(u->wish, EC_UNIT_TAKE);
-	}
 }
 
 /**
@@ -151,10 +103,8 @@ void ec_units_take_held(struct ec_cycle *c)
 	for (i = 0; i < c->units->n; i++) {
 		struct ec_cyc_unit *u = &c->units->unit[i];
 
-		/* pairs with the one that sets it */
-		if (!smp_load_acquire(&u->held))
+		if (!u->held)
 			continue;
-		c->units->replaced |= u->domains;
 		if (READ_ONCE(u->word) & EC_EXCHANGE_NEW) {
 			u->front = xchg(&u->word, u->front) & ~EC_EXCHANGE_NEW;
 			u->unfed = 0;
@@ -165,8 +115,39 @@ void ec_units_take_held(struct ec_cycle *c)
 	}
 }
 
+/* The outputs of a domain that are sent instead, within @size bytes from @from on. */
+static void copy_replaced(const struct ec_cyc_units *us, unsigned int domain, u8 *to, u32 from,
+			  u32 size)
+{
+	const struct ec_unit_place *p = &us->places[domain];
+	unsigned int i;
+
+	for (i = 0; i < p->outputs; i++) {
+		u32 a = max(from, p->areas[i].offset);
+		u32 b = min(from + size, p->areas[i].offset + p->areas[i].len);
+
+		if (a < b)
+			memcpy(to + (a - from), us->image + a, b - a);
+	}
+}
+
 /**
- * ec_units_show() - the outputs of a domain as they are sent
+ * ec_units_overlay() - put the outputs that are sent instead into an image
+ * @c: active cycle with units
+ * @image: of all domains
+ *
+ * Context: The cycle owner. RT-safe: bounded by the outputs.
+ */
+void ec_units_overlay(const struct ec_cycle *c, u8 *image)
+{
+	u64 left;
+
+	for (left = c->units->replaced; left; left &= left - 1)
+		copy_replaced(c->units, __ffs64(left), image, 0, EC_MAX_IMAGE);
+}
+
+/**
+ * ec_units_show() - the outputs of a domain that are sent
  * @c: active cycle
  * @d: its domain
  * @to: copy of a part of its data
@@ -177,20 +158,7 @@ void ec_units_take_held(struct ec_cycle *c)
  */
 void ec_units_show(const struct ec_cycle *c, const struct ec_domain *d, u8 *to, u32 from, u32 size)
 {
-	const struct ec_cyc_units *us = c->units;
-	const struct ec_unit_place *p;
-	unsigned int i;
-
 	ec_wanted_assert_stays(c->wanted);
-	if (!us || !(READ_ONCE(us->replaced) >> d->index & 1))
-		return;
-	p = &us->places[d->index];
-	from += d->offset;
-	for (i = 0; i < p->outputs; i++) {
-		u32 a = max(from, p->areas[i].offset);
-		u32 b = min(from + size, p->areas[i].offset + p->areas[i].len);
-
-		if (a < b)
-			memcpy(to + (a - from), us->image + a, b - a);
-	}
+	if (c->units && READ_ONCE(c->units->replaced) >> d->index & 1)
+		copy_replaced(c->units, d->index, to, d->offset + from, size);
 }

@@ -10,10 +10,10 @@ struct ec_domain;
 struct ec_wanted;
 
 int ec_units_buffers(struct ec_cyc_unit *u, const struct ec_wanted *w);
-int ec_units_hold(struct ec_cycle *c, u32 unit, const void *holder);
-void ec_units_leave(struct ec_cycle *c, const void *holder);
+void ec_units_clear(struct ec_cyc_unit *u);
 void ec_units_write(struct ec_cycle *c, u32 unit, const void *data);
 void ec_units_take_held(struct ec_cycle *c);
+void ec_units_overlay(const struct ec_cycle *c, u8 *image);
 void ec_units_show(const struct ec_cycle *c, const struct ec_domain *d, u8 *to, u32 from, u32 size);
 
 #endif

@@ -71,7 +71,7 @@ static u8 outputs_of(const struct ec_cyc_units *us, const struct ec_cyc_unit *u)
 }
 
 /* A change is an event; of many in a second the first and the last. */
-static noinline void tell(struct ec_cycle *c, struct ec_cyc_unit *u, enum reason why)
+static noinline void report_unit(struct ec_cycle *c, struct ec_cyc_unit *u, enum reason why)
 {
 	u32 state = ec_units_state(u) & 0xffff, wkc = 0, expected = 0, bad = EC_EVENT_NONE;
 	u64 left;
@@ -96,160 +96,188 @@ static noinline void tell(struct ec_cycle *c, struct ec_cyc_unit *u, enum reason
 	u->rate.more = 0;
 }
 
-/* Let the outputs follow the state of the unit, and tell what has changed. */
+/* Let the outputs follow the state of the unit, and report what has changed. */
 static void settle(struct ec_cycle *c, struct ec_cyc_unit *u, u32 before, enum reason why)
 {
 	struct ec_cyc_units *us = c->units;
 	u8 sends = outputs_of(us, u);
 
-	/* also when a holder has left meanwhile */
-	if (sends == EC_UNIT_SENDS_VALUES && !READ_ONCE(u->held))
+	/* those of a holder are replaced as well */
+	if (sends == EC_UNIT_SENDS_VALUES && !u->held)
 		WRITE_ONCE(us->replaced, us->replaced & ~u->domains);
-	else if (sends != u->sends && sends != EC_UNIT_SENDS_VALUES)
+	else if (sends == EC_UNIT_SENDS_VALUES)
+		WRITE_ONCE(us->replaced, us->replaced | u->domains);
+	else if (sends != u->sends)
 		replace(c, u->domains, sends == EC_UNIT_SENDS_ZERO);
 	WRITE_ONCE(u->sends, sends);
 	if ((ec_units_state(u) ^ before) & 0xffff)
 		u->rate.more++;
 	if (u->rate.more)
-		tell(c, u, why);
+		report_unit(c, u, why);
 	WRITE_ONCE(c->shared->status->units[u->what.index], ec_units_state(u));
 }
 
-/* A policy without return by itself, or a unit that needs authority again. */
 static void lose_authority(struct ec_cyc_unit *u, u8 without)
 {
 	u->without = without;
 	WRITE_ONCE(u->authority, false);
 }
 
-/* Everything stops: domains of no unit as well. */
+/* All units, because one has stopped all, or does not any more. */
+static void settle_others(struct ec_cycle *c, const struct ec_cyc_unit *by, enum reason why)
+{
+	unsigned int i;
+
+	for (i = 0; i < c->units->n; i++) {
+		struct ec_cyc_unit *u = &c->units->unit[i];
+
+		if (u != by)
+			settle(c, u, ec_units_state(u), why);
+	}
+}
+
+/* Everything stops: domains of no unit as well. What other units have is not changed. */
 static void stop_all(struct ec_cycle *c, const struct ec_cyc_unit *by)
 {
-	struct ec_cyc_units *us = c->units;
-	unsigned int i;
-
-	if (us->stopped)
-		return;
-	WRITE_ONCE(us->stopped, by->what.index + 1);
-	WRITE_ONCE(us->down, true);
-	replace(c, us->used, true);
-	for (i = 0; i < us->n; i++) {
-		struct ec_cyc_unit *u = &us->unit[i];
-		u32 before = ec_units_state(u);
-
-		lose_authority(u, EC_UNIT_SENDS_ZERO);
-		if (u != by)
-			settle(c, u, before, BY_STOP);
-	}
+	WRITE_ONCE(c->units->stopped, by->what.index + 1);
+	replace(c, c->units->used, true);
+	settle_others(c, by, BY_STOP);
 }
 
-/* The stop ends when its unit gets authority: those that began with it get it as well. */
-static void resume_all(struct ec_cycle *c, const struct ec_cyc_unit *by)
+/* The policy of a unit that has failed. */
+static void punish(struct ec_cycle *c, struct ec_cyc_unit *u)
 {
-	struct ec_cyc_units *us = c->units;
-	unsigned int i;
-
-	WRITE_ONCE(us->stopped, 0);
-	us->replaced = 0;
-	for (i = 0; i < us->n; i++) {
-		struct ec_cyc_unit *u = &us->unit[i];
-		u32 before = ec_units_state(u);
-
-		if (!(u->what.flags & EC_UNIT_FLAG_AUTHORITY))
-			WRITE_ONCE(u->authority, true);
-		if (u->sends != EC_UNIT_SENDS_VALUES)
-			us->replaced |= u->domains;
-		if (u != by)
-			settle(c, u, before, BY_COMMAND);
-	}
-}
-
-static void fail(struct ec_cycle *c, struct ec_cyc_unit *u)
-{
-	struct ec_cyc_units *us = c->units;
-
-	WRITE_ONCE(u->run, EC_UNIT_RUN_FAILED);
-	/* its slaves were taken down: no failure of its own */
-	if (us->stopped)
-		return;
 	WRITE_ONCE(u->faults, u->faults + 1);
 	switch (u->what.policy) {
 	case EC_UNIT_POLICY_CONTINUE:
 		return;
 	case EC_UNIT_POLICY_STOP:
-		stop_all(c, u);
-		break;
 	case EC_UNIT_POLICY_SAFEOP:
 		WRITE_ONCE(u->down, true);
 		lose_authority(u, EC_UNIT_SENDS_ZERO);
-		break;
+		if (u->what.policy == EC_UNIT_POLICY_STOP)
+			stop_all(c, u);
+		queue_work(c->units->queue, c->units->alarm);
+		return;
 	default:
 		if (u->what.flags & EC_UNIT_FLAG_AUTHORITY)
 			lose_authority(u, u->what.policy == EC_UNIT_POLICY_HOLD ?
 				       EC_UNIT_SENDS_HELD : EC_UNIT_SENDS_ZERO);
-		return;
 	}
-	queue_work(us->queue, us->alarm);
 }
 
-static bool unit_is_complete(const struct ec_cycle *c, const struct ec_cyc_unit *u)
+/* While all is stopped its slaves are in SAFEOP for that reason; see resume_all(). */
+static void fail(struct ec_cycle *c, struct ec_cyc_unit *u)
+{
+	WRITE_ONCE(u->run, EC_UNIT_RUN_FAILED);
+	if (!c->units->stopped)
+		punish(c, u);
+}
+
+/* Units that are not complete when the stop ends have failed by themselves. */
+static void resume_all(struct ec_cycle *c, const struct ec_cyc_unit *by)
+{
+	struct ec_cyc_units *us = c->units;
+	u64 units = 0;
+	unsigned int i;
+
+	WRITE_ONCE(us->stopped, 0);
+	for (i = 0; i < us->n; i++) {
+		struct ec_cyc_unit *u = &us->unit[i];
+
+		units |= u->domains;
+		if (u != by && u->run == EC_UNIT_RUN_FAILED)
+			punish(c, u);
+	}
+	WRITE_ONCE(us->replaced, us->replaced & units);
+	settle_others(c, by, BY_COMMAND);
+}
+
+static bool domain_is_complete(const struct ec_cycle *c, unsigned int d)
+{
+	/* expected none: all its slaves are of groups that may be absent */
+	return !READ_ONCE(c->domains[d].expected) ||
+	       READ_ONCE(c->shared->status->domains[d].wc_state) == EC_STATUS_WC_COMPLETE;
+}
+
+/* A unit whose slaves are all absent: the next ones that come begin without authority. */
+static bool has_nobody(const struct ec_cycle *c, const struct ec_cyc_unit *u)
 {
 	u64 left;
 
-	if (!READ_ONCE(u->op))
-		return false;
-	for (left = u->domains; left; left &= left - 1) {
-		unsigned int d = __ffs64(left);
-
-		/* expected none: all its slaves are of groups that may be absent */
-		if (READ_ONCE(c->domains[d].expected) &&
-		    READ_ONCE(c->shared->status->domains[d].wc_state) != EC_STATUS_WC_COMPLETE)
+	for (left = u->domains; left; left &= left - 1)
+		if (READ_ONCE(c->domains[__ffs64(left)].expected))
 			return false;
-	}
 	return true;
 }
 
-static void judge(struct ec_cycle *c, struct ec_cyc_unit *u)
+static void judge(struct ec_cycle *c, struct ec_cyc_unit *u, u64 judged)
 {
-	bool complete = unit_is_complete(c, u);
+	bool whole = READ_ONCE(u->op), bad;
+	u64 left;
 
-	if (complete == (u->run == EC_UNIT_RUN_COMPLETE)) {
-		u->same = 0;
-		return;
+	u->off = whole ? 0 : u->off + 1;
+	bad = u->off >= u->what.limit;
+	for (left = u->domains; left; left &= left - 1) {
+		unsigned int d = __ffs64(left);
+		bool complete = domain_is_complete(c, d);
+
+		whole &= complete;
+		/* a domain that is not exchanged in each cycle counts with its own exchanges */
+		if (judged >> d & 1)
+			c->units->bad[d] = complete ? 0 : c->units->bad[d] + 1;
+		bad |= c->units->bad[d] >= u->what.limit;
 	}
-	if (u->run == EC_UNIT_RUN_STARTING) {
-		if (complete)
-			WRITE_ONCE(u->run, EC_UNIT_RUN_COMPLETE);
-		return;
-	}
-	if (++u->same < u->what.limit)
-		return;
-	u->same = 0;
-	if (complete)
-		WRITE_ONCE(u->run, EC_UNIT_RUN_COMPLETE);
-	else
+	if (u->run == EC_UNIT_RUN_COMPLETE && bad)
 		fail(c, u);
+	u->same = whole ? u->same + 1 : 0;
+	WRITE_ONCE(u->waits, u->run == EC_UNIT_RUN_COMPLETE ? min(u->waits, ~0u - 1) + 1 : 0);
+	if (whole && (u->run == EC_UNIT_RUN_STARTING || u->same >= u->what.limit))
+		WRITE_ONCE(u->run, EC_UNIT_RUN_COMPLETE);
+	if (u->authority && u->what.flags & EC_UNIT_FLAG_AUTHORITY && has_nobody(c, u))
+		lose_authority(u, EC_UNIT_SENDS_ZERO);
 }
 
-/* A command since the last receive. */
-static void obey(struct ec_cycle *c, struct ec_cyc_unit *u, u32 wish)
+/* The commands for a unit; one that takes authority comes first. */
+static void obey(struct ec_cycle *c, struct ec_cyc_unit *u)
 {
-	if (wish == EC_UNIT_TAKE) {
-		lose_authority(u, EC_UNIT_SENDS_ZERO);
+	u32 wish = atomic_xchg(&u->wish, 0), before = ec_units_state(u);
+
+	if (!wish)
 		return;
+	if (wish & EC_UNIT_HOLDER) {
+		c->units->holders -= u->held;
+		WRITE_ONCE(u->held, !!READ_ONCE(u->holder));
+		c->units->holders += u->held;
 	}
-	/* it may have failed since the command */
-	if (u->run != EC_UNIT_RUN_COMPLETE)
+	if (wish & (EC_UNIT_HOLDER | EC_UNIT_TAKE)) {
+		lose_authority(u, EC_UNIT_SENDS_ZERO);
+	} else if (ec_units_may_have(c->units, u) && !has_nobody(c, u)) {
+		/* it may have failed since the command */
+		WRITE_ONCE(u->authority, true);
+		if (c->units->stopped)
+			resume_all(c, u);
+	}
+	settle(c, u, before, BY_COMMAND);
+}
+
+static void obey_all(struct ec_cycle *c)
+{
+	unsigned int i;
+
+	if (likely(!atomic_read(&c->units->wished)))
 		return;
-	WRITE_ONCE(u->authority, true);
-	if (c->units->stopped == u->what.index + 1)
-		resume_all(c, u);
+	atomic_xchg(&c->units->wished, 0);
+	for (i = 0; i < c->units->n; i++)
+		obey(c, &c->units->unit[i]);
 }
 
 /**
  * ec_units_judge() - judge the units after the domains
  * @c: active cycle with units
  * @judged: domains that were sent or received since the last receive
+ *
+ * Not while the application takes its slaves to PREOP.
  *
  * Context: The cycle owner, in receive. RT-safe: bounded by units and domains; when the outputs of
  * a unit change by their bytes as well.
@@ -258,19 +286,40 @@ void ec_units_judge(struct ec_cycle *c, u64 judged)
 {
 	unsigned int i;
 
-	for (i = 0; i < c->units->n; i++) {
+	for (i = 0; i < c->units->n && !READ_ONCE(c->slaves_down); i++) {
 		struct ec_cyc_unit *u = &c->units->unit[i];
-		u32 before, wish = READ_ONCE(u->wish) ? xchg(&u->wish, 0) : 0;
+		u32 before;
 
-		if (!wish && !(judged & u->domains))
+		if (!(judged & u->domains))
 			continue;
 		before = ec_units_state(u);
-		if (judged & u->domains)
-			judge(c, u);
-		if (wish)
-			obey(c, u, wish);
-		settle(c, u, before, wish ? BY_COMMAND : BY_COUNTER);
+		judge(c, u, judged);
+		settle(c, u, before, BY_COUNTER);
 	}
+	obey_all(c);
+}
+
+/**
+ * ec_units_outage() - there is no device: units fail
+ * @c: active cycle with units
+ *
+ * Context: The cycle owner, in receive and send. RT-safe, as ec_units_judge().
+ */
+void ec_units_outage(struct ec_cycle *c)
+{
+	unsigned int i;
+
+	for (i = 0; i < c->units->n; i++) {
+		struct ec_cyc_unit *u = &c->units->unit[i];
+		u32 before = ec_units_state(u);
+
+		if (u->run != EC_UNIT_RUN_COMPLETE)
+			continue;
+		u->same = 0;
+		fail(c, u);
+		settle(c, u, before, BY_COUNTER);
+	}
+	obey_all(c);
 }
 
 /**
@@ -278,7 +327,8 @@ void ec_units_judge(struct ec_cycle *c, u64 judged)
  * @c: active cycle with units
  * @queued: domains that are sent
  *
- * As the part of a missing slave returns as it was sent, its last inputs are sent.
+ * The part of a missing slave returns as sent: its last inputs are sent. Commands since the receive
+ * are carried out before.
  *
  * Context: The cycle owner, in send. RT-safe: bounded by the inputs.
  */
@@ -287,7 +337,8 @@ void ec_units_fill(struct ec_cycle *c, u64 queued)
 	struct ec_cyc_units *us = c->units;
 	u64 left;
 
-	if (READ_ONCE(us->holders))
+	obey_all(c);
+	if (us->holders)
 		ec_units_take_held(c);
 	for (left = us->replaced & queued; left; left &= left - 1) {
 		unsigned int d = __ffs64(left), i;
@@ -315,7 +366,7 @@ void ec_units_fed(struct ec_cyc_units *us, u64 domains)
 		struct ec_cyc_unit *u = &us->unit[i];
 
 		/* what the session gives for a unit that another application holds is not sent */
-		if (READ_ONCE(u->held))
+		if (u->held)
 			continue;
 		u->fed |= domains & u->feeds;
 		if (!u->feeds || u->fed != u->feeds)
@@ -328,7 +379,7 @@ void ec_units_fed(struct ec_cyc_units *us, u64 domains)
 
 /**
  * ec_units_lease() - one more cycle: leases end
- * @c: active cycle with units, whose outputs for this cycle are chosen
+ * @c: active cycle with units, before it takes the outputs for this cycle
  *
  * Context: The thread of the cycle. RT-safe.
  */

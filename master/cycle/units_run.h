@@ -8,6 +8,7 @@
 struct ec_cycle;
 
 void ec_units_judge(struct ec_cycle *c, u64 judged);
+void ec_units_outage(struct ec_cycle *c);
 void ec_units_fill(struct ec_cycle *c, u64 queued);
 void ec_units_fed(struct ec_cyc_units *us, u64 domains);
 void ec_units_lease(struct ec_cycle *c);

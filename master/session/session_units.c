@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/nospec.h>
 #include "../cycle/units.h"
-#include "../cycle/units_hold.h"
 #include "../bus/slave.h"
 #include "../config/unit.h"
 #include "session_units.h"
@@ -20,6 +19,17 @@ u8 ec_session_goal(const struct ec_session *s, const struct ec_config *c)
 	return ec_units_keep_down(&s->cycle, c->index) ? EC_AL_SAFEOP : EC_AL_OP;
 }
 
+/* A slave in another state was brought there by another request, and stays. */
+static void turn(const struct ec_config *c, u8 goal)
+{
+	if (!c->slave)
+		return;
+	if (goal == EC_AL_SAFEOP && READ_ONCE(c->slave->al.requested) == EC_AL_OP)
+		ec_slave_request(c->slave, EC_AL_SAFEOP);
+	else if (goal == EC_AL_OP && READ_ONCE(c->slave->al.requested) == EC_AL_SAFEOP)
+		ec_slave_request_anew(c->slave, EC_AL_OP, 0);
+}
+
 /**
  * ec_session_units() - take slaves to the states that sync units want
  * @work: of struct ec_sessions
@@ -35,14 +45,10 @@ void ec_session_units(struct work_struct *work)
 
 	mutex_lock(&ss->lock);
 	s = ss->session;
-	if (s && s->wanted.active && s->cycle.units && !s->ending) {
-		ec_for_each_config(c, &s->wanted) {
-			u8 goal = ec_session_goal(s, c);
-
-			if (c->slave && READ_ONCE(c->slave->al.requested) != goal)
-				ec_slave_request(c->slave, goal);
-		}
-	}
+	if (s && s->wanted.active && s->cycle.units && !s->ending)
+		ec_for_each_config(c, &s->wanted)
+			if (ec_units_turns(&s->cycle, c->index))
+				turn(c, ec_session_goal(s, c));
 	mutex_unlock(&ss->lock);
 }
 
@@ -97,6 +103,6 @@ void ec_session_leave_units(struct ec_sessions *ss, const void *holder)
 {
 	ec_sessions_lock(ss);
 	if (ss->session && ss->session->wanted.active)
-		ec_units_leave(&ss->session->cycle, holder);
+		ec_units_leave(&ss->session->cycle, EC_UNIT_NONE, holder);
 	ec_sessions_unlock(ss);
 }

@@ -9,6 +9,7 @@
 #include "../config/unit.h"
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
+#include "../cycle/units.h"
 #include "clear.h"
 #include "request_layout.h"
 #include "session_status.h"
@@ -259,6 +260,9 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 	ret = ec_cycle_thread_adopt(&s->cycle);
 	if (ret)
 		return ret;
+	/* it may have held units of the other application */
+	ec_units_leave(&s->cycle, EC_UNIT_NONE, candidate->cycle.owner);
+	ec_units_take_over(&s->cycle);
 	if (s->requests)
 		ec_requests_describe(s);
 	adopt_late(s, candidate->cycle.setup.late_per_s);

@@ -298,10 +298,19 @@ interrupted() {
 		"${v[iwait_lost]} == 0 && ${v[iwait_wc_errors]} == 0 && ${v[iwait_call_errors]} == 0"
 }
 
+# eight domains, then eight sync units of one domain each
+units_cost() {
+	local calls=${v[units_total_mean]} limit=$((v[eight_total_mean] * 105 / 100))
+
+	row "$calls" $limit "instructions of the calls of a cycle with 8 sync units, and at most 1.05 of those with 8 domains: ${v[slaves]} drive(s)"
+	gate "${v[slaves]} slave(s), native device: calls with 8 sync units are $(ratio "$calls" "${v[eight_total_mean]}") of those with 8 domains, ${v[eight_total_mean]} instructions; at most 1.05" \
+		"$calls >= ${v[eight_total_mean]} && $calls <= limit && ${v[units_wc_errors]} == 0"
+}
+
 # The same card without interrupts. What an application waits for is its own sleep or the
 # kernel's cycle.
 native_cost() {
-	local us=$1 n own above limit spin=()
+	local us=$1 n own above limit spin=() units=()
 
 	# what the machine does by itself varies by 100,000 instructions from one run to another
 	[ "$us" != 1000 ] ||
@@ -310,11 +319,14 @@ native_cost() {
 		      + ispin --cycles 50 --work 500 --period-us $us --kernel spin --interrupt)
 	echo "# instructions per cycle of $us us, native device on e1000e"
 	for n in 1 100; do
+		[ "$us" = 1000 ] || [ $n = 1 ] ||
+			units=(+ eight --cycles 300 --period-us $us --domains 8
+			       + units --cycles 300 --period-us $us --domains 8 --units)
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
 			--period-us $us + kernel --cycles 300 --period-us $us --kernel timer \
 			+ wait --cycles 300 --period-us $us --kernel wait \
 			+ iwait --cycles 300 --period-us $us --kernel wait --interrupt \
-			${spin[@]+"${spin[@]}"} || return
+			${spin[@]+"${spin[@]}"} ${units[@]+"${units[@]}"} || return
 		cost native
 		kernel_cost
 		work "" $us "application's cycle"; own=$work
@@ -341,6 +353,7 @@ native_cost() {
 		gate "$n slave(s), native device: $own instructions of all work, at most $limit" \
 			"$own <= limit"
 		reliable "native device"
+		[ ${#units[@]} = 0 ] || units_cost
 	done
 }
 

@@ -136,6 +136,7 @@ static void lease_takes_authority(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 5u);
 	kcyc_wait_cycles(a, 2 * LEASE);
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 0u);
+	KUNIT_EXPECT_EQ(test, units_authority(b, 0, 1), -EINPROGRESS);
 	for (i = 0; i < 20; i++) {
 		give(a, 6, 1);
 		kcyc_wait_cycles(a, 1);
@@ -147,7 +148,7 @@ static void lease_takes_authority(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 6u);
 }
 
-/* Sent from the buffer of the application: what is held is what was sent, inputs go on. */
+/* Sent from the buffer of the application: what is held is what was sent, inputs are received. */
 static void held_from_buffer(struct kunit *test, struct ec_ioc_cycle cfg)
 {
 	struct bus *b;
@@ -264,6 +265,30 @@ static void unit_detached(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 11u);
 }
 
+/* One lost frame is one bad exchange, also of a domain that is not sent in each cycle. */
+static void unit_with_division(struct kunit *test)
+{
+	struct bus *b = units_bus(test, 2);
+	struct kcyc *a = app(b, 2, 1, (struct ec_ioc_cycle){ });
+	struct ec_ioc_division d = { .domain = 1, .division = 10 };
+	u32 u = units_new(b, "a", EC_UNIT_POLICY_SAFEOP, 0), i;
+
+	units_put(b, 0, u);
+	units_put(b, 1, u);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DIVISION, &d), 0);
+	begin(a);
+	kcyc_wait_cycles(a, 50);
+	for (i = 0; i < 40; i++) {
+		bus_fault(b, EC_SIM_FAULT_LOSE, -1, -1, 1, 0);
+		kcyc_wait_cycles(a, 21);
+	}
+	KUNIT_EXPECT_GE(test, bus_lost(b), 30ull);
+	KUNIT_EXPECT_EQ(test, units_state(b, 0), EC_UNIT_RUN_COMPLETE | EC_UNIT_HAS_AUTHORITY);
+	units_dead(b, 1, true);
+	kcyc_wait_cycles(a, 60);
+	KUNIT_EXPECT_EQ(test, units_state(b, 0) >> 16, 1u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(lease_of_one),
 	KUNIT_CASE(lease_length),
@@ -273,6 +298,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(unit_in_interrupt),
 	KUNIT_CASE(safeop_in_interrupt),
 	KUNIT_CASE(unit_detached),
+	KUNIT_CASE(unit_with_division),
 	{ }
 };
 

@@ -58,7 +58,7 @@ static void unit_zero(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, SENDS(units_state(c->b, 0)), (u32)EC_UNIT_SENDS_ZERO);
 	KUNIT_EXPECT_EQ(test, FAULTS(units_state(c->b, 0)), 1u);
 	KUNIT_EXPECT_EQ(test, units_state(c->b, 1), EC_UNIT_RUN_COMPLETE | EC_UNIT_HAS_AUTHORITY);
-	/* its inputs go on */
+	/* its inputs are received */
 	KUNIT_EXPECT_EQ(test, bus_domain_status(c->b, 0)->working_counter, 3u);
 	units_dead(c->b, 0, false);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
@@ -84,7 +84,7 @@ static void unit_hold(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, units_out(c->b, 1), held);
 		expect_value(c, 2);
 	}
-	/* the other one goes on: a slave fails, its neighbor has values */
+	/* the other one continues: a slave fails, its neighbor has values */
 	units_dead(c->b, 2, true);
 	cyc_run(c, 10);
 	expect_value(c, 3);
@@ -155,7 +155,7 @@ static void unit_safeop(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, units_state(c->b, 1), EC_UNIT_RUN_COMPLETE | EC_UNIT_HAS_AUTHORITY);
 }
 
-/* Everything stops, domains without unit too, and goes on by authority alone. */
+/* Everything stops, domains without unit too, until authority is given. */
 static void unit_stop(struct kunit *test)
 {
 	struct cyc *c = two_units(test, EC_UNIT_POLICY_STOP, EC_UNIT_POLICY_SAFEOP);
@@ -322,6 +322,9 @@ static void unit_held(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, hold(f, 0, "a"), 16);
 	KUNIT_EXPECT_EQ(test, hold(f, 0, "a"), 16);
 	KUNIT_EXPECT_EQ(test, hold(third, 0, "a"), -EBUSY);
+	/* the cycle does not have it so far */
+	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_UNIT_AUTHORITY, &give), -EINPROGRESS);
+	cyc_run(c, 1);
 	KUNIT_EXPECT_EQ(test, units_authority(c->b, 0, 1), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ec_ioc(third, EC_IOC_UNIT_AUTHORITY, &give), -EBUSY);
 	KUNIT_EXPECT_EQ(test, holder_writes(third, 0, 1), -EPERM);
@@ -365,9 +368,12 @@ static void unit_held(struct kunit *test)
 	expect_value(c, 3);
 	/* the next one begins with zeros; or the first application has the unit again */
 	KUNIT_EXPECT_EQ(test, hold(third, 0, "a"), 16);
+	cyc_run(c, 1);
 	KUNIT_EXPECT_EQ(test, ec_ioc(third, EC_IOC_UNIT_AUTHORITY, &give), 0);
 	cyc_run(c, 5);
 	KUNIT_EXPECT_EQ(test, units_out(c->b, 0), 0u);
+	KUNIT_EXPECT_EQ(test, hold(third, EC_UNIT_HOLD_END, "b"), -EPERM);
+	KUNIT_EXPECT_EQ(test, hold(f, EC_UNIT_HOLD_END, "a"), -EPERM);
 	KUNIT_EXPECT_EQ(test, hold(third, EC_UNIT_HOLD_END, "a"), 0);
 	cyc_run(c, 2);
 	KUNIT_EXPECT_EQ(test, units_authority(c->b, 0, 1), 0);
@@ -376,6 +382,70 @@ static void unit_held(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, hold(f, 0, "a"), -EBUSY);
 	cyc_release(c);
 	KUNIT_EXPECT_EQ(test, holder_writes(f, 0, 1), -EINVAL);
+}
+
+/* What was taken before or during a stop does not return with its end. */
+static void unit_stop_gives_nothing(struct kunit *test)
+{
+	struct cyc *c = units_app(units_bus(test, 6), 3, 2);
+	u32 i;
+
+	units_put(c->b, 0, units_new(c->b, "a", EC_UNIT_POLICY_STOP, 0));
+	units_put(c->b, 1, units_new(c->b, "b", EC_UNIT_POLICY_ZERO, 0));
+	units_put(c->b, 2, units_new(c->b, "c", EC_UNIT_POLICY_ZERO, 0));
+	begin(c);
+	KUNIT_EXPECT_EQ(test, units_authority(c->b, 1, 0), 0);
+	cyc_run(c, 2);
+	KUNIT_EXPECT_EQ(test, units_out(c->b, 2), 0u);
+	units_dead(c->b, 0, true);
+	cyc_run(c, 50);
+	KUNIT_EXPECT_EQ(test, units_out(c->b, 4), 0u);
+	KUNIT_EXPECT_EQ(test, units_authority(c->b, 2, 0), 0);
+	/* the slave of another unit does not return with them */
+	units_dead(c->b, 3, true);
+	units_dead(c->b, 0, false);
+	for (i = 0; i < 5000 && units_authority(c->b, 0, 1); i++)
+		cyc_run(c, 1);
+	KUNIT_EXPECT_LT(test, i, 5000u);
+	cyc_run(c, 2);
+	expect_value(c, 0);
+	KUNIT_EXPECT_EQ(test, units_out(c->b, 2), 0u);
+	KUNIT_EXPECT_EQ(test, units_out(c->b, 4), 0u);
+	KUNIT_EXPECT_EQ(test, units_authority(c->b, 1, 1), -EINPROGRESS);
+	KUNIT_EXPECT_EQ(test, units_authority(c->b, 2, 1), 0);
+	cyc_run(c, 2);
+	expect_value(c, 4);
+}
+
+/* A slave that a tool has set to another state is not touched by another unit's policy. */
+static void unit_leaves_states_of_others(struct kunit *test)
+{
+	struct cyc *c = two_units(test, EC_UNIT_POLICY_SAFEOP, EC_UNIT_POLICY_CONTINUE);
+
+	begin(c);
+	bus_request(c->b, 4, EC_AL_PREOP);
+	cyc_run(c, 100);
+	KUNIT_EXPECT_EQ(test, al(c->b, 4), EC_AL_PREOP);
+	units_dead(c->b, 0, true);
+	cyc_run(c, 200);
+	KUNIT_EXPECT_EQ(test, al(c->b, 1), EC_AL_SAFEOP);
+	KUNIT_EXPECT_EQ(test, al(c->b, 4), EC_AL_PREOP);
+}
+
+/* Without a device units fail; what was given just before is void. */
+static void unit_outage(struct kunit *test)
+{
+	struct cyc *c = units_app(units_bus(test, 2), 1, 2);
+
+	units_put(c->b, 0, units_new(c->b, "a", EC_UNIT_POLICY_ZERO, EC_UNIT_FLAG_AUTHORITY));
+	begin(c);
+	KUNIT_EXPECT_EQ(test, units_authority(c->b, 0, 1), 0);
+	ec_sim_link_destroy(c->b->link);
+	c->b->link = NULL;
+	c->b->sim = NULL;
+	KUNIT_EXPECT_EQ(test, ec_ioc_receive(&c->b->app), -ENODEV);
+	KUNIT_EXPECT_EQ(test, units_state(c->b, 0) & 0xffff,
+			EC_UNIT_RUN_FAILED | EC_UNIT_SENDS_ZERO << 4);
 }
 
 static int create(struct bus *b, struct ec_ioc_unit u, const char *name)
@@ -437,6 +507,9 @@ static struct kunit_case unit_cases[] = {
 	KUNIT_CASE(unit_authority),
 	KUNIT_CASE(unit_repeats),
 	KUNIT_CASE(unit_held),
+	KUNIT_CASE(unit_stop_gives_nothing),
+	KUNIT_CASE(unit_leaves_states_of_others),
+	KUNIT_CASE(unit_outage),
 	KUNIT_CASE(unit_refused),
 	{ }
 };

@@ -11,10 +11,23 @@
 #define EACH	6	/* slaves in a unit */
 #define SLAVES	(UNITS * EACH + 2)	/* two are in none */
 #define NOWHERE	UNITS
+#define STEADY	400	/* cycles without a failure after a fault */
 
-static unsigned int faults = 100;
-module_param(faults, uint, 0444);
-MODULE_PARM_DESC(faults, "faults");
+#define FAULTS	100	/* in a run: KUnit allows 300 s for a case */
+
+static unsigned int runs = 2;
+module_param(runs, uint, 0444);
+MODULE_PARM_DESC(runs, "runs of 100 faults");
+
+/* The seed of a run is its number. */
+static const void *next_run(const void *prev, char *desc)
+{
+	static unsigned int run;
+
+	run = prev ? run + 1 : 0;
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "seed %u", run);
+	return run < runs ? &run : NULL;
+}
 
 /* a run and its counts */
 struct run {
@@ -116,10 +129,12 @@ static void one_fault(struct run *r)
 		run_cycles(r, unit, 1 + draw(r, 60));
 		units_dead(r->c->b, slave, false);
 	}
-	for (i = 0; i < 3000 && !is_whole(r, unit); i++) {
-		if (i % 10 == 9)
+	/* a scan may find its fault later */
+	for (i = 0, n = 0; i < 5000 && n < STEADY; i++) {
+		if (i % 10 == 9 && !is_whole(r, unit))
 			units_authority(r->c->b, unit, 1);
 		one_cycle(r, unit);
+		n = is_whole(r, unit) ? n + 1 : 0;
 	}
 	r->dead = SLAVES;
 	r->stuck += !is_whole(r, unit);
@@ -142,7 +157,7 @@ static void units_fail_alone(struct kunit *test)
 	u32 i;
 
 	KUNIT_ASSERT_NOT_NULL(test, r);
-	prandom_seed_state(&r->rng, 34);
+	prandom_seed_state(&r->rng, *(const unsigned int *)test->param_value);
 	r->c = units_app(units_bus(test, SLAVES), UNITS, EACH);
 	cyc_map_all(r->c, UNITS * EACH, 2, cyc_domain(r->c));
 	for (i = 0; i < UNITS; i++) {
@@ -160,19 +175,19 @@ static void units_fail_alone(struct kunit *test)
 	for (i = 0; i < UNITS; i++)
 		KUNIT_ASSERT_EQ(test, units_authority(r->c->b, i, 1), 0);
 	cyc_run(r->c, 2);
-	for (i = 0; i < faults; i++)
+	for (i = 0; i < FAULTS; i++)
 		one_fault(r);
 	KUNIT_EXPECT_EQ(test, r->left_op, 0u);
 	KUNIT_EXPECT_EQ(test, r->value, 0u);
 	KUNIT_EXPECT_EQ(test, r->policy, 0u);
 	KUNIT_EXPECT_EQ(test, r->stuck, 0u);
-	KUNIT_EXPECT_GT(test, r->failed, faults / 2);
-	bus_figure("%u faults in 8 units of 50 slaves: %u failures of units, %llu checks, %u slaves of others out of OP, %u with another value, %u units not complete again",
-		   faults, r->failed, r->checks, r->left_op, r->value, r->stuck);
+	KUNIT_EXPECT_GT(test, r->failed, FAULTS / 3u);
+	bus_figure("%u faults in 8 units of 50 slaves: %u failures of units, %llu checks, others: %u not in OP, %u with another value; %u units not complete again",
+		   FAULTS, r->failed, r->checks, r->left_op, r->value, r->stuck);
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(units_fail_alone),
+	KUNIT_CASE_PARAM(units_fail_alone, next_run),
 	{ }
 };
 

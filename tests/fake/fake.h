@@ -57,6 +57,7 @@ int fake_mbox(unsigned long request, void *arg);
 int fake_events(unsigned long request, void *arg);
 
 void fake_why(unsigned long request, void *arg);
+bool fake_why_unit(struct ec_ioc_unit_info *x);
 void fake_why_master(struct fake_master *m);
 void fake_why_slave(struct fake_slave *s);
 /* fake_slave.c */

@@ -277,6 +277,8 @@ int fake_app(unsigned long request, void *arg)
 		*(struct ec_ioc_domain *)arg = domains[((struct ec_ioc_domain *)arg)->index];
 		return 0;
 	case EC_IOC_UNIT_INFO:
+		if (fake_why_unit(arg))
+			return 0;
 		if (!getenv("FAKE_UNITS") || ((struct ec_ioc_unit_info *)arg)->index >= LEN(units))
 			return fake_fail(ENOENT, "there is no such unit");
 		*(struct ec_ioc_unit_info *)arg = units[((struct ec_ioc_unit_info *)arg)->index];

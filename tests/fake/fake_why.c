@@ -202,6 +202,36 @@ static void domain(struct ec_ioc_domain *x)
 	x->wc_state = EC_STATUS_WC_INCOMPLETE;
 }
 
+/* Unit 0 with domain 1. Return: there is one */
+bool fake_why_unit(struct ec_ioc_unit_info *x)
+{
+	static const struct {
+		const char *name;
+		__u32 policy;
+		__u32 state;
+	} units[] = {
+		{ "unit_down", EC_UNIT_POLICY_SAFEOP,
+		  EC_UNIT_RUN_FAILED | EC_UNIT_SENDS_ZERO << 4 | EC_UNIT_DOWN | 1 << 16 },
+		{ "unit_stopped", EC_UNIT_POLICY_STOP,
+		  EC_UNIT_RUN_FAILED | EC_UNIT_SENDS_ZERO << 4 | EC_UNIT_DOWN | 1 << 16 },
+		{ "unit_lease", EC_UNIT_POLICY_ZERO, EC_UNIT_RUN_COMPLETE |
+		  EC_UNIT_SENDS_HELD << 4 | EC_UNIT_HAS_AUTHORITY | EC_UNIT_LEASE_ENDED },
+		{ "no_authority", EC_UNIT_POLICY_ZERO,
+		  EC_UNIT_RUN_COMPLETE | EC_UNIT_SENDS_ZERO << 4 },
+	};
+
+	for (unsigned int i = 0; !x->index && i < sizeof(units) / sizeof(units[0]); i++) {
+		if (!wrong(units[i].name))
+			continue;
+		*x = (struct ec_ioc_unit_info){
+			.policy = units[i].policy, .state = units[i].state, .active = 1,
+			.domains = 2, .lease_cycles = 50, .limit = 3, .repeats = 1, .name = "axes",
+		};
+		return true;
+	}
+	return false;
+}
+
 static void counters(struct ec_ioc_reg *x)
 {
 	/* slave 0 has an FMMU in domain 1, slave 2 that of its configuration */

@@ -22,14 +22,14 @@ setup() {
 	out domains -j | json 'd["masters"][0]["domains"][1]["unit"] is None'
 }
 
-@test "units take takes authority, and refuses what it does not know" {
+@test "units take takes authority, and refuses unknown names and words" {
 	[ "$(log_of units take axes | tail -n 1)" = "unit 1 authority 0" ]
 	run ethercat units take nothing
 	[ "$status" -eq 1 ]
 	[[ $output == *"Master0 has no unit nothing; 'ethercat units' shows them"* ]]
 	run ethercat units give axes
 	[ "$status" -eq 1 ]
-	[[ $output == *"'give': use no argument, or take and the name of a unit"* ]]
+	[[ $output == *"'give': use no argument, or take and a name"* ]]
 	run ethercat units take
 	[ "$status" -eq 1 ]
 	[[ $output == *"'take': use no argument"* ]]

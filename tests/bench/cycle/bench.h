@@ -55,6 +55,7 @@ struct bench {
 	unsigned int wait_s;
 	unsigned int ready;	/* complete cycles at first */
 	unsigned int n_domains;
+	bool units;	/* each domain is a sync unit */
 	bool extras;	/* call what a careful application calls, too */
 	bool syscalls;	/* count them instead of instructions */
 	bool trace;	/* switch ftrace on while measuring */

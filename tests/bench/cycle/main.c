@@ -391,6 +391,7 @@ static void usage(FILE *out)
 		"  --ready N      complete cycles before that, default 1100: a cycle of the kernel\n"
 		"                 waits for 1000\n"
 		"  --domains N    spread the slaves over N domains, default 1\n"
+		"  --units        each of them is a sync unit\n"
 		"  --extras       clocks, states, emergencies and requests, too\n"
 		"  --uploads N    meanwhile others upload an object of each of N slaves, again and again\n"
 		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
@@ -439,6 +440,7 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "ready", required_argument, NULL, 'r' },
 		{ "domains", required_argument, NULL, 'd' },
 		{ "uploads", required_argument, NULL, 'u' },
+		{ "units", no_argument, NULL, 'U' },
 		{ "extras", no_argument, NULL, 'e' },
 		{ "syscalls", no_argument, NULL, 's' },
 		{ "kernel", required_argument, NULL, 'k' },
@@ -464,6 +466,8 @@ static void parse(struct bench *b, int argc, char **argv)
 			*value = number(options[at].name, optarg,
 					c == 'd' ? DOMAINS_MAX :
 					c == 'u' ? UPLOADS_MAX : 10000000);
+		else if (c == 'U')
+			b->units = true;
 		else if (c == 'e')
 			b->extras = true;
 		else if (c == 's')

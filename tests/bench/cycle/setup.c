@@ -54,6 +54,24 @@ static int add_slave(struct bench *b, uint16_t position)
 	return 0;
 }
 
+/* A unit of its own for each domain */
+static int add_units(struct bench *b)
+{
+	ec_unit_config_t config = { .policy = EC_UNIT_ZERO };
+	unsigned int i;
+	char name[16];
+	int unit;
+
+	config.name = name;
+	for (i = 0; i < b->n_domains; i++) {
+		snprintf(name, sizeof(name), "unit%u", i);
+		unit = ecrt_master_unit(b->master, &config);
+		if (unit < 0 || ecrt_domain_set_unit(b->domains[i], unit))
+			return -1;
+	}
+	return 0;
+}
+
 static int kernel_cycle(struct bench *b)
 {
 	ec_cycle_config_t config = {
@@ -90,6 +108,8 @@ int setup(struct bench *b)
 			return -1;
 	for (i = 0; i < b->n_domains; i++)
 		b->image_bytes += ecrt_domain_size(b->domains[i]);
+	if (b->units && add_units(b))
+		return -1;
 	if (b->extras && extras_setup(b))
 		return -1;
 	if (b->mode == MODE_OWN ? ecrt_master_set_send_interval(b->master, b->period_us) :
