@@ -125,31 +125,75 @@ static const struct ec_slave *mapped_at(struct ec_bus *bus, u32 logical)
 	return found;
 }
 
-/**
- * ec_owed_by_fmmu() - find the slave that has lost its address by the first FMMU
- * @bus: bus
- * @station: station address that a slave with process data has by now
- *
- * No two slaves of a session have the same logical address there. The slave was made harmless when
- * it came, so it has no FMMU of another master.
- *
- * Context: The monitor thread. Waits for bus traffic.
- * Return: the slave of the list which that is, and which does not reply at its own address; NULL:
- * there is none.
- */
-const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station)
+/* Does a slave with the AL status @al run as @s did? No device that was let in nowhere does. */
+static bool runs_as(const struct ec_slave *s, const u8 *al)
+{
+	u16 is = READ_ONCE(s->al.status);
+
+	return is & EC_AL_BEYOND_PREOP && get_unaligned_le16(al) == is;
+}
+
+/* read from a slave, and whether one replies at the address that it may have lost */
+struct owed_look {
+	u8 fmmu[EC_FMMU_PAGE];
+	u8 al[2];
+	u8 own[2];
+};
+
+static const struct ec_slave *mapped_as(struct ec_bus *bus, const struct ec_dg *dg,
+					const struct owed_look *k)
 {
 	const struct ec_slave *s;
-	u8 page[EC_FMMU_PAGE], own[2];
 
-	if (ec_xfer_fprd(bus->links, station, EC_REG_FMMU(0), page, sizeof(page)) ||
-	    !(page[EC_FMMU_OFS_ENABLE] & 1))
+	if (dg[0].err || dg[0].wkc != 1 || dg[1].err || dg[1].wkc != 1 ||
+	    !(k->fmmu[EC_FMMU_OFS_ENABLE] & 1))
 		return NULL;
-	s = mapped_at(bus, get_unaligned_le32(page));
-	if (!s || !ec_owed_runs_as(bus, station, s) ||
-	    !ec_xfer_fprd(bus->links, s->station, EC_REG_STATION, own, sizeof(own)))
-		return NULL;
-	return s;
+	s = mapped_at(bus, get_unaligned_le32(k->fmmu));
+	return s && runs_as(s, k->al) ? s : NULL;
+}
+
+/**
+ * ec_owed_by_fmmu() - find slaves that have lost their addresses by their first FMMUs
+ * @bus: bus
+ * @station: station addresses that slaves have by now
+ * @n: how many
+ * @owner: result for each: the slave of the list which that is, and which does not reply at its own
+ * address; NULL: there is none
+ *
+ * No two slaves of a session have the same logical address there. The slave was made harmless when
+ * it came, so it has no FMMU of another master. All are asked at a time, as each of them is missing
+ * from the process of the application.
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ */
+void ec_owed_by_fmmu(struct ec_bus *bus, const u16 *station, unsigned int n,
+		     const struct ec_slave **owner)
+{
+	struct ec_dg *dg = kvcalloc(n, 2 * sizeof(*dg), GFP_KERNEL);
+	struct owed_look *look = kvcalloc(n, sizeof(*look), GFP_KERNEL);
+	unsigned int i, m = 0;
+
+	memset(owner, 0, n * sizeof(*owner));
+	if (!dg || !look)
+		goto out;
+	for (i = 0; i < n; i++) {
+		dg[2 * i] = EC_FPRD(station[i], EC_REG_FMMU(0), EC_FMMU_PAGE, look[i].fmmu);
+		dg[2 * i + 1] = EC_FPRD(station[i], EC_REG_AL_STATUS, 2, look[i].al);
+	}
+	ec_xfer(bus->links, dg, 2 * n);
+	for (i = 0; i < n; i++)
+		owner[i] = mapped_as(bus, &dg[2 * i], &look[i]);
+	for (i = 0; i < n; i++)
+		if (owner[i])
+			dg[m++] = EC_FPRD(owner[i]->station, EC_REG_STATION, 2, look[i].own);
+	if (m)
+		ec_xfer(bus->links, dg, m);
+	while (n--)
+		if (owner[n] && dg[--m].wkc)
+			owner[n] = NULL;
+out:
+	kvfree(dg);
+	kvfree(look);
 }
 
 /**
@@ -158,19 +202,14 @@ const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station)
  * @station: station address of the slave
  * @s: the other one
  *
- * No device that was let in nowhere is in such a state.
- *
  * Context: The monitor thread. Waits for bus traffic.
  * Return: whether it is.
  */
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s)
 {
-	u16 is = READ_ONCE(s->al.status);
 	u8 al[2];
 
-	return is & EC_AL_BEYOND_PREOP &&
-	       !ec_xfer_fprd(bus->links, station, EC_REG_AL_STATUS, al, 2) &&
-	       get_unaligned_le16(al) == is;
+	return !ec_xfer_fprd(bus->links, station, EC_REG_AL_STATUS, al, 2) && runs_as(s, al);
 }
 
 /* Of those that were tried before, the ones at whose own address no slave replies by now. */

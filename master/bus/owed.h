@@ -26,7 +26,8 @@ struct ec_owed {
 bool ec_owed_has_lost(const struct ec_slave *s, const struct ec_dg *own, const struct ec_dg *up,
 		      const u8 *dl);
 unsigned int ec_owed_find(struct ec_bus *bus, const struct ec_slave **found, unsigned int max);
-const struct ec_slave *ec_owed_by_fmmu(struct ec_bus *bus, u16 station);
+void ec_owed_by_fmmu(struct ec_bus *bus, const u16 *station, unsigned int n,
+		     const struct ec_slave **owner);
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s);
 void ec_owed_note(struct ec_bus *bus, u16 has, u16 own);
 bool ec_owed_pay(struct ec_bus *bus);

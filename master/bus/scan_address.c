@@ -70,7 +70,20 @@ static unsigned int address_give_back(struct scan *sc, const u16 *at, unsigned i
 	return k;
 }
 
-/* Addresses whose frames are lost, and of which one is in use by a slave beyond PREOP. */
+/* The address that @i got meanwhile, or 0: a slave of the list could have it by mistake. */
+static u16 doubtful(const struct scan *sc, unsigned int i, const struct ec_dg *write)
+{
+	u16 before = get_unaligned_le16(sc->regs[i].before);
+
+	if (datagrams(sc, i) != READ_WRITE)
+		return 0;
+	if (write->err)
+		return ec_scan_address(sc, i);
+	/* it got two of them, in the frame before by mistake as well */
+	return write->wkc == 1 && before != sc->regs[i].was && !sc->known[before] ? before : 0;
+}
+
+/* Such addresses, of which a slave beyond PREOP has each. */
 static unsigned int find_doubtful(struct scan *sc, const u16 *at, unsigned int n, u16 *used)
 {
 	const struct ec_dg *dg = sc->dg;
@@ -78,8 +91,8 @@ static unsigned int find_doubtful(struct scan *sc, const u16 *at, unsigned int n
 
 	for (i = 0; i < n; i++) {
 		dg += datagrams(sc, at[i]);
-		if (datagrams(sc, at[i]) == READ_WRITE && dg[-1].err)
-			used[k++] = ec_scan_address(sc, at[i]);
+		used[k] = doubtful(sc, at[i], &dg[-1]);
+		k += used[k] != 0;
 	}
 	for (i = 0; i < k; i++)
 		sc->dg[i] = EC_FPRD(used[i], EC_REG_AL_STATUS, 2, sc->regs[i].al);
@@ -92,15 +105,15 @@ static unsigned int find_doubtful(struct scan *sc, const u16 *at, unsigned int n
 }
 
 /* Those with process data: their FMMUs say which they are. Returns how many others are left. */
-static unsigned int give_back_mapped(struct ec_bus *bus, u16 *used, unsigned int n)
+static unsigned int give_back_mapped(struct ec_bus *bus, u16 *used, unsigned int n,
+				     const struct ec_slave **owner)
 {
 	unsigned int i, left = 0;
 
+	ec_owed_by_fmmu(bus, used, n, owner);
 	for (i = 0; i < n; i++) {
-		const struct ec_slave *s = ec_owed_by_fmmu(bus, used[i]);
-
-		if (s)
-			ec_owed_note(bus, used[i], s->station);
+		if (owner[i])
+			ec_owed_note(bus, used[i], owner[i]->station);
 		else
 			used[left++] = used[i];
 	}
@@ -119,7 +132,7 @@ static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 	u16 *used = kvcalloc(n, sizeof(*used), GFP_KERNEL);
 	unsigned int i = 0, k = lost && used ? find_doubtful(sc, at, n, used) : 0;
 
-	k = give_back_mapped(sc->bus, used, k);
+	k = k ? give_back_mapped(sc->bus, used, k, lost) : 0;
 	if (k && ec_owed_find(sc->bus, lost, k) == k)
 		while (i < k && ec_owed_runs_as(sc->bus, used[i], lost[i]))
 			i++;
@@ -147,7 +160,7 @@ int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 {
 	struct ec_dg *dg = sc->dg;
 	int count = -1, ret;
-	unsigned int i;
+	unsigned int i, k;
 
 	for (i = 0; i < n; i++) {
 		address_add(sc, dg, at[i]);
@@ -168,9 +181,9 @@ int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 			      "station address not accepted, frames pass; power-cycle or replace the slave, then rescan" :
 			      "no reply at its ring position, frames pass; power-cycle or replace the slave, then rescan");
 	}
-	if (address_give_back(sc, at, n))
-		return -EAGAIN;
-	if (ret == -ETIMEDOUT && sc->bus->n_slaves)
+	k = address_give_back(sc, at, n);
+	/* some frames may have returned, and others not */
+	if ((k || ret == -ETIMEDOUT) && sc->bus->n_slaves)
 		give_back_lost(sc, at, n);
-	return ret;
+	return k ? -EAGAIN : ret;
 }

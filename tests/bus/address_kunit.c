@@ -20,6 +20,7 @@ enum { N = 8, A1 = 1, B1 = 4, B1_AT = 6 };
 enum { M_B1 = 3, M_B2, M = 6 };
 
 #define FRAMES	12	/* of a scan up to the addresses */
+#define MOST_HITS	8
 
 static struct bus *hooked;
 static bool hook_loses;	/* the frame that writes addresses does not return */
@@ -123,26 +124,29 @@ static void address_while_slaves_leave(struct kunit *test)
 	}
 }
 
-/* A session with B2, and with B1; slaves are let in without a trial, as with loops=auto. */
-static struct cyc *run_b(struct kunit *test, const char *b1, bool maps)
-{
-	struct bus *b;
-	struct cyc *c;
-	char line[256];
+/*
+ * Bus with slaves A1 on, fork, B1 on, X1 on. Those at which the address of one of X is written when
+ * all of A are gone are B1 on, as many as there are of X.
+ */
+struct hit {
+	const char *text;
+	u32 n;
+	u32 b;		/* B1 in the segment */
+	u32 n_b;	/* these are the last ones of the ring */
+	u32 n_x;
+	bool forgets;
+};
 
-	snprintf(line, sizeof(line),
-		 "segment seed=3 response=100us transition=1ms\n"
-		 "slave hub EK1100\nslave a1 drive in=8 out=8\n"
-		 "branch hub 2\nslave fork EK1122\n"
-		 "slave b1 %s\nslave b2 drive in=8 out=8\n"
-		 "branch fork 3\nslave x1 drive in=8 out=8\n", b1);
-	b = bus_up(test, line, M);
+/* A session with all of B; slaves are let in without a trial, as with loops=auto. */
+static struct cyc *run(struct kunit *test, const struct hit *h)
+{
+	struct bus *b = bus_up(test, h->text, h->n);
+	struct cyc *c;
+
 	bus_idle(b);
 	c = cyc_new(b, 1000);
 	cyc_domain(c);
-	if (!maps)
-		cyc_config(c, M - 2);
-	cyc_map_all(c, maps ? M - 2 : M - 1, maps ? 2 : 1, 0);
+	cyc_map_all(c, h->n - h->n_b, h->n_b, 0);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
 	ec_ports_guard(bus_table(b), false);
@@ -150,50 +154,106 @@ static struct cyc *run_b(struct kunit *test, const char *b1, bool maps)
 	return c;
 }
 
-/*
- * A1 leaves after the addresses were read: B1 gets the one of X1, which has returned, and the reply
- * is lost. It has its own back in the same scan.
- */
-static void expect_given_back(struct cyc *c, bool forgets)
+static void switch_x(struct cyc *c, const struct hit *h, const char *what)
 {
-	struct bus *b = c->b;
-	struct ec_slave *s = ec_slave_ref(bus_slave(b, M - 2));
-	u32 ms, wrong = 0, other = 0;
+	char words[32];
+	u32 i;
 
-	bus_command(b, "off x1");
-	for (ms = 0; ms < 2000 && bus_n_slaves(b) != M - 1; ms++)
+	for (i = 1; i <= h->n_x; i++) {
+		snprintf(words, sizeof(words), "%s x%u", what, i);
+		bus_command(c->b, words);
+	}
+}
+
+/*
+ * All of A leave after the addresses were read: those of B get the ones of X, which have returned,
+ * and the reply of the first frame is lost. They have their own back in the same scan.
+ */
+static void expect_given_back(struct kunit *test, const struct hit *h)
+{
+	struct cyc *c = run(test, h);
+	struct bus *b = c->b;
+	u32 ms, i, wrong = 0, other = 0, hits = 0;
+	struct ec_slave *s[MOST_HITS];
+	bool was[MOST_HITS] = { 0 };
+
+	for (i = 0; i < h->n_x; i++)
+		s[i] = ec_slave_ref(bus_slave(b, h->n - h->n_b + i));
+	switch_x(c, h, "off");
+	for (ms = 0; ms < 2000 && bus_n_slaves(b) != h->n - h->n_x; ms++)
 		cyc_run(c, 1);
 	cyc_run(c, 200);
 	hook_loses = true;
-	hook_forgets = forgets;
+	hook_forgets = h->forgets;
 	cut_after_read(b);
-	bus_command(b, "on x1");
+	switch_x(c, h, "on");
 	for (ms = 0; ms < 1000; ms++) {
+		bool all = true;
+
 		cyc_run(c, 1);
-		wrong += !has_address(b, s, M_B1);
-		other += READ_ONCE(s->stop.gone) || READ_ONCE(s->al.status) != EC_AL_OP;
+		for (i = 0; i < h->n_x; i++) {
+			bool has = has_address(b, s[i], h->b + i);
+
+			hits += !has && !was[i];
+			was[i] |= !has;
+			all &= has;
+			other += READ_ONCE(s[i]->stop.gone) ||
+				 READ_ONCE(s[i]->al.status) != EC_AL_OP;
+		}
+		wrong += !all;
 	}
 	hook_loses = hook_forgets = false;
 	KUNIT_EXPECT_NULL(b->test, hooked);
-	KUNIT_EXPECT_GT_MSG(b->test, wrong, 0u, "not hit");
+	KUNIT_EXPECT_GE_MSG(b->test, hits, h->n_x > 1 ? h->n_x - 1 : 1, "not hit");
 	KUNIT_EXPECT_LE(b->test, wrong, 40u);
 	KUNIT_EXPECT_EQ(b->test, other, 0u);
-	ec_slave_unref(s);
+	for (i = 0; i < h->n_x; i++)
+		ec_slave_unref(s[i]);
 }
+
+#define SMALL(b1)								\
+	"segment seed=3 response=100us transition=1ms\n"			\
+	"slave hub EK1100\nslave a1 drive in=8 out=8\n"			\
+	"branch hub 2\nslave fork EK1122\n"					\
+	"slave b1 " b1 "\nslave b2 drive in=8 out=8\n"				\
+	"branch fork 3\nslave x1 drive in=8 out=8\n"
 
 /* Counting says nothing, as B2 has lost its address at the same time. */
 static void address_reply_lost_given_back_by_fmmu(struct kunit *test)
 {
-	struct cyc *c = run_b(test, "drive in=8 out=8", true);
+	static const struct hit h = {
+		.text = SMALL("drive in=8 out=8"), .n = M, .b = M_B1, .n_b = 2, .n_x = 1,
+		.forgets = true,
+	};
 
-	expect_given_back(c, true);
+	expect_given_back(test, &h);
 }
 
 static void address_reply_lost_given_back_without_process_data(struct kunit *test)
 {
-	struct cyc *c = run_b(test, "EK1100", false);
+	static const struct hit h = {
+		.text = SMALL("EK1100"), .n = M, .b = M_B1, .n_b = 2, .n_x = 1,
+	};
 
-	expect_given_back(c, false);
+	expect_given_back(test, &h);
+}
+
+/* Seven addresses are in the frame that is lost, the eighth in the next, which returns. */
+static void address_reply_lost_and_another_one_not(struct kunit *test)
+{
+	static const struct hit h = {
+		.text =
+		"segment seed=3 response=100us transition=1ms\n"
+		"slave hub EK1100\nrepeat 8 slave a drive in=8 out=8\n"
+		"branch hub 2\nslave fork EK1122\n"
+		"repeat 9 slave b drive in=8 out=8\n"
+		"branch fork 3\nrepeat 8 slave x drive in=8 out=8\n",
+		.n = 27, .b = 10, .n_b = 9, .n_x = MOST_HITS,
+	};
+	u32 lines = bus_log_lines("those of 1 others restored");
+
+	expect_given_back(test, &h);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("those of 1 others restored"), lines + 1);
 }
 
 static struct kunit_case cases[] = {
@@ -201,6 +261,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(address_while_slaves_leave),
 	KUNIT_CASE(address_reply_lost_given_back_by_fmmu),
 	KUNIT_CASE(address_reply_lost_given_back_without_process_data),
+	KUNIT_CASE(address_reply_lost_and_another_one_not),
 	{}
 };
 
