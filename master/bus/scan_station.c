@@ -6,6 +6,7 @@
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "known.h"
+#include "owed.h"
 #include "scan_address.h"
 #include "scan_int.h"
 #include "scan_station.h"
@@ -210,21 +211,67 @@ static bool may_be(const struct scan *sc, unsigned int i, const struct ec_slave 
 	       READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s);
 }
 
+/* The slave at @i is @s; returns whether it has accepted its address. */
+static bool restore_station(struct scan *sc, unsigned int i, const struct ec_slave *s)
+{
+	u16 station = ec_scan_address(sc, i);
+
+	put_unaligned_le16(s->station, sc->regs[i].station);
+	sc->claims[s->station] = 1;
+	return !ec_xfer_fpwr(sc->bus->links, station, EC_REG_STATION, sc->regs[i].station, 2);
+}
+
+/* The slave at @i has an address that was meant for another one, and is in no list. */
+static bool has_tried(const struct scan *sc, unsigned int i)
+{
+	u16 station = ec_scan_address(sc, i);
+
+	return sc->regs[i].there && sc->claims[station] == 1 && !sc->known[station] &&
+	       was_tried(sc->bus, station);
+}
+
+/* Does a slave with process data not reply at its address? */
+static bool misses_mapped(const struct scan *sc)
+{
+	ec_for_each_slave(s, sc->bus)
+		if (READ_ONCE(s->work.mapped) && !sc->claims[s->station])
+			return true;
+	return false;
+}
+
+/* Known slaves with such addresses get their own back, wherever they are: by their FMMUs. */
+static void restore_mapped(struct scan *sc)
+{
+	const struct ec_slave **owner = kvcalloc(sc->n, sizeof(*owner), GFP_KERNEL);
+	u16 *used = kvcalloc(sc->n, sizeof(*used), GFP_KERNEL);
+	unsigned int i, k = 0;
+
+	if (!owner || !used || !misses_mapped(sc))
+		goto out;
+	for (i = 0; i < sc->n; i++) {
+		if (!has_tried(sc, i))
+			continue;
+		sc->who[k] = i;
+		used[k++] = ec_scan_address(sc, i);
+	}
+	if (k)
+		ec_owed_by_fmmu(sc->bus, used, k, owner);
+	for (i = 0; i < k; i++)
+		if (owner[i] && !sc->claims[owner[i]->station])
+			restore_station(sc, sc->who[i], owner[i]);
+out:
+	kvfree(owner);
+	kvfree(used);
+}
+
 /*
  * A known slave has got the address of another one in a scan that was thrown away. It gets its own
  * back if it is in its place, seen from @end, and in a state that no new slave has.
  */
 static bool restore(struct scan *sc, unsigned int i, struct ec_slave *end, struct ec_slave *other)
 {
-	u16 station = ec_scan_address(sc, i);
-
-	if (!sc->regs[i].there || sc->claims[station] != 1 || sc->known[station] ||
-	    !was_tried(sc->bus, station) || !may_be(sc, i, end) ||
-	    (other && other != end && may_be(sc, i, other)))
-		return false;
-	put_unaligned_le16(end->station, sc->regs[i].station);
-	sc->claims[end->station] = 1;
-	return !ec_xfer_fpwr(sc->bus->links, station, EC_REG_STATION, sc->regs[i].station, 2);
+	return has_tried(sc, i) && may_be(sc, i, end) &&
+	       !(other && other != end && may_be(sc, i, other)) && restore_station(sc, i, end);
 }
 
 /* From both ends up to the first slave that is not where it was. */
@@ -358,6 +405,7 @@ int ec_scan_stations(struct scan *sc)
 	ret = ret ?: read_stations(sc);
 	if (!ret) {
 		count_claims(sc);
+		restore_mapped(sc);
 		ret = assign(sc, at);
 	}
 	if (ret > 0)

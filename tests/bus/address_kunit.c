@@ -218,6 +218,15 @@ static void expect_given_back(struct kunit *test, const struct hit *h)
 	"slave b1 " b1 "\nslave b2 drive in=8 out=8\n"				\
 	"branch fork 3\nslave x1 drive in=8 out=8\n"
 
+#define WIDE									\
+	"segment seed=3 response=100us transition=1ms\n"			\
+	"slave hub EK1100\nrepeat 8 slave a drive in=8 out=8\n"		\
+	"branch hub 2\nslave fork EK1122\n"					\
+	"repeat 9 slave b drive in=8 out=8\n"					\
+	"branch fork 3\nrepeat 8 slave x drive in=8 out=8\n"
+
+enum { WIDE_B = 10, WIDE_N = 27 };
+
 /* Counting says nothing, as B2 has lost its address at the same time. */
 static void address_reply_lost_given_back_by_fmmu(struct kunit *test)
 {
@@ -242,18 +251,38 @@ static void address_reply_lost_given_back_without_process_data(struct kunit *tes
 static void address_reply_lost_and_another_one_not(struct kunit *test)
 {
 	static const struct hit h = {
-		.text =
-		"segment seed=3 response=100us transition=1ms\n"
-		"slave hub EK1100\nrepeat 8 slave a drive in=8 out=8\n"
-		"branch hub 2\nslave fork EK1122\n"
-		"repeat 9 slave b drive in=8 out=8\n"
-		"branch fork 3\nrepeat 8 slave x drive in=8 out=8\n",
-		.n = 27, .b = 10, .n_b = 9, .n_x = MOST_HITS,
+		.text = WIDE, .n = WIDE_N, .b = WIDE_B, .n_b = 9, .n_x = MOST_HITS,
 	};
 	u32 lines = bus_log_lines("those of 1 others restored");
 
 	expect_given_back(test, &h);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("those of 1 others restored"), lines + 1);
+}
+
+/*
+ * B2 has got an address by mistake, and nothing that the master has received says so. It has its
+ * own back in the next scan, although slaves before it and after it have left.
+ */
+static void address_unknown_given_back_by_scan(struct kunit *test)
+{
+	static const struct hit h = { .text = WIDE, .n = WIDE_N, .n_b = 9 };
+	struct cyc *c = run(test, &h);
+	struct bus *b = c->b;
+	struct ec_slave *s = ec_slave_ref(bus_slave(b, h.n - 8));
+	u32 ms, other = 0;
+
+	put_unaligned_le16(++bus_table(b)->next_station, bus_esc(b, WIDE_B + 1)->mem + EC_REG_STATION);
+	ec_sim_rehash(bus_esc(b, WIDE_B + 1));
+	bus_command(b, "off a1");
+	bus_command(b, "off b4");
+	for (ms = 0; ms < 2000; ms++) {
+		cyc_run(c, 1);
+		other += READ_ONCE(s->stop.gone) || READ_ONCE(s->al.status) != EC_AL_OP;
+	}
+	KUNIT_EXPECT_TRUE(test, has_address(b, s, WIDE_B + 1));
+	KUNIT_EXPECT_EQ(test, other, 0u);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), h.n - 8 - 6);
+	ec_slave_unref(s);
 }
 
 static struct kunit_case cases[] = {
@@ -262,6 +291,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(address_reply_lost_given_back_by_fmmu),
 	KUNIT_CASE(address_reply_lost_given_back_without_process_data),
 	KUNIT_CASE(address_reply_lost_and_another_one_not),
+	KUNIT_CASE(address_unknown_given_back_by_scan),
 	{}
 };
 
