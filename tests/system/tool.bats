@@ -168,6 +168,33 @@ teardown_file() { stop; }
 		(.categories | map(.name) | contains(["General", "RXPDO"]))' sii_read -v -p4
 }
 
+@test "sii_write and alias write an EEPROM, and the master reads it again" {
+	sii=$BATS_TEST_TMPDIR/sii
+	ethercat sii_read -p4 >"$sii"
+	json '.words_different == 0 and .words_written == 0' sii_write -p4 "$sii"
+	json '.slaves[0] | .alias == 77 and .renewed' alias -p4 77
+	[ "$(ethercat slaves -p4 | awk '{ print $2 }')" = 77:0 ]
+	[ "$(ethercat sii_read -p4 | xxd -s 8 -l 2 -p)" = 4d00 ]
+	cp "$sii" "$sii.bad"
+	printf '\125' | dd of="$sii.bad" bs=1 seek=14 conv=notrunc 2>/dev/null
+	refused 'checksum' sii_write -p4 "$sii.bad"
+	# the alias and the checksum
+	json '.words_different == 2 and .words_written == 0' sii_write -p4 --dry-run "$sii"
+	json '.words_different == 2 and .words_written == 2 and .renewed' sii_write -p4 "$sii"
+	[ "$(ethercat slaves -p4 | awk '{ print $2 }')" = 1:4 ]
+	ethercat sii_read -p4 | cmp - "$sii"
+	refused 'file' sii_write -p4 "$sii.none"
+}
+
+@test "datagram sends any command" {
+	json '.working_counter == 22' datagram BRD 0x0130 2
+	json '.working_counter == 1' datagram APWR 4 0x0f80 -t uint16 0x1234
+	json '.working_counter == 3 and .value == 4660' datagram APRW 4 0x0f80 -t uint16 7
+	json '.working_counter == 1 and .data_hex == "0700"' datagram APRD 4 0x0f80 2
+	json '.working_counter == 0' datagram FPRD 0xfffe 0x0130 2
+	refused 'unknown command' datagram XXRD 0x0130 2
+}
+
 @test "reg_read and reg_write access registers" {
 	[ "$(ethercat reg_read -p1 -t uint16 0x0130)" = "0x0002 2" ]
 	run ethercat reg_read -p1 0 4
@@ -312,8 +339,8 @@ add() {
 	done
 	[ "$(as_nobody slaves)" = "$(ethercat slaves)" ]
 	for c in "upload -p4 0x1018 1" "reg_read -p4 0 1" "reg_write -p4 -t uint8 0 1" rescan \
-		"states OP" "debug 1" "download -p4 -t int8 0x6060 0 1" "crc reset" \
-		"crc --watch 1" "dc -v"; do
+		"alias -p4 5" "datagram BRD 0x0130 2" "states OP" "debug 1" \
+		"download -p4 -t int8 0x6060 0 1" "crc reset" "crc --watch 1" "dc -v"; do
 		run as_nobody $c
 		[ "$status" = 1 ]
 		[[ "$output" == *"/dev/EtherCAT0: Permission denied"* ]]
