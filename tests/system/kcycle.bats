@@ -18,7 +18,7 @@ setup_file() {
 }
 teardown_file() { stop; }
 teardown() {
-	[ -z "${app:-}" ] || kill -9 "$app" 2>/dev/null || true
+	kill -9 ${app:+"$app"} ${holder:+"$holder"} 2>/dev/null || true
 	ethercat release 2>/dev/null || true	# most cases leave no session
 	wait_for 60 all_slaves_are PREOP 3
 }
@@ -99,6 +99,53 @@ switches() { awk '/ctxt_switches/ { n += $2 } END { print n }' "/proc/$thread/st
 	kill -STOP $app
 	wait_for 60 cycle_is stopped
 	kill -CONT $app
+}
+
+quietly() { "$@" >/dev/null; }
+# unit FILTER: the unit "axis" fulfils a filter of gojq
+unit() {
+	json ".masters[0].units[0] | .name == \"axis\" and .run == \"complete\" and $1" units
+}
+# unit_sends HEX OUTPUTS: so begins what is sent, and what the first slave has of it, by its wire
+unit_sends() {
+	json ".masters[0].domains[0] | .unit == \"axis\" and
+		.working_counter_state == \"complete\" and
+		(.fmmus | map(select(.direction == \"output\"))[0].data_hex[:8] == \"$1\") and
+		(.fmmus | map(select(.direction == \"input\"))[0].data_hex[:8] == \"$1\")" \
+		domains -v && unit ".outputs == \"$2\""
+}
+
+@test "a sync unit: its authority is taken, and another program holds it and is killed" {
+	for flags in 0 8; do
+		background unit=2 value=0x11223344 flags=$flags
+		wait_for 60 quietly unit_sends 44332211 "of the application"
+		unit '.authority and (.held | not)'
+		ethercat domains | grep -q 'Unit axis: policy zero, complete, outputs of the application$'
+		run kcycle hold=1
+		echo "$output"
+		[ "$status" = 1 ]
+		[[ "$output" == *"unit axis: Device or resource busy"* ]]
+
+		ethercat units take axis
+		wait_for 60 quietly unit_sends 00000000 zero
+		unit '.authority | not'
+		ethercat units | grep -q 'complete, outputs zero, no authority$'
+
+		"$EC_BUILD/apps/kcycle" hold=1 value=0x55667788 cycles=1000000 3>&- &
+		holder=$!
+		wait_for 60 quietly unit_sends 88776655 "of another application"
+		unit '.authority and .held'
+		kill -9 $holder
+		wait $holder || true
+		holder=
+		wait_for 60 quietly unit_sends 00000000 zero
+		unit '(.authority or .held) | not'
+		json '.masters[0].overruns == 0' cycle
+		kill -9 $app
+		wait $app || true
+		app=
+		wait_for 60 all_slaves_are PREOP 3
+	done
 }
 
 @test "the thread is real-time, of the priority asked for, on its CPU" {

@@ -22,6 +22,10 @@
  *                  outputs are wired to its inputs: check that no image is torn
  *   master=0       which one
  *   options=0      of the domain, ec_domain_option_t
+ *   unit=0         1: the domain is the sync unit "axis", offered to others; 2: and has authority
+ *                  once all slaves are in OP
+ *   hold=0         1: no cycle of its own: hold the unit "axis" of another program, and write value
+ *                  to its outputs
  */
 #include <ecrt.h>
 #include <errno.h>
@@ -36,10 +40,11 @@
 
 #define SLAVES_MAX	128
 #define OP_TIMEOUT_S	60
+#define UNIT		"axis"
 
 static long opt_cycles = 10000, opt_period = 1000, opt_cpu = -1, opt_priority, opt_stall,
 	    opt_stall_cycles, opt_dc, opt_spin, opt_pause, opt_flags, opt_value, opt_loop,
-	    opt_master, opt_options;
+	    opt_master, opt_options, opt_unit, opt_hold;
 
 static const struct {
 	const char *name;
@@ -51,6 +56,7 @@ static const struct {
 	{ "pause", &opt_pause }, { "flags", &opt_flags },
 	{ "value", &opt_value }, { "loop", &opt_loop },
 	{ "master", &opt_master }, { "options", &opt_options },
+	{ "unit", &opt_unit }, { "hold", &opt_hold },
 };
 
 /* one slave; @out, @in: offset of its first SyncManager of that direction, or -1 */
@@ -146,6 +152,19 @@ static int add_slave(uint16_t pos)
 	return 0;
 }
 
+/* All process data are those of one unit. */
+static int put_into_unit(void)
+{
+	ec_unit_config_t config = {
+		.name = UNIT,
+		.policy = EC_UNIT_ZERO,
+		.flags = EC_UNIT_AUTHORITY | EC_UNIT_OFFERED,
+	};
+	int unit = ecrt_master_unit(master, &config);
+
+	return unit < 0 ? unit : ecrt_domain_set_unit(domain, unit);
+}
+
 static int configure(void)
 {
 	ec_cycle_config_t cycle = {
@@ -166,7 +185,7 @@ static int configure(void)
 	}
 	domain = ecrt_master_create_domain(master);
 	if (!domain || ecrt_domain_set_options(domain, (uint32_t)opt_options) ||
-	    ecrt_master(master, &info))
+	    (opt_unit && put_into_unit()) || ecrt_master(master, &info))
 		return -1;
 	if (!info.slave_count || info.slave_count > SLAVES_MAX) {
 		fprintf(stderr, "%u slaves; 1 to %u are possible\n", info.slave_count, SLAVES_MAX);
@@ -330,6 +349,11 @@ static int run(uint8_t *data)
 	/* values from before OP are still on their way */
 	for (int i = 0; i < 10; i++)
 		one_cycle(data, false);
+	if (opt_unit == 2) {
+		ret = ecrt_master_unit_authority(master, 0, 1);
+		if (ret)
+			return ret;
+	}
 	printf("%u slaves in OP\n", n_slaves);
 	compared = 0;
 	torn = 0;
@@ -369,6 +393,34 @@ static void report(void)
 			printf("  < %10" PRIu64 " ns: %" PRIu64 "\n", (uint64_t)1 << i, s.late[i]);
 }
 
+/* A second program: gives the outputs of the unit, each millisecond. */
+static int hold(void)
+{
+	const struct timespec ms = { .tv_nsec = 1000000 };
+	uint8_t *data = NULL;
+	size_t size = 0;
+	int unit, ret = -ENOMEM;
+
+	master = ecrt_open_master((unsigned int)opt_master);
+	if (!master)
+		return 1;
+	unit = ecrt_master_unit_hold(master, UNIT, &size);
+	if (unit >= 0)
+		data = calloc(size / 4 + 1, 4);
+	for (size_t i = 0; data && i + 4 <= size; i += 4)
+		EC_WRITE_U32(data + i, (uint32_t)opt_value);
+	if (data)
+		ret = ecrt_master_unit_authority(master, (unsigned int)unit, 1);
+	for (long i = 0; !ret && i < opt_cycles; i++) {
+		ret = ecrt_master_unit_write(master, (unsigned int)unit, data, size, NULL);
+		nanosleep(&ms, NULL);
+	}
+	fprintf(stderr, "unit " UNIT ": %s\n", strerror(unit < 0 ? -unit : -ret));
+	free(data);
+	ecrt_release_master(master);
+	return unit < 0 || ret ? 1 : 0;
+}
+
 int main(int argc, char **argv)
 {
 	int ret = -1;
@@ -376,6 +428,8 @@ int main(int argc, char **argv)
 	if (parse(argc, argv))
 		return 2;
 	setvbuf(stdout, NULL, _IOLBF, 0);
+	if (opt_hold)
+		return hold();
 	master = ecrt_request_master((unsigned int)opt_master);
 	if (!master)
 		return 1;
