@@ -82,6 +82,9 @@ static int configure_more(void)
 	static const uint8_t value[4096];
 	static const ec_group_info_t group = { .name = "g", .by = EC_GROUP_ID, .value = 9 };
 	static const ec_unit_config_t unit = { .name = "u", .policy = EC_UNIT_ZERO };
+	static const ec_command_t command = {
+		.kind = EC_COMMAND_SDO, .index = 0x2000, .size = sizeof(value), .data = value,
+	};
 	struct in_addr address = { .s_addr = 0x0100000a };
 
 	for (uint16_t i = 1; i < APP_CONFIGS; i++) {
@@ -96,6 +99,7 @@ static int configure_more(void)
 				return -1;
 		if (ecrt_slave_config_idn(more, 0, 1, EC_AL_STATE_PREOP, value, sizeof(value)) ||
 		    ecrt_slave_config_flag(more, "RevisionNumber", 1) ||
+		    ecrt_slave_config_command(more, EC_STEP_SO, &command) ||
 		    ecrt_slave_config_eoe_ip_address(more, address))
 			return -1;
 	}

@@ -166,6 +166,62 @@ static void while_active(int fd)
 	expect_errno(advise(fd, 0, POSIX_FADV_NORMAL), 0, "advice as for any file");
 }
 
+/* The only domain becomes the unit "u". */
+static void put_into_unit(int fd)
+{
+	struct ec_ioc_unit u = { .flags = EC_UNIT_FLAG_AUTHORITY | EC_UNIT_FLAG_OFFERED };
+	struct ec_ioc_domain_unit d = { .unit = 0 };
+
+	memset(u.name, 'u', sizeof(u.name));
+	expect_errno(call(fd, EC_IOC_UNIT, &u), EINVAL, "name of a unit without end");
+	memset(u.name + 1, 0, sizeof(u.name) - 1);
+	expect_errno(call(fd, EC_IOC_DOMAIN_UNIT, &d), ENOENT, "unit 0 of 0");
+	expect_errno(call(fd, EC_IOC_UNIT, &u), 0, "unit");
+	d.domain = 1;
+	expect_errno(call(fd, EC_IOC_DOMAIN_UNIT, &d), ENOENT, "unit of domain 1 of 1");
+	d.domain = 0;
+	expect_errno(call(fd, EC_IOC_DOMAIN_UNIT, &d), 0, "unit of domain 0");
+}
+
+/* Data and authority are those of its holder, in the size of the unit. */
+static void hold_unit(int fd, int other)
+{
+	struct ec_ioc_unit_hold h = { .name = "u" };
+	struct ec_ioc_unit_authority a = { .authority = 1 };
+	struct ec_ioc_unit_data d = { .size = 4, .data = (__u64)(unsigned long)arg };
+	unsigned int i;
+
+	expect_errno(call(other, EC_IOC_UNIT_READ, &d), EPERM, "read of a unit not held");
+	expect_errno(call(other, EC_IOC_UNIT_WRITE, &d), EPERM, "write of a unit not held");
+	expect_errno(call(fd, EC_IOC_UNIT_HOLD, &h), EPERM, "own unit");
+	h.name[0] = 'v';
+	expect_errno(call(other, EC_IOC_UNIT_HOLD, &h), ENOENT, "unit v");
+	memset(h.name, 'u', sizeof(h.name));
+	expect_errno(call(other, EC_IOC_UNIT_HOLD, &h), EINVAL, "name of a unit without end");
+	memset(h.name + 1, 0, sizeof(h.name) - 1);
+	expect_errno(call(other, EC_IOC_UNIT_HOLD, &h), 0, "hold");
+	expect_errno(call(fd, EC_IOC_UNIT_AUTHORITY, &a), EBUSY, "authority of a held unit");
+	a.unit = ~0U;
+	expect_errno(call(other, EC_IOC_UNIT_AUTHORITY, &a), ENOENT, "authority of unit ~0");
+	d.size = h.size + 1;
+	expect_errno(call(other, EC_IOC_UNIT_WRITE, &d), EINVAL, "write of a byte too much");
+	expect_errno(call(other, EC_IOC_UNIT_READ, &d), EINVAL, "read of a byte too much");
+	d.size = h.size;
+	expect_errno(call(other, EC_IOC_UNIT_WRITE, &d), 0, "write of a unit");
+	expect_errno(call(other, EC_IOC_UNIT_READ, &d), 0, "read of a unit");
+	d.unit = ~0U;
+	expect_errno(call(other, EC_IOC_UNIT_READ, &d), EPERM, "read of unit ~0");
+	d.unit = 0;
+	for (i = 0; i < BAD_POINTERS; i++) {
+		d.data = (__u64)(unsigned long)bad_pointers[i];
+		expect_errno(call(other, EC_IOC_UNIT_READ, &d), EFAULT, "unit to %p",
+			     bad_pointers[i]);
+	}
+	h.flags = EC_UNIT_HOLD_END;
+	expect_errno(call(other, EC_IOC_UNIT_HOLD, &h), 0, "end of holding");
+	expect_errno(call(other, EC_IOC_UNIT_READ, &d), EPERM, "read of a unit not held any more");
+}
+
 void check_states(void)
 {
 	int fd = open_master(O_RDWR), other = open_master(O_RDWR);
@@ -180,6 +236,7 @@ void check_states(void)
 	first_advice();
 	no_owner(fd);
 	session(fd);
+	put_into_unit(fd);
 	no_owner(other);
 	expect_errno(call(other, EC_IOC_RESERVE, NULL), EBUSY, "second application");
 	expect_errno(call(other, EC_IOC_RESCAN, NULL), EBUSY, "rescan while reserved");
@@ -195,6 +252,7 @@ void check_states(void)
 	}
 	expect_errno(call(fd, EC_IOC_ACTIVATE, zeroed()), 0, "activate");
 	while_active(fd);
+	hold_unit(fd, other);
 	for (i = 0; i < BAD_POINTERS; i++) {
 		dd = (struct ec_ioc_domain_data){ .size = 1,
 			.data = (__u64)(unsigned long)bad_pointers[i] };

@@ -44,7 +44,7 @@ const struct cmd cmds[] = {
 	CMD(CONFIG_IP, .reserved = { AT(ec_ioc_sc_ip, params.reserved) }),
 	/* nothing was written here: no data are copied */
 	CMD(CONFIG_WRITE, .flags = EC_SDO_FLAG_COMPLETE),
-	CMD(CONFIG_COMMAND, RSV2(ec_ioc_config_command),
+	CMD(CONFIG_COMMAND, RSV2(ec_ioc_config_command), DATA(ec_ioc_config_command),
 	    .flags = EC_COMMAND_FLAG_WRITE | EC_COMMAND_FLAG_CHECK | EC_COMMAND_FLAG_COMPLETE),
 	CMD(CONFIG_WHY, RSV1(ec_ioc_config_why)),
 	CMD(EMERGENCIES, DATA(ec_ioc_emergencies)),
