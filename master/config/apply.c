@@ -219,7 +219,7 @@ static bool needs_init(const struct ec_slave *s)
 {
 	const struct ec_config *c = ec_setup_of(s)->active_config;
 
-	return c && ec_startup_has(c, EC_TRANSITION_IP);
+	return c && ec_startup_has(s, c, EC_TRANSITION_IP);
 }
 
 /*
@@ -232,12 +232,12 @@ static u8 next_down(const struct ec_slave *s, u8 cur, u8 to)
 	const struct ec_config *c = ec_setup_of(s)->active_config;
 	unsigned int i;
 
-	if (!c || !s->work.ours || ec_startup_has(c, EC_TRANSITION(cur, to)))
+	if (!c || !s->work.ours || ec_startup_has(s, c, EC_TRANSITION(cur, to)))
 		return to;
 	for (i = 0; i < ARRAY_SIZE(between); i++)
 		if (cur > between[i] && between[i] > to &&
-		    (ec_startup_has(c, EC_TRANSITION(cur, between[i])) ||
-		     ec_startup_leaves(c, between[i], to)))
+		    (ec_startup_has(s, c, EC_TRANSITION(cur, between[i])) ||
+		     ec_startup_leaves(s, c, between[i], to)))
 			return between[i];
 	return to;
 }

@@ -339,17 +339,19 @@ struct ec_result ec_startup_write(struct ec_slave *s, const struct ec_startup *u
 
 /**
  * ec_startup_has() - has a transition commands?
- * @c: configuration
+ * @s: slave
+ * @c: its active configuration
  * @transition: EC_TRANSITION()
  *
  * Context: The slave's worker.
  * Return: whether it has.
  */
-bool ec_startup_has(const struct ec_config *c, u8 transition)
+bool ec_startup_has(const struct ec_slave *s, const struct ec_config *c, u8 transition)
 {
 	const struct ec_startup *u;
 
-	lockdep_assert(c->slave && lockdep_is_held(&c->slave->lock));
+	/* the session changes c->slave without this lock */
+	lockdep_assert_held(&s->lock);
 	list_for_each_entry(u, &c->startup, list)
 		if (u->transition == transition)
 			return true;
@@ -358,6 +360,7 @@ bool ec_startup_has(const struct ec_config *c, u8 transition)
 
 /**
  * ec_startup_leaves() - has a state commands for steps down?
+ * @s: slave with @c as its active configuration, or NULL with the lock of the session held
  * @c: configuration
  * @from: AL state where they begin
  * @to: the lowest one where they end
@@ -365,12 +368,11 @@ bool ec_startup_has(const struct ec_config *c, u8 transition)
  * Context: The slave's worker, or process with the lock of the session held.
  * Return: whether it has.
  */
-bool ec_startup_leaves(const struct ec_config *c, u8 from, u8 to)
+bool ec_startup_leaves(const struct ec_slave *s, const struct ec_config *c, u8 from, u8 to)
 {
 	const struct ec_startup *u;
 
-	lockdep_assert(lockdep_is_held(c->wanted->lock) ||
-		       (c->slave && lockdep_is_held(&c->slave->lock)));
+	lockdep_assert(lockdep_is_held(s ? &s->lock : c->wanted->lock));
 	list_for_each_entry(u, &c->startup, list)
 		if (EC_TRANSITION_FROM(u->transition) == from &&
 		    EC_TRANSITION_TO(u->transition) < from &&

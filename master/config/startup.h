@@ -86,8 +86,8 @@ void ec_startup_del(struct ec_config *c, struct ec_startup *u);
 const struct ec_startup *ec_startup_changes(const struct ec_config *c, const struct ec_slave *s,
 					    unsigned int sm);
 struct ec_result ec_startup_write(struct ec_slave *s, const struct ec_startup *u);
-bool ec_startup_has(const struct ec_config *c, u8 transition);
-bool ec_startup_leaves(const struct ec_config *c, u8 from, u8 to);
+bool ec_startup_has(const struct ec_slave *s, const struct ec_config *c, u8 transition);
+bool ec_startup_leaves(const struct ec_slave *s, const struct ec_config *c, u8 from, u8 to);
 struct ec_result ec_startup_run(struct ec_slave *s, const struct ec_config *c, u8 transition);
 
 #endif

@@ -216,8 +216,8 @@ static bool leads_down(const struct ec_config *c)
 {
 	return ec_session_owns(c) && READ_ONCE(c->slave->al.status) & EC_AL_BEYOND_PREOP &&
 	       !READ_ONCE(c->slave->stop.gone) && !READ_ONCE(c->slave->reply.silent) &&
-	       (ec_startup_leaves(c, EC_AL_OP, EC_AL_PREOP) ||
-		ec_startup_leaves(c, EC_AL_SAFEOP, EC_AL_PREOP));
+	       (ec_startup_leaves(NULL, c, EC_AL_OP, EC_AL_PREOP) ||
+		ec_startup_leaves(NULL, c, EC_AL_SAFEOP, EC_AL_PREOP));
 }
 
 /* How many are; @busy: those whose worker is on the way. */
