@@ -31,6 +31,9 @@ int ec_give(const ec_master_t *m, unsigned int cmd, void *arg)
 	case EC_IOC_SOE_WRITE:
 	case EC_IOC_FOE_READ:
 	case EC_IOC_FOE_WRITE:
+	case EC_IOC_SII:
+	case EC_IOC_SII_WRITE:
+	case EC_IOC_ALIAS:
 		return -EINVAL;
 	default:
 		return ret;

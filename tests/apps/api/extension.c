@@ -107,6 +107,8 @@ static void eeprom(void)
 	SAYS(CALL(ecrt_master_write_eeprom)(m, MOTOR, 8, image + 16, 2, 0, &w), -EPERM);
 	IS(CALL(ecrt_master_write_alias)(m, MOTOR, EC_READ_U16(image + 8), 0, &w), 0);
 	SAYS(CALL(ecrt_master_write_alias)(m, NOWHERE, 1, 0, &w), -EINVAL);
+	SAYS(ecrt_master_write_eeprom(m, NOWHERE, 0, image, 128, 0, &w), -EINVAL);
+	SAYS(ecrt_master_read_eeprom(m, NOWHERE, 0, image, sizeof(image), &size), -EINVAL);
 	CALL(ecrt_release_master)(m);
 }
 
