@@ -409,8 +409,12 @@ static int hold(void)
 		data = calloc(size / 4 + 1, 4);
 	for (size_t i = 0; data && i + 4 <= size; i += 4)
 		EC_WRITE_U32(data + i, (uint32_t)opt_value);
-	if (data)
+	/* the cycle has to take the holder first */
+	ret = data ? -EINPROGRESS : ret;
+	for (int i = 0; ret == -EINPROGRESS && i < 5000; i++) {
 		ret = ecrt_master_unit_authority(master, (unsigned int)unit, 1);
+		nanosleep(&ms, NULL);
+	}
 	for (long i = 0; !ret && i < opt_cycles; i++) {
 		ret = ecrt_master_unit_write(master, (unsigned int)unit, data, size, NULL);
 		nanosleep(&ms, NULL);
