@@ -231,8 +231,10 @@ struct ec_exchange {
 struct ec_exchange_buffer {
 	__u64 cycle;		/* as struct ec_status_cycle.cycle */
 	__u64 time_ns;		/* schedule of that cycle, CLOCK_MONOTONIC */
-	__u64 fed;		/* outputs: domains given since the last cycle, bit n: domain n */
-	__u64 reserved[5];
+	union {
+		__u64 fed;	/* outputs: domains given since the last cycle, bit n: domain n */
+		__u64 reserved[6];
+	};
 	struct ec_status_domain domains[EC_STATUS_DOMAINS];
 };
 
