@@ -2815,8 +2815,7 @@ EC_PUBLIC_API int ecrt_master_unit_state(const ec_master_t *master, unsigned int
  * Context: Process. May sleep.
  * Return: number of the unit; %-ENOENT no such unit; %-EACCES it is not offered; %-EBUSY another
  * one holds it, or its application has given it authority; %-EINVAL the master is not active;
- * %-EPERM
- * @master has activated it.
+ * %-EPERM @master has activated it.
  */
 EC_PUBLIC_API int ecrt_master_unit_hold(ec_master_t *master, const char *name, size_t *size);
 
@@ -2824,9 +2823,8 @@ EC_PUBLIC_API int ecrt_master_unit_hold(ec_master_t *master, const char *name, s
  * ecrt_master_unit_write() - give the outputs of a unit
  * @master: holder of the unit
  * @unit: number of the unit
- * @data: the data of its domains, one behind the other in the order of their creation; what is
- * input
- *	there has no effect
+ * @data: the data of its domains, one behind the other in the order of their creation; inputs
+ *	among them have no effect
  * @size: bytes of @data, as ecrt_master_unit_hold() returned them
  * @state: out, may be NULL
  *

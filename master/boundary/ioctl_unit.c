@@ -141,7 +141,7 @@ int ec_ioc_unit_authority(struct ec_call *call)
 	return ret;
 }
 
-static int hold(struct ec_call *call, struct ec_session *s, struct ec_ioc_unit_hold *i)
+static int hold_unit(struct ec_call *call, struct ec_session *s, struct ec_ioc_unit_hold *i)
 {
 	int unit = ec_session_find_unit(s, i->name), ret;
 
@@ -182,7 +182,7 @@ int ec_ioc_unit_hold(struct ec_call *call)
 	s = lock_active(call);
 	if (!s)
 		return inactive(call);
-	ret = hold(call, s, i);
+	ret = hold_unit(call, s, i);
 	mutex_unlock(&call->master->sessions.lock);
 	return ret;
 }

@@ -223,7 +223,7 @@ bool ec_known_is(const struct ec_bus *bus, u16 station, u32 vendor, u32 product,
 	return false;
 }
 
-static bool is_taken(const struct ec_bus *bus, struct ec_slave *const *known, const u8 *claims,
+static bool is_claimed(const struct ec_bus *bus, struct ec_slave *const *known, const u8 *claims,
 		     u16 station)
 {
 	return !station || station == U16_MAX ||
@@ -249,7 +249,7 @@ u16 ec_known_fresh_station(struct ec_bus *bus, struct ec_slave *const *known, co
 	u32 i;
 
 	for (i = 0; i <= EC_MAX_SLAVES; i++) {
-		if (is_taken(bus, known, claims, ++last))
+		if (is_claimed(bus, known, claims, ++last))
 			continue;
 		if (!was_present(&bus->known, last)) {
 			bus->next_station = last;

@@ -13,7 +13,7 @@
 #include "units_hold.h"
 
 /* One more area; process data of a slave behind those of the one before are one. */
-static unsigned int add_area(struct ec_unit_area *list, unsigned int n, u32 offset, u32 len)
+static unsigned int unit_add_area(struct ec_unit_area *list, unsigned int n, u32 offset, u32 len)
 {
 	if (n && list[n - 1].offset + list[n - 1].len == offset) {
 		list[n - 1].len += len;
@@ -23,7 +23,7 @@ static unsigned int add_area(struct ec_unit_area *list, unsigned int n, u32 offs
 	return n + 1;
 }
 
-static unsigned int add_areas(struct ec_unit_area *list, const struct ec_domain *d, u8 dir)
+static unsigned int unit_add_areas(struct ec_unit_area *list, const struct ec_domain *d, u8 dir)
 {
 	unsigned int i, n = 0;
 
@@ -31,7 +31,7 @@ static unsigned int add_areas(struct ec_unit_area *list, const struct ec_domain 
 		const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
 
 		if (f->dir == dir && f->size)
-			n = add_area(list, n, d->offset + f->offset, f->size);
+			n = unit_add_area(list, n, d->offset + f->offset, f->size);
 	}
 	return n;
 }
@@ -51,8 +51,8 @@ static int make_places(struct ec_cyc_units *us, const struct ec_wanted *w)
 		struct ec_unit_place *p = &us->places[d->index];
 
 		p->areas = at;
-		p->outputs = add_areas(at, d, EC_CFG_DIR_OUTPUT);
-		p->inputs = add_areas(at + p->outputs, d, EC_CFG_DIR_INPUT);
+		p->outputs = unit_add_areas(at, d, EC_CFG_DIR_OUTPUT);
+		p->inputs = unit_add_areas(at + p->outputs, d, EC_CFG_DIR_INPUT);
 		at += p->outputs + p->inputs;
 		us->used |= BIT_ULL(d->index);
 	}
@@ -156,7 +156,7 @@ void ec_units_end(struct ec_cyc_units *us)
 }
 
 /* Let the cycle owner do something. */
-static void post(struct ec_cyc_units *us, struct ec_cyc_unit *u, int wish)
+static void post_wish(struct ec_cyc_units *us, struct ec_cyc_unit *u, int wish)
 {
 	atomic_or(wish, &u->wish);
 	/* a reader of this finds the wish */
@@ -187,7 +187,7 @@ int ec_units_give(struct ec_cycle *c, u32 unit)
 	}
 	if (!ec_units_may_have(us, u) || atomic_read(&u->wish) & ~EC_UNIT_GIVE)
 		return -EINPROGRESS;
-	post(us, u, EC_UNIT_GIVE);
+	post_wish(us, u, EC_UNIT_GIVE);
 	return 0;
 }
 
@@ -203,7 +203,7 @@ int ec_units_give(struct ec_cycle *c, u32 unit)
 void ec_units_take(struct ec_cycle *c, u32 unit)
 {
 	lockdep_assert_held(c->wanted->lock);
-	post(c->units, &c->units->unit[unit], EC_UNIT_TAKE);
+	post_wish(c->units, &c->units->unit[unit], EC_UNIT_TAKE);
 }
 
 /**
@@ -249,7 +249,7 @@ int ec_units_hold(struct ec_cycle *c, u32 unit, const void *holder)
 		return -EBUSY;
 	ec_units_clear(u);
 	WRITE_ONCE(u->holder, holder);
-	post(c->units, u, EC_UNIT_HOLDER);
+	post_wish(c->units, u, EC_UNIT_HOLDER);
 	return 0;
 }
 
@@ -277,7 +277,7 @@ int ec_units_leave(struct ec_cycle *c, u32 unit, const void *holder)
 		if (u->holder != holder || (unit != EC_UNIT_NONE && unit != i))
 			continue;
 		WRITE_ONCE(u->holder, NULL);
-		post(us, u, EC_UNIT_HOLDER);
+		post_wish(us, u, EC_UNIT_HOLDER);
 		ret = 0;
 	}
 	return ret;

@@ -24,7 +24,7 @@ static const u8 *last_sent(const struct ec_cycle *c, unsigned int domain)
 }
 
 /* Replace the outputs of @domains: by zero, or by what was sent last. */
-static void replace(struct ec_cycle *c, u64 domains, bool zero)
+static void replace_outputs(struct ec_cycle *c, u64 domains, bool zero)
 {
 	struct ec_cyc_units *us = c->units;
 	u64 left;
@@ -97,7 +97,7 @@ static noinline void report_unit(struct ec_cycle *c, struct ec_cyc_unit *u, enum
 }
 
 /* Let the outputs follow the state of the unit, and report what has changed. */
-static void settle(struct ec_cycle *c, struct ec_cyc_unit *u, u32 before, enum reason why)
+static void settle_unit(struct ec_cycle *c, struct ec_cyc_unit *u, u32 before, enum reason why)
 {
 	struct ec_cyc_units *us = c->units;
 	u8 sends = outputs_of(us, u);
@@ -108,7 +108,7 @@ static void settle(struct ec_cycle *c, struct ec_cyc_unit *u, u32 before, enum r
 	else if (sends == EC_UNIT_SENDS_VALUES)
 		WRITE_ONCE(us->replaced, us->replaced | u->domains);
 	else if (sends != u->sends)
-		replace(c, u->domains, sends == EC_UNIT_SENDS_ZERO);
+		replace_outputs(c, u->domains, sends == EC_UNIT_SENDS_ZERO);
 	WRITE_ONCE(u->sends, sends);
 	if ((ec_units_state(u) ^ before) & 0xffff)
 		u->rate.more++;
@@ -132,7 +132,7 @@ static void settle_others(struct ec_cycle *c, const struct ec_cyc_unit *by, enum
 		struct ec_cyc_unit *u = &c->units->unit[i];
 
 		if (u != by)
-			settle(c, u, ec_units_state(u), why);
+			settle_unit(c, u, ec_units_state(u), why);
 	}
 }
 
@@ -140,7 +140,7 @@ static void settle_others(struct ec_cycle *c, const struct ec_cyc_unit *by, enum
 static void stop_all(struct ec_cycle *c, const struct ec_cyc_unit *by)
 {
 	WRITE_ONCE(c->units->stopped, by->what.index + 1);
-	replace(c, c->units->used, true);
+	replace_outputs(c, c->units->used, true);
 	settle_others(c, by, BY_STOP);
 }
 
@@ -167,7 +167,7 @@ static void punish(struct ec_cycle *c, struct ec_cyc_unit *u)
 }
 
 /* While all is stopped its slaves are in SAFEOP for that reason; see resume_all(). */
-static void fail(struct ec_cycle *c, struct ec_cyc_unit *u)
+static void unit_fails(struct ec_cycle *c, struct ec_cyc_unit *u)
 {
 	WRITE_ONCE(u->run, EC_UNIT_RUN_FAILED);
 	if (!c->units->stopped)
@@ -211,7 +211,7 @@ static bool has_nobody(const struct ec_cycle *c, const struct ec_cyc_unit *u)
 	return true;
 }
 
-static void judge(struct ec_cycle *c, struct ec_cyc_unit *u, u64 judged)
+static void judge_unit(struct ec_cycle *c, struct ec_cyc_unit *u, u64 judged)
 {
 	bool whole = READ_ONCE(u->op), bad;
 	u64 left;
@@ -229,7 +229,7 @@ static void judge(struct ec_cycle *c, struct ec_cyc_unit *u, u64 judged)
 		bad |= c->units->bad[d] >= u->what.limit;
 	}
 	if (u->run == EC_UNIT_RUN_COMPLETE && bad)
-		fail(c, u);
+		unit_fails(c, u);
 	u->same = whole ? u->same + 1 : 0;
 	WRITE_ONCE(u->waits, u->run == EC_UNIT_RUN_COMPLETE ? min(u->waits, ~0u - 1) + 1 : 0);
 	if (whole && (u->run == EC_UNIT_RUN_STARTING || u->same >= u->what.limit))
@@ -258,7 +258,7 @@ static void obey(struct ec_cycle *c, struct ec_cyc_unit *u)
 		if (c->units->stopped)
 			resume_all(c, u);
 	}
-	settle(c, u, before, BY_COMMAND);
+	settle_unit(c, u, before, BY_COMMAND);
 }
 
 static void obey_all(struct ec_cycle *c)
@@ -293,8 +293,8 @@ void ec_units_judge(struct ec_cycle *c, u64 judged)
 		if (!(judged & u->domains))
 			continue;
 		before = ec_units_state(u);
-		judge(c, u, judged);
-		settle(c, u, before, BY_COUNTER);
+		judge_unit(c, u, judged);
+		settle_unit(c, u, before, BY_COUNTER);
 	}
 	obey_all(c);
 }
@@ -316,8 +316,8 @@ void ec_units_outage(struct ec_cycle *c)
 		if (u->run != EC_UNIT_RUN_COMPLETE)
 			continue;
 		u->same = 0;
-		fail(c, u);
-		settle(c, u, before, BY_COUNTER);
+		unit_fails(c, u);
+		settle_unit(c, u, before, BY_COUNTER);
 	}
 	obey_all(c);
 }
@@ -405,6 +405,6 @@ void ec_units_lease(struct ec_cycle *c)
 				lose_authority(u, u->what.flags & EC_UNIT_FLAG_LEASE_HOLD ?
 					       EC_UNIT_SENDS_HELD : EC_UNIT_SENDS_ZERO);
 		}
-		settle(c, u, before, BY_LEASE);
+		settle_unit(c, u, before, BY_LEASE);
 	}
 }

@@ -20,7 +20,7 @@ u8 ec_session_goal(const struct ec_session *s, const struct ec_config *c)
 }
 
 /* A slave in another state was brought there by another request, and stays. */
-static void turn(const struct ec_config *c, u8 goal)
+static void turn_slave(const struct ec_config *c, u8 goal)
 {
 	if (!c->slave)
 		return;
@@ -48,7 +48,7 @@ void ec_session_units(struct work_struct *work)
 	if (s && s->wanted.active && s->cycle.units && !s->ending)
 		ec_for_each_config(c, &s->wanted)
 			if (ec_units_turns(&s->cycle, c->index))
-				turn(c, ec_session_goal(s, c));
+				turn_slave(c, ec_session_goal(s, c));
 	mutex_unlock(&ss->lock);
 }
 

@@ -271,7 +271,8 @@ static void address_unknown_given_back_by_scan(struct kunit *test)
 	struct ec_slave *s = ec_slave_ref(bus_slave(b, h.n - 8));
 	u32 ms, other = 0;
 
-	put_unaligned_le16(++bus_table(b)->next_station, bus_esc(b, WIDE_B + 1)->mem + EC_REG_STATION);
+	put_unaligned_le16(++bus_table(b)->next_station,
+			   bus_esc(b, WIDE_B + 1)->mem + EC_REG_STATION);
 	ec_sim_rehash(bus_esc(b, WIDE_B + 1));
 	bus_command(b, "off a1");
 	bus_command(b, "off b4");

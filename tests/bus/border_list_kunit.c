@@ -7,7 +7,8 @@
 /* The list is full: the entries of slaves that are not connected are given up, the oldest first. */
 static void border_list_full_drops_absent(struct kunit *test)
 {
-	struct bus *b = bus_up(test, "segment seed=7\nslave hub EK1100\nslave f drive in=8 out=8\n", 2);
+	struct bus *b = bus_up(test, "segment seed=7\nslave hub EK1100\n"
+			       "slave f drive in=8 out=8\n", 2);
 	struct ec_bus *bus = bus_table(b);
 	u64 hub = bus_slave(b, 0)->device;
 	const struct ec_behind is = { .kept = EC_PORT_OTHER, .vendor = 1, .slaves = 1 };

@@ -120,7 +120,7 @@ unit_sends() {
 		background unit=2 value=0x11223344 flags=$flags
 		wait_for 60 quietly unit_sends 44332211 "of the application"
 		unit '.authority and (.held | not)'
-		ethercat domains | grep -q 'Unit axis: policy zero, complete, outputs of the application$'
+		ethercat domains | grep -q 'Unit axis: policy zero, complete, outputs of the app'
 		run kcycle hold=1
 		echo "$output"
 		[ "$status" = 1 ]
