@@ -106,13 +106,14 @@ quietly() { "$@" >/dev/null; }
 unit() {
 	json ".masters[0].units[0] | .name == \"axis\" and .run == \"complete\" and $1" units
 }
+# the same of its domain
+domain() { json ".masters[0].domains[0] | $1" domains -v; }
 # unit_sends HEX OUTPUTS: so begins what is sent, and what the first slave has of it, by its wire
 unit_sends() {
-	json ".masters[0].domains[0] | .unit == \"axis\" and
-		.working_counter_state == \"complete\" and
-		(.fmmus | map(select(.direction == \"output\"))[0].data_hex[:8] == \"$1\") and
-		(.fmmus | map(select(.direction == \"input\"))[0].data_hex[:8] == \"$1\")" \
-		domains -v && unit ".outputs == \"$2\""
+	domain ".unit == \"axis\" and .working_counter_state == \"complete\"" &&
+		domain ".fmmus | map(select(.direction == \"output\"))[0].data_hex[:8] == \"$1\"" &&
+		domain ".fmmus | map(select(.direction == \"input\"))[0].data_hex[:8] == \"$1\"" &&
+		unit ".outputs == \"$2\""
 }
 
 @test "a sync unit: its authority is taken, and another program holds it and is killed" {
