@@ -3,7 +3,11 @@
 #include "random.h"
 #include "master/boundary/ioctl.h"
 
-#define READDRESSED	20u	/* cycles, with the station address of a trial */
+/*
+ * Cycles with another station address: that of a trial, or one from a frame whose reply was lost,
+ * which is known after 20 ms and mended 10 ms later.
+ */
+#define READDRESSED	40u
 #define COUNTER		3u	/* added to a working counter by a slave with both directions */
 
 static struct ec_slave *by_station(struct bus *b, u16 station)
