@@ -120,7 +120,7 @@ struct ec_cyc_units {
 	u8 *seen;
 	atomic_t wished;
 	u8 *image;
-	u64 replaced;
+	aligned_u64 replaced;
 	u64 used;
 	u32 stopped;
 	u32 holders;

@@ -6,6 +6,7 @@
  */
 #include <linux/bitops.h>
 #include <linux/slab.h>
+#include "../base/once64.h"
 #include "../config/domain.h"
 #include "cycle.h"
 #include "units_hold.h"
@@ -159,6 +160,6 @@ void ec_units_overlay(const struct ec_cycle *c, u8 *image)
 void ec_units_show(const struct ec_cycle *c, const struct ec_domain *d, u8 *to, u32 from, u32 size)
 {
 	ec_wanted_assert_stays(c->wanted);
-	if (c->units && READ_ONCE(c->units->replaced) >> d->index & 1)
+	if (c->units && ec_read64(&c->units->replaced) >> d->index & 1)
 		copy_replaced(c->units, d->index, to, d->offset + from, size);
 }

@@ -7,6 +7,7 @@
 #include <linux/bitops.h>
 #include <linux/ktime.h>
 #include <linux/workqueue.h>
+#include "../base/once64.h"
 #include "../config/domain.h"
 #include "cycle.h"
 #include "units_hold.h"
@@ -43,7 +44,7 @@ static void replace_outputs(struct ec_cycle *c, u64 domains, bool zero)
 				memcpy(us->image + a->offset, from + a->offset, a->len);
 		}
 	}
-	WRITE_ONCE(us->replaced, us->replaced | domains);
+	ec_write64(&us->replaced, us->replaced | domains);
 }
 
 static u8 stronger(u8 a, u8 b)
@@ -104,9 +105,9 @@ static void settle_unit(struct ec_cycle *c, struct ec_cyc_unit *u, u32 before, e
 
 	/* those of a holder are replaced as well */
 	if (sends == EC_UNIT_SENDS_VALUES && !u->held)
-		WRITE_ONCE(us->replaced, us->replaced & ~u->domains);
+		ec_write64(&us->replaced, us->replaced & ~u->domains);
 	else if (sends == EC_UNIT_SENDS_VALUES)
-		WRITE_ONCE(us->replaced, us->replaced | u->domains);
+		ec_write64(&us->replaced, us->replaced | u->domains);
 	else if (sends != u->sends)
 		replace_outputs(c, u->domains, sends == EC_UNIT_SENDS_ZERO);
 	WRITE_ONCE(u->sends, sends);
@@ -189,7 +190,7 @@ static void resume_all(struct ec_cycle *c, const struct ec_cyc_unit *by)
 		if (u != by && u->run == EC_UNIT_RUN_FAILED)
 			punish(c, u);
 	}
-	WRITE_ONCE(us->replaced, us->replaced & units);
+	ec_write64(&us->replaced, us->replaced & units);
 	settle_others(c, by, BY_COMMAND);
 }
 
