@@ -211,6 +211,7 @@ static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 {
 	u64 left = c->sent | c->back;
+	bool steady = true;
 
 	for (; left; left &= left - 1) {
 		unsigned int i = __ffs64(left);
@@ -221,6 +222,7 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 
 		if (likely(is_steady(c, d, st, wkc)))
 			continue;
+		steady = false;
 		state = !wkc ? EC_STATUS_WC_ZERO :
 			ec_cyc_domain_is_complete(d, wkc) && !d->partial ? EC_STATUS_WC_COMPLETE :
 							    EC_STATUS_WC_INCOMPLETE;
@@ -229,7 +231,7 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		WRITE_ONCE(st->age, judge_age(c, d, i));
 		note_wkc(c, d, i, wkc, state);
 	}
-	if (unlikely(c->units))
+	if (unlikely(c->units) && !ec_units_are_calm(c->units, steady))
 		ec_units_judge(c, c->sent | c->back);
 	c->judged = c->send;
 	c->sent = 0;

@@ -223,7 +223,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		WRITE_ONCE(l->access.stopped, false);
 	if (c->copying)
 		ec_copy_run(c->copying, c->shared->status, c->domains);
-	if (unlikely(c->units))
+	if (unlikely(c->units) && ec_units_act(c->units, what->queued))
 		ec_units_fill(c, what->queued);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
@@ -240,7 +240,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 			g = send_frame(c, g, &send);
 		else
 			g++;
-		if (unlikely(c->units))
+		if (unlikely(c->units) && c->units->repeats)
 			send_again(c, from, g, &send);
 	}
 	WRITE_ONCE(c->last.frames, send.wire.frames);

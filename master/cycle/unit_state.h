@@ -102,12 +102,16 @@ struct ec_cyc_unit {
  * @seen: bits EC_UNIT_SEEN_* of each slave configuration; under the lock of the configuration
  * @wished: a unit has a wish
  * @image: sent instead of that of the application, for domains in @replaced; of the cycle owner,
- *	as are the next five
+ *	as are the next six but for @looked and @repeats
  * @replaced: domains whose outputs are not those of the application, bit n: domain n
  * @used: domains of the application
  * @stopped: a unit with EC_UNIT_POLICY_STOP has failed: index + 1, 0: none
  * @holders: units that another application holds
  * @bad: exchanges in a row in which a domain was not complete
+ * @calm: all units are complete and there is nothing to report: only what is not steady, a wish or
+ *	@looked can change that
+ * @looked: a slave has left OP or has reached it; of the monitor
+ * @repeats: a unit has frames that are repeated; immutable
  * @n: entries in @unit
  * @unit: units
  */
@@ -119,12 +123,15 @@ struct ec_cyc_units {
 	struct work_struct *alarm;
 	u8 *seen;
 	atomic_t wished;
+	bool looked;
+	bool repeats;
 	u8 *image;
 	aligned_u64 replaced;
 	u64 used;
 	u32 stopped;
 	u32 holders;
 	u32 bad[EC_MAX_DOMAINS];
+	bool calm;
 	unsigned int n;
 	struct ec_cyc_unit unit[];
 };
@@ -150,6 +157,32 @@ static inline u32 ec_units_state(const struct ec_cyc_unit *u)
 	       (READ_ONCE(u->down) ? EC_UNIT_DOWN : 0) |
 	       (READ_ONCE(u->held) ? EC_UNIT_HAS_HOLDER : 0) |
 	       min(READ_ONCE(u->faults), 0xffffu) << 16;
+}
+
+/**
+ * ec_units_are_calm() - do the units stay as they are in this receive?
+ * @us: units
+ * @steady: all domains are complete, as before
+ *
+ * Context: The cycle owner. RT-safe.
+ * Return: true: nothing is to be judged.
+ */
+static inline bool ec_units_are_calm(const struct ec_cyc_units *us, bool steady)
+{
+	return steady && us->calm && !READ_ONCE(us->looked) && !atomic_read(&us->wished);
+}
+
+/**
+ * ec_units_act() - do units change what is sent?
+ * @us: units
+ * @queued: domains that are sent
+ *
+ * Context: The cycle owner. RT-safe.
+ * Return: true: outputs are replaced, or a command waits.
+ */
+static inline bool ec_units_act(const struct ec_cyc_units *us, u64 queued)
+{
+	return us->replaced & queued || us->holders || atomic_read(&us->wished);
 }
 
 /**

@@ -83,6 +83,7 @@ static void make_unit(struct ec_cyc_units *us, const struct ec_unit *from)
 
 	u->what = from->what;
 	u->domains = from->domains;
+	us->repeats |= u->what.repeats > 1;
 	for (i = 0; i < EC_MAX_DOMAINS; i++)
 		if (u->domains >> i & 1 && us->places[i].outputs)
 			u->feeds |= BIT_ULL(i);
@@ -323,8 +324,15 @@ void ec_units_look(struct ec_cycle *c)
 	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
-	for (i = 0; us && i < us->n; i++)
-		WRITE_ONCE(us->unit[i].op, has_all_in_op(us, &us->unit[i], c->wanted));
+	for (i = 0; us && i < us->n; i++) {
+		bool op = has_all_in_op(us, &us->unit[i], c->wanted);
+
+		if (op == us->unit[i].op)
+			continue;
+		WRITE_ONCE(us->unit[i].op, op);
+		/* a cycle that sees this finds it */
+		smp_store_release(&us->looked, true);
+	}
 }
 
 /* May the unit take its slaves out of OP now? */

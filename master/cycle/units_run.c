@@ -115,6 +115,8 @@ static void settle_unit(struct ec_cycle *c, struct ec_cyc_unit *u, u32 before, e
 		u->rate.more++;
 	if (u->rate.more)
 		report_unit(c, u, why);
+	if (u->rate.more)
+		us->calm = false;
 	WRITE_ONCE(c->shared->status->units[u->what.index], ec_units_state(u));
 }
 
@@ -262,6 +264,23 @@ static void obey(struct ec_cycle *c, struct ec_cyc_unit *u)
 	settle_unit(c, u, before, BY_COMMAND);
 }
 
+/* Does a receive in which all domains are complete change nothing? */
+static bool is_calm(const struct ec_cycle *c)
+{
+	const struct ec_cyc_units *us = c->units;
+	unsigned int i;
+	u64 left;
+
+	for (i = 0; i < us->n; i++)
+		if (us->unit[i].run != EC_UNIT_RUN_COMPLETE || us->unit[i].off ||
+		    us->unit[i].rate.more)
+			return false;
+	for (left = us->used; left; left &= left - 1)
+		if (us->bad[__ffs64(left)])
+			return false;
+	return !us->stopped;
+}
+
 static void obey_all(struct ec_cycle *c)
 {
 	unsigned int i;
@@ -287,6 +306,8 @@ void ec_units_judge(struct ec_cycle *c, u64 judged)
 {
 	unsigned int i;
 
+	if (READ_ONCE(c->units->looked))
+		xchg(&c->units->looked, false);
 	for (i = 0; i < c->units->n && !READ_ONCE(c->slaves_down); i++) {
 		struct ec_cyc_unit *u = &c->units->unit[i];
 		u32 before;
@@ -298,6 +319,7 @@ void ec_units_judge(struct ec_cycle *c, u64 judged)
 		settle_unit(c, u, before, BY_COUNTER);
 	}
 	obey_all(c);
+	c->units->calm = is_calm(c);
 }
 
 /**
