@@ -35,7 +35,6 @@ static bool make_room(struct ec_cycle *c, u64 now)
 /* one send */
 struct send {
 	const struct ec_ioc_send *what;
-	unsigned int end;	/* datagrams up to here */
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
 	struct ec_riding riding;	/* of the last frame */
@@ -65,8 +64,8 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 }
 
 /* Queued datagrams from @g on, as many as fit; returns how many were added or not queued. */
-static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
-			 struct send *send)
+static __always_inline unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame,
+					 unsigned int g, struct send *send)
 {
 	const struct ec_cyc_dgram *d = &c->layout.dgrams[g], *last = NULL;
 	unsigned int room, dc, first = g;
@@ -79,7 +78,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 		ec_dc_datagrams_fill(&c->clock, &fb, slot->index, send->dc, send->now);
 	dc = fb.count;
 	room = max(c->links->max_datagrams, dc) - dc;
-	for (; g < send->end && room; g++, d++) {
+	for (; g < c->layout.n_dgrams && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
 		if (ec_cyc_is_apart(d, last))
@@ -99,8 +98,8 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 	return g - first;
 }
 
-static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
-			unsigned int count, const struct send *send)
+static __always_inline void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
+					unsigned int count, const struct send *send)
 {
 	struct ec_cyc_flight *f = &c->flight[c->n_flight++];
 
@@ -117,8 +116,9 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->riding = send->riding;
 }
 
-/* One frame from datagram @g on; returns the first datagram of the next. */
-static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
+/* One frame from datagram @g on; returns the first datagram of the next. Inlined in both callers. */
+static __always_inline unsigned int send_frame(struct ec_cycle *c, unsigned int g,
+					       struct send *send)
 {
 	struct ec_links *l = c->links;
 	struct ec_slot *slot = NULL;
@@ -154,20 +154,19 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	return g + count;
 }
 
-/* The same frame again, for units with repetition: datagrams @from to @g, of one domain. */
-static noinline void send_again(struct ec_cycle *c, unsigned int from, unsigned int g,
-				struct send *send)
+/* The frames of units with repetition again, behind all others: a disturbance may last a while. */
+static noinline void send_repeats(struct ec_cycle *c, struct send *send)
 {
-	unsigned int n;
+	const struct ec_layout *l = &c->layout;
+	unsigned int n, g;
 
-	while (from < g && !(send->what->queued >> c->layout.dgrams[from].domain & 1))
-		from++;
-	if (from == g)
-		return;
-	send->end = g;
-	for (n = 1; n < c->layout.dgrams[from].repeats; n++)
-		send_frame(c, from, send);
-	send->end = c->layout.n_dgrams;
+	for (n = 1; n < EC_UNIT_REPEATS; n++)
+		for (g = 0; g < l->n_dgrams;)
+			if (l->dgrams[g].repeats > n &&
+			    send->what->queued >> l->dgrams[g].domain & 1)
+				g = send_frame(c, g, send);
+			else
+				g++;
 }
 
 /* Wire time of a send of all domains and clock datagrams at most, ns. */
@@ -207,9 +206,7 @@ static noinline void trace_send(const struct ec_cycle *c)
  */
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	struct send send = {
-		.what = what, .end = c->layout.n_dgrams, .now = ktime_get_ns(),
-	};
+	struct send send = { .what = what, .now = ktime_get_ns() };
 	struct ec_carry *carry = c->carry;
 	struct ec_links *l = c->links;
 	unsigned int g = 0;
@@ -234,15 +231,13 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
 	while (g < c->layout.n_dgrams || send.dc) {
-		unsigned int from = g;
-
 		if (send.dc || what->queued & BIT_ULL(c->layout.dgrams[g].domain))
 			g = send_frame(c, g, &send);
 		else
 			g++;
-		if (unlikely(c->units) && c->units->repeats)
-			send_again(c, from, g, &send);
 	}
+	if (unlikely(c->units) && c->units->repeats)
+		send_repeats(c, &send);
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(l->access.wire_ns, max(send.wire.ns, wire_ns(c)));

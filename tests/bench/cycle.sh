@@ -339,7 +339,7 @@ native_cost() {
 			spinning spin_ "its thread" 0 7600 11500
 			spinning ispin_ "an interrupt" 1 3700 8000
 		fi
-		limit=$(((n == 1 ? 2350 : 5500) * slack / 100))
+		limit=$(((n == 1 ? 2450 : 5700) * slack / 100))
 		row "${v[total_mean]}" $limit "instructions of the calls of a cycle, native device, mean: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_mean]} instructions of the calls on the mean, at most $limit" \
 			"${v[total_mean]} <= limit"

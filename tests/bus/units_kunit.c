@@ -252,9 +252,9 @@ static void unit_repeats(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_last_wire(c->b)->ns, bus_plain_wire(c->b)->ns);
 	c->incomplete = 0;
 	for (i = 0; i < 100; i++) {
-		/* the first and the second frame of this cycle, or the second and the third */
-		bus_fault(c->b, EC_SIM_FAULT_LOSE, -1, -1, 1 + i % 2, 0);
-		bus_fault(c->b, EC_SIM_FAULT_LOSE, -1, 0, 1 + i % 2, 0);
+		/* two of the first, third and fourth frame of this cycle: the second is another */
+		bus_fault(c->b, EC_SIM_FAULT_LOSE, -1, -1, 1 + 2 * (i % 2), 0);
+		bus_fault(c->b, EC_SIM_FAULT_LOSE, -1, 0, 3 + i % 2, 0);
 		cyc_run(c, 2);
 		KUNIT_EXPECT_EQ(test, bus_domain_status(c->b, 0)->wc_state, 2u);
 		KUNIT_EXPECT_EQ(test, bus_domain_status(c->b, 0)->working_counter, 6u);
