@@ -116,7 +116,7 @@ static __always_inline void note_flight(struct ec_cycle *c, struct ec_slot *slot
 	f->riding = send->riding;
 }
 
-/* One frame from datagram @g on; returns the first datagram of the next. Inlined in both callers. */
+/* One frame from datagram @g on; returns the first datagram of the next. */
 static __always_inline unsigned int send_frame(struct ec_cycle *c, unsigned int g,
 					       struct send *send)
 {

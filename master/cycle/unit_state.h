@@ -160,7 +160,7 @@ static inline u32 ec_units_state(const struct ec_cyc_unit *u)
 }
 
 /**
- * ec_units_are_calm() - do the units stay as they are in this receive?
+ * ec_units_are_calm() - does this receive change no unit?
  * @us: units
  * @steady: all domains are complete, as before
  *
