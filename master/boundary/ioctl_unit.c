@@ -111,15 +111,20 @@ static int may_give(struct ec_call *call, const struct ec_session *s, u32 unit)
 
 static int authority(struct ec_call *call, struct ec_session *s, u32 unit, bool give)
 {
-	int ret = unit < s->wanted.n_units ? 0 : -ENOENT;
+	int ret;
 
-	if (ret)
-		return ec_refuse(call, ret, "there are %u units, no %u", s->wanted.n_units, unit);
+	if (unit >= s->wanted.n_units)
+		return ec_refuse(call, -ENOENT, "there are %u units, no %u", s->wanted.n_units,
+				 unit);
 	unit = array_index_nospec(unit, s->wanted.n_units);
-	ret = give ? may_give(call, s, unit) : 0;
+	if (!give) {
+		ec_units_take(&s->cycle, unit);
+		return 0;
+	}
+	ret = may_give(call, s, unit);
 	if (ret)
 		return ret;
-	ret = ec_session_authority(s, unit, give);
+	ret = ec_units_give(&s->cycle, unit);
 	return ret ? ec_refuse(call, ret,
 			       "unit %s is not complete: a slave is not in OP or a working counter is incomplete; try again, and see 'ethercat why'",
 			       s->wanted.units[unit]->what.name) : 0;

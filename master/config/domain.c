@@ -67,3 +67,33 @@ int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu)
 	p[d->n_fmmus++] = (struct ec_domain_fmmu){ .config = c, .fmmu = &c->fmmus[fmmu] };
 	return 0;
 }
+
+/**
+ * ec_domain_areas() - where the process data of a domain lie in the image
+ * @d: domain with an offset
+ * @dir: EC_CFG_DIR_*
+ * @list: result: as many entries more as the domain has FMMUs, at most
+ * @n: entries of earlier domains in @list
+ *
+ * Context: Process, lock of the configuration held.
+ * Return: entries now; data behind those of the last entry are one with it.
+ */
+unsigned int ec_domain_areas(const struct ec_domain *d, u8 dir, struct ec_domain_area *list,
+			     unsigned int n)
+{
+	unsigned int i;
+
+	lockdep_assert_held(d->wanted->lock);
+	for (i = 0; i < d->n_fmmus; i++) {
+		const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
+		u32 offset = d->offset + f->offset;
+
+		if (f->dir != dir || !f->size)
+			continue;
+		if (n && list[n - 1].offset + list[n - 1].len == offset)
+			list[n - 1].len += f->size;
+		else
+			list[n++] = (struct ec_domain_area){ offset, f->size };
+	}
+	return n;
+}

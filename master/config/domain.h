@@ -17,6 +17,12 @@ struct ec_domain_fmmu {
 	struct ec_config_fmmu *fmmu;
 };
 
+/* process data of one direction, side by side in the image of all domains, bytes */
+struct ec_domain_area {
+	u32 offset;
+	u32 len;
+};
+
 /**
  * struct ec_domain - one domain, under lock of the configuration until activation
  * @wanted: owner
@@ -62,5 +68,7 @@ struct ec_domain {
 struct ec_domain *ec_domain_create(struct ec_wanted *w);
 void ec_domain_free(struct ec_domain *d);
 int ec_domain_add(struct ec_domain *d, struct ec_config *c, unsigned int fmmu);
+unsigned int ec_domain_areas(const struct ec_domain *d, u8 dir, struct ec_domain_area *list,
+			     unsigned int n);
 
 #endif

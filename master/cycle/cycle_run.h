@@ -7,6 +7,7 @@
 #include <linux/hrtimer.h>
 #include <linux/notifier.h>
 #include <linux/types.h>
+#include "../config/domain.h"
 #include "cycle.h"
 #include "pll.h"
 
@@ -16,12 +17,6 @@ struct task_struct;
 struct ec_cycle_ops {
 	/** @cycle: a cycle begins; RT-safe, also in hard interrupt */
 	void (*cycle)(struct ec_cycle *c);
-};
-
-/* outputs side by side in the image */
-struct ec_cycle_area {
-	u32 offset;
-	u32 len;
 };
 
 /* a domain that is not sent in each cycle */
@@ -72,7 +67,7 @@ struct ec_cycle_thread {
 	struct ec_cycle *cycle;
 	const struct ec_cycle_ops *ops;
 	struct task_struct *task;
-	struct ec_cycle_area *outputs;
+	struct ec_domain_area *outputs;
 	unsigned int n_outputs;
 	u64 always;
 	struct ec_cycle_slow slow[EC_MAX_DOMAINS];

@@ -80,8 +80,7 @@ static int cycle_thread_run(void *data)
 static int find_outputs(struct ec_cycle_thread *t)
 {
 	const struct ec_wanted *w = t->cycle->wanted;
-	struct ec_cycle_area *a = NULL;
-	unsigned int i, n = 0;
+	unsigned int n = 0;
 
 	ec_for_each_domain(d, w)
 		n += d->n_fmmus;
@@ -89,19 +88,7 @@ static int find_outputs(struct ec_cycle_thread *t)
 	if (!t->outputs)
 		return -ENOMEM;
 	ec_for_each_domain(d, w)
-		for (i = 0; i < d->n_fmmus; i++) {
-			const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
-			u32 offset = d->offset + f->offset;
-
-			if (f->dir != EC_CFG_DIR_OUTPUT || !f->size)
-				continue;
-			if (a && a->offset + a->len == offset) {
-				a->len += f->size;
-				continue;
-			}
-			a = &t->outputs[t->n_outputs++];
-			*a = (struct ec_cycle_area){ .offset = offset, .len = f->size };
-		}
+		t->n_outputs = ec_domain_areas(d, EC_CFG_DIR_OUTPUT, t->outputs, t->n_outputs);
 	return 0;
 }
 

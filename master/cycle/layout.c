@@ -264,7 +264,6 @@ static int add_stretch(struct adding *o, const struct ec_stretch *st)
 	return ret;
 }
 
-
 static int layout_domain(struct ec_layout *l, const struct ec_wanted *w, struct ec_domain *d)
 {
 	struct adding o = { .to = l, .d = d };

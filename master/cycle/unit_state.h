@@ -8,20 +8,15 @@
 #include <linux/types.h>
 #include "../base/events.h"
 #include "../base/limits.h"
+#include "../config/domain.h"
 #include "ethercat.h"
 
 struct work_struct;
 struct workqueue_struct;
 
-/* process data of one direction, side by side in the image */
-struct ec_unit_area {
-	u32 offset;
-	u32 len;
-};
-
 /* the areas of a domain, its outputs first */
 struct ec_unit_place {
-	const struct ec_unit_area *areas;
+	const struct ec_domain_area *areas;
 	u16 outputs;
 	u16 inputs;
 };
@@ -48,7 +43,7 @@ struct ec_unit_place {
  * @unfed: cycles since all of @feeds were given
  * @fed: domains given since
  * @faults: failures, and ends of the lease
- * @told: what the last event has said
+ * @reported: state in the last event
  * @rate: of these events
  * @wish: EC_UNIT_GIVE, EC_UNIT_TAKE, EC_UNIT_HOLDER: commands for the cycle owner
  * @op: all its slaves are in OP, but for those of groups that are absent; of the monitor
@@ -78,7 +73,7 @@ struct ec_cyc_unit {
 	u32 unfed;
 	u64 fed;
 	u32 faults;
-	u32 told;
+	u32 reported;
 	struct ec_event_rate rate;
 	atomic_t wish;
 	bool op;
@@ -117,7 +112,7 @@ struct ec_cyc_unit {
  */
 struct ec_cyc_units {
 	struct ec_unit_place places[EC_MAX_DOMAINS];
-	struct ec_unit_area *areas;
+	struct ec_domain_area *areas;
 	u8 *of_config;
 	struct workqueue_struct *queue;
 	struct work_struct *alarm;

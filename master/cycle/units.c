@@ -12,33 +12,9 @@
 #include "units.h"
 #include "units_hold.h"
 
-/* One more area; process data of a slave behind those of the one before are one. */
-static unsigned int unit_add_area(struct ec_unit_area *list, unsigned int n, u32 offset, u32 len)
-{
-	if (n && list[n - 1].offset + list[n - 1].len == offset) {
-		list[n - 1].len += len;
-		return n;
-	}
-	list[n] = (struct ec_unit_area){ offset, len };
-	return n + 1;
-}
-
-static unsigned int unit_add_areas(struct ec_unit_area *list, const struct ec_domain *d, u8 dir)
-{
-	unsigned int i, n = 0;
-
-	for (i = 0; i < d->n_fmmus; i++) {
-		const struct ec_config_fmmu *f = d->fmmus[i].fmmu;
-
-		if (f->dir == dir && f->size)
-			n = unit_add_area(list, n, d->offset + f->offset, f->size);
-	}
-	return n;
-}
-
 static int make_places(struct ec_cyc_units *us, const struct ec_wanted *w)
 {
-	struct ec_unit_area *at;
+	struct ec_domain_area *at;
 	size_t n = 0;
 
 	ec_for_each_domain(d, w)
@@ -51,8 +27,8 @@ static int make_places(struct ec_cyc_units *us, const struct ec_wanted *w)
 		struct ec_unit_place *p = &us->places[d->index];
 
 		p->areas = at;
-		p->outputs = unit_add_areas(at, d, EC_CFG_DIR_OUTPUT);
-		p->inputs = unit_add_areas(at + p->outputs, d, EC_CFG_DIR_INPUT);
+		p->outputs = ec_domain_areas(d, EC_CFG_DIR_OUTPUT, at, 0);
+		p->inputs = ec_domain_areas(d, EC_CFG_DIR_INPUT, at + p->outputs, 0);
 		at += p->outputs + p->inputs;
 		us->used |= BIT_ULL(d->index);
 	}

@@ -36,7 +36,7 @@ static void replace_outputs(struct ec_cycle *c, u64 domains, bool zero)
 		const u8 *from = last_sent(c, d);
 
 		for (i = 0; i < p->outputs; i++) {
-			const struct ec_unit_area *a = &p->areas[i];
+			const struct ec_domain_area *a = &p->areas[i];
 
 			if (zero)
 				memset(us->image + a->offset, 0, a->len);
@@ -92,8 +92,8 @@ static noinline void report_unit(struct ec_cycle *c, struct ec_cyc_unit *u, enum
 		break;
 	}
 	ec_event(c->base, EC_EVENT_UNIT, u->what.index, state, why, bad, wkc, expected,
-		 u->rate.more - 1, u->told);
-	u->told = state;
+		 u->rate.more - 1, u->reported);
+	u->reported = state;
 	u->rate.more = 0;
 }
 

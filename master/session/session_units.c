@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include <linux/nospec.h>
 #include "../cycle/units.h"
 #include "../bus/slave.h"
 #include "../config/unit.h"
@@ -53,29 +52,6 @@ void ec_session_units(struct work_struct *work)
 }
 
 /**
- * ec_session_authority() - give or take the authority of a sync unit
- * @s: session
- * @unit: index
- * @give: otherwise take it
- *
- * Context: Process, session lock held.
- * Return: 0; -ENOENT no such unit; -EINVAL @s is not active; -EINPROGRESS as ec_units_give().
- */
-int ec_session_authority(struct ec_session *s, u32 unit, bool give)
-{
-	lockdep_assert_held(s->wanted.lock);
-	if (unit >= s->wanted.n_units)
-		return -ENOENT;
-	if (!s->wanted.active)
-		return -EINVAL;
-	unit = array_index_nospec(unit, s->wanted.n_units);
-	if (give)
-		return ec_units_give(&s->cycle, unit);
-	ec_units_take(&s->cycle, unit);
-	return 0;
-}
-
-/**
  * ec_session_find_unit() - find a sync unit by its name
  * @s: session
  * @name: name
@@ -101,8 +77,8 @@ int ec_session_find_unit(const struct ec_session *s, const char *name)
  */
 void ec_session_leave_units(struct ec_sessions *ss, const void *holder)
 {
-	ec_sessions_lock(ss);
+	mutex_lock(&ss->lock);
 	if (ss->session && ss->session->wanted.active)
 		ec_units_leave(&ss->session->cycle, EC_UNIT_NONE, holder);
-	ec_sessions_unlock(ss);
+	mutex_unlock(&ss->lock);
 }

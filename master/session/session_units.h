@@ -7,7 +7,6 @@
 
 u8 ec_session_goal(const struct ec_session *s, const struct ec_config *c);
 void ec_session_units(struct work_struct *work);
-int ec_session_authority(struct ec_session *s, u32 unit, bool give);
 int ec_session_find_unit(const struct ec_session *s, const char *name);
 void ec_session_leave_units(struct ec_sessions *ss, const void *holder);
 

@@ -99,14 +99,14 @@ static const char alike[] =
 /* No list has a port that leads nowhere, until there is a whole one. */
 static void expect_consistent(struct bus *b, u32 n, u32 frame)
 {
-	u32 i, ms, odd = 0;
+	u32 i, ms, wrong = 0;
 
 	for (ms = 0; ms < 400; ms++) {
 		for (i = 0; i < bus_n_slaves(b); i++)
-			odd += bus_slave(b, i)->graph.inconsistent;
+			wrong += bus_slave(b, i)->graph.inconsistent;
 		usleep_range(1000, 1001);
 	}
-	KUNIT_EXPECT_EQ_MSG(b->test, odd, 0u, "frame %u", frame);
+	KUNIT_EXPECT_EQ_MSG(b->test, wrong, 0u, "frame %u", frame);
 	settle(b, 100);
 	KUNIT_ASSERT_EQ(b->test, bus_n_slaves(b), n);
 }

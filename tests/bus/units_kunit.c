@@ -32,7 +32,7 @@ static struct cyc *two_units(struct kunit *test, u32 a, u32 b)
 	return c;
 }
 
-/* Slave 0 fails: the outputs of its neighbor are zero after three receives, and nobody else's. */
+/* Slave 0 fails: the outputs of its neighbor, and of no other slave, are zero after 3 receives. */
 static void unit_zero(struct kunit *test)
 {
 	struct cyc *c = two_units(test, EC_UNIT_POLICY_ZERO, EC_UNIT_POLICY_ZERO);
