@@ -39,7 +39,7 @@ static bool take_outputs(struct ec_cycle_thread *t)
 		return false;
 	t->front = buffer_index(xchg(&x->outputs, t->front));
 	t->given = true;
-	if (unlikely(t->cycle->units))
+	if (ec_units_of(t->cycle))
 		ec_units_fed(t->cycle->units, READ_ONCE(ec_cycle_run_buffer(t, t->front)->fed));
 	t->ahead = true;
 	return true;
@@ -324,7 +324,7 @@ bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered)
 		ec_cycle_receive(c);
 	correction = ec_pll_step(&t->lock, c, t->next_ns, t->epoch_ns);
 	c->clock.lead = t->lock.time - t->next_ns;
-	if (unlikely(c->units))
+	if (ec_units_of(c))
 		ec_units_lease(c);
 	feed(t);
 	choose_source(t);

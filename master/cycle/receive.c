@@ -115,7 +115,7 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 		dom->wkc = 0;
 		dom->partial = 0;
 	}
-	if (unlikely(d->repeats > 1) && !is_better(d, dom, f->send, wkc, complete))
+	if (ec_units_of(c) && d->repeats > 1 && !is_better(d, dom, f->send, wkc, complete))
 		return;
 	dom->wkc += wkc;
 	c->back |= BIT_ULL(d->domain);
@@ -231,7 +231,7 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		WRITE_ONCE(st->age, judge_age(c, d, i));
 		note_wkc(c, d, i, wkc, state);
 	}
-	if (unlikely(c->units) && !ec_units_are_calm(c->units, steady))
+	if (ec_units_of(c) && !ec_units_are_calm(c->units, steady))
 		ec_units_judge(c, c->sent | c->back);
 	c->judged = c->send;
 	c->sent = 0;

@@ -50,7 +50,7 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 
 	if (c->direct && !ec_cyc_from_image(d))
 		image = c->direct;
-	if (unlikely(c->units) && c->units->replaced >> d->domain & 1)
+	if (ec_units_of(c) && c->units->replaced >> d->domain & 1)
 		image = c->units->image;
 	if (d->solid) {
 		memcpy(data, image + a->offset, d->len);
@@ -110,7 +110,9 @@ static __always_inline void note_flight(struct ec_cycle *c, struct ec_slot *slot
 	f->queued = send->what->queued;
 	f->missed = false;
 	f->in_time = 0;
-	f->direct = !c->direct ? 0 : c->units ? ~c->units->replaced : ~0ULL;
+	f->direct = c->direct ? ~0ULL : 0;
+	if (ec_units_of(c))
+		f->direct &= ~c->units->replaced;
 	f->clocks.dgrams = send->dc;
 	f->clocks.time = c->clock.sent;
 	f->riding = send->riding;
@@ -220,7 +222,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		WRITE_ONCE(l->access.stopped, false);
 	if (c->copying)
 		ec_copy_run(c->copying, c->shared->status, c->domains);
-	if (unlikely(c->units) && ec_units_act(c->units, what->queued))
+	if (ec_units_of(c) && ec_units_act(c->units, what->queued))
 		ec_units_fill(c, what->queued);
 	c->send++;
 	c->queued[c->send % EC_CYC_SENDS] = what->queued;
@@ -236,7 +238,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		else
 			g++;
 	}
-	if (unlikely(c->units) && c->units->repeats)
+	if (ec_units_of(c) && c->units->repeats)
 		send_repeats(c, &send);
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);

@@ -4,6 +4,7 @@
 #define EC_UNIT_STATE_H
 
 #include <linux/atomic.h>
+#include <linux/jump_label.h>
 #include <linux/minmax.h>
 #include <linux/types.h>
 #include "../base/events.h"
@@ -153,6 +154,12 @@ static inline u32 ec_units_state(const struct ec_cyc_unit *u)
 	       (READ_ONCE(u->held) ? EC_UNIT_HAS_HOLDER : 0) |
 	       min(READ_ONCE(u->faults), 0xffffu) << 16;
 }
+
+/* An active cycle has sync units: without any the tests of a cycle for them are no instructions. */
+DECLARE_STATIC_KEY_FALSE(ec_units_used);
+
+/* of struct ec_cycle @c, or NULL; for what runs in each cycle */
+#define ec_units_of(c)	(static_branch_unlikely(&ec_units_used) ? (c)->units : NULL)
 
 /**
  * ec_units_are_calm() - does this receive change no unit?

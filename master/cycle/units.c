@@ -12,6 +12,8 @@
 #include "units.h"
 #include "units_hold.h"
 
+DEFINE_STATIC_KEY_FALSE(ec_units_used);
+
 static int make_places(struct ec_cyc_units *us, const struct ec_wanted *w)
 {
 	struct ec_domain_area *at;
@@ -104,6 +106,8 @@ int ec_units_make(struct ec_cycle *c, struct workqueue_struct *queue, struct wor
 		}
 		ret = ret ?: make_configs(us, w);
 	}
+	/* ec_units_end() takes it back in any case */
+	static_branch_inc(&ec_units_used);
 	if (ret)
 		ec_units_end(us);
 	else
@@ -125,6 +129,7 @@ void ec_units_end(struct ec_cyc_units *us)
 		return;
 	for (i = 0; i < us->n; i++)
 		kvfree(us->unit[i].buffers);
+	static_branch_dec(&ec_units_used);
 	kvfree(us->image);
 	kvfree(us->areas);
 	kvfree(us->of_config);
