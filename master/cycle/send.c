@@ -34,7 +34,7 @@ static bool make_room(struct ec_cycle *c, u64 now)
 
 /* one send */
 struct send {
-	const struct ec_ioc_send *what;
+	u64 queued;	/* domains */
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
 	struct ec_riding riding;	/* of the last frame */
@@ -64,12 +64,12 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 }
 
 /* Queued datagrams from @g on, as many as fit; returns how many were added or not queued. */
-static __always_inline unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame,
-					 unsigned int g, struct send *send)
+static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
+			 struct send *send)
 {
 	const struct ec_cyc_dgram *d = &c->layout.dgrams[g], *last = NULL;
 	unsigned int room, dc, first = g;
-	u64 queued = send->what->queued;
+	u64 queued = send->queued;
 	struct ec_frame_buf fb;
 	u8 *p;
 
@@ -98,8 +98,8 @@ static __always_inline unsigned int fill(struct ec_cycle *c, struct ec_slot *slo
 	return g - first;
 }
 
-static __always_inline void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
-					unsigned int count, const struct send *send)
+static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g,
+			unsigned int count, const struct send *send)
 {
 	struct ec_cyc_flight *f = &c->flight[c->n_flight++];
 
@@ -107,7 +107,7 @@ static __always_inline void note_flight(struct ec_cycle *c, struct ec_slot *slot
 	f->send = c->send;
 	f->first = g;
 	f->count = count;
-	f->queued = send->what->queued;
+	f->queued = send->queued;
 	f->missed = false;
 	f->in_time = 0;
 	f->direct = c->direct ? ~0ULL : 0;
@@ -119,8 +119,7 @@ static __always_inline void note_flight(struct ec_cycle *c, struct ec_slot *slot
 }
 
 /* One frame from datagram @g on; returns the first datagram of the next. */
-static __always_inline unsigned int send_frame(struct ec_cycle *c, unsigned int g,
-					       struct send *send)
+static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_links *l = c->links;
 	struct ec_slot *slot = NULL;
@@ -154,21 +153,6 @@ static __always_inline unsigned int send_frame(struct ec_cycle *c, unsigned int 
 	}
 	send->dc = 0;
 	return g + count;
-}
-
-/* The frames of units with repetition again, behind all others: a disturbance may last a while. */
-static noinline void send_repeats(struct ec_cycle *c, struct send *send)
-{
-	const struct ec_layout *l = &c->layout;
-	unsigned int n, g;
-
-	for (n = 1; n < EC_UNIT_REPEATS; n++)
-		for (g = 0; g < l->n_dgrams;)
-			if (l->dgrams[g].repeats > n &&
-			    send->what->queued >> l->dgrams[g].domain & 1)
-				g = send_frame(c, g, send);
-			else
-				g++;
 }
 
 /* Wire time of a send of all domains and clock datagrams at most, ns. */
@@ -208,10 +192,10 @@ static noinline void trace_send(const struct ec_cycle *c)
  */
 int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 {
-	struct send send = { .what = what, .now = ktime_get_ns() };
+	struct send send = { .queued = what->queued, .now = ktime_get_ns() };
 	struct ec_carry *carry = c->carry;
 	struct ec_links *l = c->links;
-	unsigned int g = 0;
+	unsigned int g = 0, copies = 0;
 
 	if (!ec_links_attached(l))
 		return -ENODEV;
@@ -232,14 +216,17 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (what->flags & EC_CYC_CLOCKS)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
-	while (g < c->layout.n_dgrams || send.dc) {
-		if (send.dc || what->queued & BIT_ULL(c->layout.dgrams[g].domain))
-			g = send_frame(c, g, &send);
-		else
-			g++;
-	}
-	if (ec_units_of(c) && c->units->repeats)
-		send_repeats(c, &send);
+	/* frames that are repeated go behind all others: a disturbance may last a while */
+	do {
+		while (g < c->layout.n_dgrams || send.dc) {
+			if (send.dc || send.queued & BIT_ULL(c->layout.dgrams[g].domain))
+				g = send_frame(c, g, &send);
+			else
+				g++;
+		}
+		g = 0;
+		send.queued = ec_units_of(c) ? what->queued & c->units->repeated[copies++] : 0;
+	} while (send.queued);
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(l->access.wire_ns, max(send.wire.ns, wire_ns(c)));

@@ -98,7 +98,7 @@ struct ec_cyc_unit {
  * @seen: bits EC_UNIT_SEEN_* of each slave configuration; under the lock of the configuration
  * @wished: a unit has a wish
  * @image: sent instead of that of the application, for domains in @replaced; of the cycle owner,
- *	as are the next six but for @looked and @repeats
+ *	as are the next six but for @looked and @repeated
  * @replaced: domains whose outputs are not those of the application, bit n: domain n
  * @used: domains of the application
  * @stopped: a unit with EC_UNIT_POLICY_STOP has failed: index + 1, 0: none
@@ -107,7 +107,7 @@ struct ec_cyc_unit {
  * @calm: all units are complete and there is nothing to report: only what is not steady, a wish or
  *	@looked can change that
  * @looked: a slave has left OP or has reached it; of the monitor
- * @repeats: a unit has frames that are repeated; immutable
+ * @repeated: domains whose frames are sent at least twice, three times, and so on; immutable
  * @n: entries in @unit
  * @unit: units
  */
@@ -120,7 +120,7 @@ struct ec_cyc_units {
 	u8 *seen;
 	atomic_t wished;
 	bool looked;
-	bool repeats;
+	u64 repeated[EC_UNIT_REPEATS];
 	u8 *image;
 	aligned_u64 replaced;
 	u64 used;

@@ -61,7 +61,8 @@ static void make_unit(struct ec_cyc_units *us, const struct ec_unit *from)
 
 	u->what = from->what;
 	u->domains = from->domains;
-	us->repeats |= u->what.repeats > 1;
+	for (i = 1; i < u->what.repeats; i++)
+		us->repeated[i - 1] |= u->domains;
 	for (i = 0; i < EC_MAX_DOMAINS; i++)
 		if (u->domains >> i & 1 && us->places[i].outputs)
 			u->feeds |= BIT_ULL(i);
