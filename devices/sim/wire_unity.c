@@ -4,6 +4,7 @@
 #include "../../master/wire/coe.c"
 #include "../../master/wire/diag.c"
 #include "../../master/wire/eoe.c"
+#include "../../master/wire/eoe_frame.c"
 #include "../../master/wire/fmmu.c"
 #include "../../master/wire/foe.c"
 #include "../../master/wire/frame.c"

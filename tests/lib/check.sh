@@ -236,7 +236,8 @@ tools_work() {	# tools_work SANITIZERS
 	$CC -std=gnu11 -fms-extensions -Wall -Wextra -Werror $1 -D_GNU_SOURCE -pthread \
 		-o "$o/tools-test" tools.c ../fake/fake_*.c \
 		$(ls "$top"/lib/tools/*.c | grep -v /sys.c) \
-		"$top"/master/wire/{al,coe,dc,emergency,event{,_text},port_text,replay,sdoinfo}.c &&
+		"$top"/master/wire/{al,coe,dc,emergency,eoe{,_frame}}.c \
+		"$top"/master/wire/{event{,_text},port_text,replay,sdoinfo}.c &&
 		setarch -R "$o/tools-test"
 }
 
