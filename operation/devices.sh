@@ -236,8 +236,8 @@ known_segment() {	# known_segment NAME
 		elif command -v ethercat-sim >/dev/null; then
 			out=$(ethercat-sim --check "$1" 2>&1) || bad "SIM_SEGMENT: $out"
 		fi ;;
-	*)	has "$1" thin three bench line100 line1000 ||
-			bad "SIM_SEGMENT: no segment '$1'; there are thin, three, bench, line100, line1000, and paths, which begin with /" ;;
+	*)	has "$1" thin three bench eoe line100 line1000 ||
+			bad "SIM_SEGMENT: no segment '$1'; there are thin, three, bench, eoe, line100, line1000, and paths, which begin with /" ;;
 	esac
 }
 

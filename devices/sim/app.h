@@ -319,6 +319,7 @@ struct ec_app_event {
  * @soe: SoE server
  * @foe: FoE server
  * @ip: IP parameters
+ * @eoe: Ethernet frames, NULL: it takes none
  */
 struct ec_app {
 	struct ec_esc *esc;
@@ -362,6 +363,7 @@ struct ec_app {
 	struct ec_app_soe soe;
 	struct ec_app_foe foe;
 	struct ec_app_ip ip;
+	struct ec_app_eoe *eoe;
 };
 
 /**
@@ -496,6 +498,18 @@ int ec_app_foe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 
 /* slave_eoe.c */
 int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
+
+/* eoe_queue.c, eoe_fault.c */
+size_t ec_app_eoe_bytes(const struct ec_app_model *m);
+void ec_app_eoe_init(struct ec_app *app);
+void ec_app_eoe_reset(struct ec_app *app);
+void ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len);
+bool ec_app_eoe_waits(const struct ec_app *app);
+bool ec_app_eoe_turn(struct ec_app *app, bool request);
+int ec_app_eoe_next(struct ec_app *app, u8 *tx, size_t cap, u64 now);
+void ec_app_eoe_poll(struct ec_app *app, u64 now);
+u64 ec_app_eoe_due(const struct ec_app *app);
+void ec_app_eoe_fault(struct ec_app *app, u64 now);
 
 /* slave_od.c */
 const struct ec_app_object *ec_app_od_object(const struct ec_app_model *m, u16 index);

@@ -52,6 +52,7 @@ static bool same(const struct ec_app_params *a, const struct ec_app_params *b)
 	       a->in == b->in && a->mbox == b->mbox &&
 	       a->mapping == b->mapping && a->cpu == b->cpu && a->id == b->id &&
 	       a->soe == b->soe && a->voe == b->voe && a->foe == b->foe && a->diag == b->diag &&
+	       a->eoe == b->eoe &&
 	       a->no_repeat == b->no_repeat && a->strict == b->strict &&
 	       !a->quirks.any && !b->quirks.any;
 }
@@ -198,8 +199,8 @@ static int do_slave(struct ec_desc *d, u32 count, bool numbered)
 	if (!ret && c.eeprom_emulated && m->emulation)
 		ret = ec_desc_fail(d, "'", name,
 				   "' has no CPU to emulate an EEPROM; remove eeprom=");
-	if (!ret && (p.soe || p.voe || p.foe) && (m->emulation || !m->dev.std.rx_len))
-		ret = ec_desc_fail(d, "'", name, "' has no mailbox; remove soe=, voe= and foe=");
+	if (!ret && (p.soe || p.voe || p.foe || p.eoe) && (m->emulation || !m->dev.std.rx_len))
+		ret = ec_desc_fail(d, "'", name, "' has no mailbox; remove soe=, voe=, foe= and eoe=");
 	if (!ret)
 		ret = ec_desc_quirks_fit(d, name, m, &c);
 	if (!ret && (c.alias + count - 1 > 0xFFFF || c.serial > 0xFFFFFFFF - (count - 1)))

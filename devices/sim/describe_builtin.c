@@ -64,6 +64,15 @@ static const struct {
 		"const wago.6 value=1234\n"
 		"connect do3.1 -> di3.1\n",
 	}, {
+		/* two slaves with a web page behind EoE, one of them with process data */
+		.name = "eoe",
+		.text =
+		"segment seed=35 response=200us transition=1ms\n"
+		"slave coupler EK1100\n"
+		"slave web EL6614 alias=5 eoe=host\n"
+		"branch coupler 2\n"
+		"slave axis drive in=8 out=8 mbox=512 eoe=host\n",
+	}, {
 		.name = "line100",
 		.text =
 		"segment seed=100\n"
@@ -78,7 +87,7 @@ static const struct {
 
 /**
  * ec_sim_builtin() - description of a built-in segment
- * @name: "thin", "three", "bench", "line100", "line1000"
+ * @name: "thin", "three", "bench", "eoe", "line100", "line1000"
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: its text, NULL: no such segment.

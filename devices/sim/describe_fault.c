@@ -37,6 +37,7 @@ static const struct verb {
 	{ "errors", PORT, EC_SIM_FAULT_ERRORS, 0 },
 	{ "damage", PORT, EC_SIM_FAULT_DAMAGE, 0 },
 	{ "mailbox", SLAVE, EC_SIM_FAULT_MAILBOX, 0 },
+	{ "eoe", SLAVE, EC_SIM_FAULT_EOE, 0 },
 	{ "latch", SLAVE, EC_SIM_FAULT_LATCH, 0 },
 	{ "jump", SLAVE, EC_SIM_FAULT_JUMP, 0 },
 	{ "old", SLAVE, EC_SIM_FAULT_OLD, 0 },
@@ -363,6 +364,8 @@ static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault 
 	switch (v->type) {
 	case EC_SIM_FAULT_MAILBOX:
 		return mailbox(d, f);
+	case EC_SIM_FAULT_EOE:
+		return ec_desc_eoe_fault(d, f);
 	case EC_SIM_FAULT_OLD:
 		return old(d, f);
 	case EC_SIM_FAULT_LATCH:

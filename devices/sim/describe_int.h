@@ -135,6 +135,10 @@ int ec_desc_quirks_fit(struct ec_desc *d, const struct ec_desc_word *name,
 /* describe_foe.c */
 int ec_desc_foe(struct ec_desc *d, struct ec_app_config *c);
 
+/* describe_eoe.c */
+int ec_desc_eoe(struct ec_desc *d, struct ec_app_params *p);
+int ec_desc_eoe_fault(struct ec_desc *d, struct ec_sim_fault *f);
+
 /* describe_wait.c */
 int ec_desc_when(struct ec_desc *d, enum ec_sim_when *when);
 int ec_desc_register(struct ec_desc *d, struct ec_sim_fault *f);

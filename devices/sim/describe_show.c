@@ -67,7 +67,7 @@ static void add_faults(struct line *l, const struct ec_esc *esc)
 		{ "off", !esc->powered }, { "dead", f->dead }, { "deaf", f->miss_broadcast },
 		{ "mute", f->app_mute }, { "refuse", f->al_refuse },
 		{ "busy", f->eeprom_busy }, { "noack", f->eeprom_noack },
-		{ "wkc", f->wkc_add }, { "mailbox", f->mailbox },
+		{ "wkc", f->wkc_add }, { "mailbox", f->mailbox }, { "eoe", f->eoe },
 	};
 	const char *before = ": ";
 

@@ -69,6 +69,8 @@ int ec_desc_params(struct ec_desc *d, struct ec_app_params *p)
 	if (!ret)
 		ret = ec_desc_yes(d, "strict", &p->strict);
 	if (!ret)
+		ret = ec_desc_eoe(d, p);
+	if (!ret)
 		ret = ec_desc_yes(d, "repeat", &repeat);
 	if (!ret)
 		ret = ec_desc_quirks(d, &p->quirks);

@@ -282,6 +282,8 @@ struct ec_esc_dc {
  * @mailbox: enum ec_sim_mailbox_fault
  * @mailbox_code: its @arg2, see enum ec_sim_mailbox_fault
  * @mailbox_after: messages that are still right
+ * @eoe: enum ec_sim_eoe_fault
+ * @eoe_every: of so many frames it concerns one
  * @damage_ppm: of frames that come to this port, so many of a million are damaged by its cable
  */
 struct ec_esc_fault {
@@ -296,6 +298,8 @@ struct ec_esc_fault {
 	u8 mailbox;
 	u32 mailbox_code;
 	u32 mailbox_after;
+	u8 eoe;
+	u32 eoe_every;
 	u32 damage_ppm[EC_MAX_PORT];
 };
 

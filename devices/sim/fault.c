@@ -34,6 +34,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_BOUNCE] = "bounce",
 	[EC_SIM_FAULT_HOST] = "host",
 	[EC_SIM_FAULT_DAMAGE] = "damage",
+	[EC_SIM_FAULT_EOE] = "eoe",
 };
 
 /**
@@ -117,6 +118,8 @@ static bool is_valid(const struct ec_sim *sim, const struct ec_sim_fault *f)
 	    !ec_al_state_valid((u8)f->arg2))
 		return false;
 	if (f->type == EC_SIM_FAULT_MAILBOX && f->arg >= EC_SIM_MAILBOX_FAULTS)
+		return false;
+	if (f->type == EC_SIM_FAULT_EOE && f->arg >= EC_SIM_EOE_FAULTS)
 		return false;
 	return !(cable || f->type == EC_SIM_FAULT_ERRORS) ||
 	       (f->port >= 0 && f->port < EC_MAX_PORT);
@@ -216,6 +219,12 @@ static void damage(struct ec_sim *sim, const struct ec_sim_fault *f)
 			sim->damages |= sim->esc[i]->fault.damage_ppm[p];
 }
 
+static void tell_app(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now)
+{
+	if (esc->app_ops && esc->app_ops->fault && esc->powered && esc->eep.loaded)
+		esc->app_ops->fault(esc, f, now);
+}
+
 static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 {
 	struct ec_esc *esc = f->slave >= 0 ? sim->esc[f->slave] : NULL;
@@ -302,8 +311,12 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_AL_ERROR:
 	case EC_SIM_FAULT_INPUT:
 	case EC_SIM_FAULT_EMERGENCY:
-		if (esc->app_ops && esc->app_ops->fault && esc->powered && esc->eep.loaded)
-			esc->app_ops->fault(esc, f, now);
+		tell_app(esc, f, now);
+		break;
+	case EC_SIM_FAULT_EOE:
+		esc->fault.eoe = (u8)f->arg;
+		esc->fault.eoe_every = f->arg2;
+		tell_app(esc, f, now);
 		break;
 	default:
 		break;

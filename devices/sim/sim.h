@@ -72,6 +72,8 @@ struct ec_sim_ops {
  * @EC_SIM_FAULT_DAMAGE: frames that come to @slave, @port by its cable are damaged there: @arg of
  *                       a million, 0 ends it. The slave counts them as invalid, those after it as
  *                       forwarded errors; no slave executes them, and they do not come back
+ * @EC_SIM_FAULT_EOE: Ethernet frames of the slave are wrong, @arg is an enum
+ *                    ec_sim_eoe_fault; where it concerns single frames: each @arg2-th one
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -105,6 +107,7 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_BOUNCE,
 	EC_SIM_FAULT_HOST,
 	EC_SIM_FAULT_DAMAGE,
+	EC_SIM_FAULT_EOE,
 	EC_SIM_FAULT_TYPES
 };
 
@@ -169,6 +172,38 @@ enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_LOST,
 	EC_SIM_MAILBOX_ALMOST,
 	EC_SIM_MAILBOX_FAULTS
+};
+
+/**
+ * enum ec_sim_eoe_fault - what is wrong with Ethernet frames of a slave
+ * @EC_SIM_EOE_GOOD: nothing
+ * @EC_SIM_EOE_INTERLEAVE: fragments of two frames alternate
+ * @EC_SIM_EOE_STAMP: a time stamp behind the last fragment
+ * @EC_SIM_EOE_SHORT: short frames without padding
+ * @EC_SIM_EOE_LOST: the second fragment is not sent, or the only one
+ * @EC_SIM_EOE_OFFSET: the offset of all fragments but the first is wrong
+ * @EC_SIM_EOE_NUMBER: the number of the last fragment is wrong
+ * @EC_SIM_EOE_ENDLESS: no fragment is the last
+ * @EC_SIM_EOE_SIZE: the announced size is 0, 32 or 2016 bytes, in turn
+ * @EC_SIM_EOE_FLOOD: broadcasts without end
+ * @EC_SIM_EOE_SPOOF: the source is the address of the station that was heard last
+ * @EC_SIM_EOE_ETHERCAT: EtherCAT frames
+ * @EC_SIM_EOE_FAULTS: number of faults
+ */
+enum ec_sim_eoe_fault {
+	EC_SIM_EOE_GOOD,
+	EC_SIM_EOE_INTERLEAVE,
+	EC_SIM_EOE_STAMP,
+	EC_SIM_EOE_SHORT,
+	EC_SIM_EOE_LOST,
+	EC_SIM_EOE_OFFSET,
+	EC_SIM_EOE_NUMBER,
+	EC_SIM_EOE_ENDLESS,
+	EC_SIM_EOE_SIZE,
+	EC_SIM_EOE_FLOOD,
+	EC_SIM_EOE_SPOOF,
+	EC_SIM_EOE_ETHERCAT,
+	EC_SIM_EOE_FAULTS
 };
 
 /**

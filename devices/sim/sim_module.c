@@ -23,7 +23,7 @@
 static char *segment[SEGMENTS] = { "bench" };
 static unsigned int n_segment;
 module_param_array(segment, charp, &n_segment, 0444);
-MODULE_PARM_DESC(segment, "built-in segments (thin, three, bench, line100, line1000) or paths of descriptions: sim0, sim1...");
+MODULE_PARM_DESC(segment, "built-in segments (thin, three, bench, eoe, line100, line1000) or paths of descriptions: sim0, sim1...");
 
 static char *netdev[EC_SIM_PORTS];
 static unsigned int n_netdev;
@@ -91,7 +91,7 @@ static struct ec_sim *build(const char *name)
 		return ERR_PTR(-ENOMEM);
 	n = load(NULL, name, buf, TEXT_MAX);
 	if (n < 0) {
-		pr_err("ec_sim: segment=%s: neither a built-in segment (thin, three, bench, line100, line1000) nor a readable file (%pe)\n",
+		pr_err("ec_sim: segment=%s: neither a built-in segment (thin, three, bench, eoe, line100, line1000) nor a readable file (%pe)\n",
 		       name, ERR_PTR(n));
 		/* insmod calls ENOENT an unknown symbol */
 		sim = ERR_PTR(n == -ENOENT ? -EINVAL : n);

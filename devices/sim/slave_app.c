@@ -159,6 +159,9 @@ static void fault(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_OLD:
 		ec_app_old(app, f, now);
 		break;
+	case EC_SIM_FAULT_EOE:
+		ec_app_eoe_fault(app, now);
+		break;
 	case EC_SIM_FAULT_EMERGENCY:
 		ec_app_emergency(app, (u16)f->arg, (u8)f->arg2, data, now);
 		break;
@@ -197,6 +200,7 @@ static void poll(struct ec_esc *esc, u64 now)
 		if (esc->al_unread)
 			ec_app_al_control(app, now);
 		ec_app_al_poll(app, now);
+		ec_app_eoe_poll(app, now);
 		ec_app_mbox_poll(app, now);
 		ec_app_memory_poll(app, now);
 	}
@@ -217,6 +221,7 @@ void ec_app_rewake(struct ec_app *app, u64 now)
 	if (app->al_to)
 		at = app->al_waits ? app->al_deadline : app->al_due;
 	at = min(at, ec_app_mbox_due(app));
+	at = min(at, ec_app_eoe_due(app));
 	at = min(at, app->eep_due);
 	at = min(at, app->id_due);
 	if (app->next_event)
@@ -310,7 +315,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 		       max(d->boot.rx_len, d->boot.tx_len));
 	u16 info = (u16)max_t(u32, 2 + 2 * m->n_objects, 300);
 	u16 image = max(m->max_bytes[EC_APP_OUT], m->max_bytes[EC_APP_IN]);
-	size_t size, at[11];
+	size_t size, at[12];
 	struct ec_app *app;
 	u8 *p;
 
@@ -327,7 +332,8 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	at[8] = at[7] + info;
 	at[9] = at[8] + (mbox ? EC_APP_SDO_BUF + 1024 : 0);
 	at[10] = at[9] + m->params.soe * ec_app_soe_bytes();
-	size = at[10] + ec_app_foe_bytes(m);
+	at[11] = align8(at[10] + ec_app_foe_bytes(m));
+	size = at[11] + ec_app_eoe_bytes(m);
 
 	app = ec_sim_alloc(m->sim, size);
 	if (!app)
@@ -351,6 +357,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	app->soe.drives = m->params.soe;
 	app->foe.flash = p + at[10];
 	app->foe.cap = ec_app_foe_bytes(m);
+	app->eoe = m->params.eoe ? (void *)(p + at[11]) : NULL;
 	app->model = m;
 	m->refs++;
 	return app;
@@ -409,6 +416,7 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->op_timeout_ns = cfg->op_timeout_ns;
 	app->id_ns = cfg->id_ns;
 	app->ip.refuse = cfg->no_ip;
+	ec_app_eoe_init(app);
 	app->foe.busy = cfg->foe_busy;
 	app->foe.page_ns = cfg->foe_page_ns;
 	app->foe.boot = cfg->foe_boot;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* IP parameters of a simulated slave that speaks EoE; no Ethernet frames. */
+/* EoE of a simulated slave: IP parameters; Ethernet frames go to eoe_queue.c. */
 #include "app.h"
 
 static void take(struct ec_app_ip *ip, const struct ec_eoe_ip *p)
@@ -31,7 +31,7 @@ static void take(struct ec_app_ip *ip, const struct ec_eoe_ip *p)
  * @cap: bytes at @tx
  *
  * IP parameters can be set and read; other services are answered as
- * unsupported, fragments of frames vanish.
+ * unsupported. Fragments of frames vanish in a slave without Ethernet.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: bytes at @tx; 0: no answer; -EMSGSIZE: the message is too short, or
@@ -58,6 +58,9 @@ int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 	case EC_EOE_SET_FILTER_REQ:
 		return ec_eoe_result_encode(tx, cap, EC_EOE_SET_FILTER_RESP,
 					    EC_EOE_NO_FILTER);
+	case EC_EOE_FRAGMENT:
+		ec_app_eoe_fragment(app, rx, len);
+		return 0;
 	default:
 		return type < 0 ? type : 0;
 	}

@@ -49,6 +49,7 @@ void ec_app_mbox_reset(struct ec_app *app)
 	m->n_emcy = 0;
 	m->n_voe = 0;
 	ec_app_foe_reset(app);
+	ec_app_eoe_reset(app);
 	memset(&m->info, 0, sizeof(m->info));
 	m->info.done = true;
 	if (m->cap)
@@ -314,7 +315,8 @@ static void dispatch(struct ec_app *app, u16 size, u64 now)
 		return;		/* sent twice, taken once */
 	m->rx_counter = h.counter;
 	m->now = now;
-	app->esc->own.mbox_ns += app->response_ns;
+	if (h.type != EC_MBOX_EOE || ec_eoe_type_decode(r.p, h.len) != EC_EOE_FRAGMENT)
+		app->esc->own.mbox_ns += app->response_ns;
 	if (h.channel)
 		out_error(app, EC_MBOX_ERR_CHANNEL, due);
 	else if (!speaks(app, h.type))
@@ -362,6 +364,33 @@ static void next_voe(struct ec_app *app, u64 now)
 		out_set(app, EC_MBOX_VOE, (size_t)len, now);
 }
 
+/* the master's message, which lies in SM0 */
+static bool next_request(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	const struct ec_sm *p = &app->esc->sm[0].page;
+	u16 len = min(p->len, m->cap);
+
+	m->rx_waits = false;
+	if (ec_esc_pdi_read(app->esc, p->start, m->rx, len, now) < 0)
+		return false;
+	dispatch(app, len, now);
+	return true;
+}
+
+/* a fragment of an Ethernet frame, in turn with requests that wait */
+static bool next_fragment(struct ec_app *app, u64 now)
+{
+	struct ec_app_mbox *m = &app->mbox;
+	bool turn = ec_app_eoe_turn(app, m->rx_waits);
+	int len = turn ? ec_app_eoe_next(app, m->out + EC_MBOX_HDR,
+					 tx_size(app) - (size_t)EC_MBOX_HDR, now) : 0;
+
+	if (len > 0)
+		out_set(app, EC_MBOX_EOE, (size_t)len, now);
+	return len > 0;
+}
+
 /* moves what can be moved, until nothing does */
 static void step(struct ec_app *app, u64 now)
 {
@@ -369,6 +398,11 @@ static void step(struct ec_app *app, u64 now)
 	struct ec_esc *esc = app->esc;
 
 	for (;;) {
+		if (m->rx_waits && ec_app_eoe_waits(app)) {
+			if (!next_request(app, now))
+				return;
+			continue;
+		}
 		if (m->out_len && m->out_in_sm)
 			return;
 		if (m->out_len) {
@@ -397,14 +431,11 @@ static void step(struct ec_app *app, u64 now)
 			next_voe(app, now);
 		} else if (!m->info.done) {
 			info_next(app, now);
+		} else if (next_fragment(app, now)) {
+			continue;
 		} else if (m->rx_waits) {
-			u16 len = min(esc->sm[0].page.len, m->cap);
-
-			m->rx_waits = false;
-			if (ec_esc_pdi_read(esc, esc->sm[0].page.start, m->rx,
-					    len, now) < 0)
+			if (!next_request(app, now))
 				return;
-			dispatch(app, len, now);
 		} else if (esc->fault.mailbox == EC_SIM_MAILBOX_STALE) {
 			out_set(app, EC_MBOX_COE, EC_SDOINFO_HDR + 2, now);
 		} else {

@@ -495,7 +495,8 @@ static u32 generic_revision(const struct ec_app_model *m)
 		    (u64)!!p->id << 25 | (u64)!!p->foe << 30 |
 		    (u64)!!p->diag << 31 | (u64)p->quirks.no_mbox_words << 48 |
 		    (u64)p->quirks.no_protocols << 49 |
-		    (u64)p->quirks.sms[EC_APP_OUT] << 50 | (u64)p->quirks.sms[EC_APP_IN] << 54;
+		    (u64)p->eoe << 60 | (u64)p->quirks.sms[EC_APP_OUT] << 50 |
+		    (u64)p->quirks.sms[EC_APP_IN] << 54;
 
 	for (u32 i = 0; i < p->quirks.dc_modes.n; i++)
 		other = (other << 7 | other >> 57) ^ (p->quirks.dc_modes.v[i] + 1u);
@@ -552,6 +553,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 		m->dev.protocols |= EC_SII_PROTO_VOE;
 	if (params->foe)
 		m->dev.protocols |= EC_SII_PROTO_FOE;
+	if (params->eoe)
+		m->dev.protocols |= EC_SII_PROTO_EOE;
 	*err = ec_app_dev_is_generic(dev) ? ec_app_dev_generic(m) : 0;
 	if (ec_app_dev_is_generic(dev) && !params->revision)
 		m->dev.revision = generic_revision(m);

@@ -115,7 +115,7 @@ accepted() {
 }
 
 @test "an unknown segment is refused with the names" {
-	local text='thin, three, bench, line100, line1000, and paths, which begin with /'
+	local text='thin, three, bench, eoe, line100, line1000, and paths, which begin with /'
 
 	refused 'MASTER0_DEVICE=sim0\n\nSIM_SEGMENT=bnech' "3: SIM_SEGMENT: no segment 'bnech'; there are $text"
 	refused 'MASTER0_DEVICE=sim0\nSIM_SEGMENT=my/bus' "2: SIM_SEGMENT: no segment 'my/bus'; there"
