@@ -12,7 +12,7 @@
 
 #include "../../master/wire/al.h"
 #include "../../master/wire/diag.h"
-#include "../../master/wire/eoe.h"
+#include "../../master/wire/eoe_frame.h"
 #include "../../master/wire/foe.h"
 #include "../../master/wire/soe.h"
 #include "../../master/wire/voe.h"
@@ -510,6 +510,13 @@ int ec_app_eoe_next(struct ec_app *app, u8 *tx, size_t cap, u64 now);
 void ec_app_eoe_poll(struct ec_app *app, u64 now);
 u64 ec_app_eoe_due(const struct ec_app *app);
 void ec_app_eoe_fault(struct ec_app *app, u64 now);
+bool ec_app_eoe_runs(const struct ec_app *app);
+
+/* eoe_port.c */
+bool ec_app_eoe_has_port(const struct ec_app *app);
+u16 ec_app_eoe_leave(struct ec_app *app, u8 *frame);
+bool ec_app_eoe_takes(const struct ec_app *app);
+void ec_app_eoe_enter(struct ec_app *app, const u8 *frame, u16 len, u64 now);
 
 /* slave_od.c */
 const struct ec_app_object *ec_app_od_object(const struct ec_app_model *m, u16 index);

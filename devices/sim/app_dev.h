@@ -298,6 +298,9 @@ struct ec_app_quirks {
 	struct ec_app_list assign[EC_APP_DIRS];
 };
 
+/* what takes Ethernet frames: nothing, the slave's own IP, an Ethernet port of the slave */
+enum ec_app_eoe_kind { EC_APP_EOE_NONE, EC_APP_EOE_HOST, EC_APP_EOE_SWITCH };
+
 /**
  * struct ec_app_params - what a model may differ in from its device table
  * @vendor: identity, 0: as the table
@@ -312,7 +315,7 @@ struct ec_app_quirks {
  * @soe: SoE with so many drives, 0: no SoE
  * @voe: VoE with this type in the answers, 0: no VoE
  * @foe: KiB of a file, 0: EC_APP_FOE_KIB where the table or the image has FoE
- * @eoe: Ethernet frames over EoE: it is an IP host
+ * @eoe: what is behind its EoE, enum ec_app_eoe_kind
  * @strict: the SyncManagers of the mailbox must have the usual control bytes, no other
  * @diag: messages in the diagnosis history, 0: there is no 0x10F3
  * @no_repeat: neither repeats its messages nor sees that one of the master is repeated
@@ -331,7 +334,7 @@ struct ec_app_params {
 	u8 soe;
 	u16 voe;
 	u16 foe;
-	bool eoe;
+	u8 eoe;
 	u8 diag;
 	bool no_repeat;
 	bool strict;

@@ -14,9 +14,10 @@ int ec_desc_eoe(struct ec_desc *d, struct ec_app_params *p)
 {
 	struct ec_desc_word w = ec_desc_value(d, "eoe");
 
-	p->eoe = ec_desc_is(&w, "host");
+	p->eoe = ec_desc_is(&w, "host") ? EC_APP_EOE_HOST :
+		 ec_desc_is(&w, "switch") ? EC_APP_EOE_SWITCH : EC_APP_EOE_NONE;
 	if (w.s && !p->eoe)
-		return ec_desc_fail(d, "invalid eoe '", &w, "': expected host");
+		return ec_desc_fail(d, "invalid eoe '", &w, "': expected host or switch");
 	return 0;
 }
 
@@ -38,7 +39,7 @@ int ec_desc_eoe_fault(struct ec_desc *d, struct ec_sim_fault *f)
 	s64 every = 1;
 
 	if (!ec_app_of(ec_sim_at(d->sim, (u32)f->slave))->eoe)
-		return ec_desc_fail(d, "the slave has no Ethernet; add eoe=host to it", NULL, "");
+		return ec_desc_fail(d, "the slave has no Ethernet; add eoe=host or eoe=switch to it", NULL, "");
 	for (u32 i = 0; i < ARRAY_SIZE(kinds); i++) {
 		if (!ec_desc_is(w, kinds[i]))
 			continue;

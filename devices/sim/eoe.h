@@ -6,7 +6,6 @@
 #ifndef EC_SIM_EOE_H
 #define EC_SIM_EOE_H
 
-#include "../../master/wire/eoe_frame.h"
 #include "app.h"
 
 #define EC_APP_EOE_QUEUE	16	/* frames to the master */
@@ -37,6 +36,20 @@ struct ec_app_eoe_frame {
 	bool begun;
 	u8 fault;
 	u8 data[EC_EOE_FRAME_MAX];
+};
+
+/**
+ * struct ec_app_eoe_port - frames that leave a slave by its Ethernet port
+ * @first: place of the oldest one
+ * @n: how many
+ * @len: bytes of each
+ * @data: the frames
+ */
+struct ec_app_eoe_port {
+	u8 first;
+	u8 n;
+	u16 len[EC_APP_EOE_QUEUE];
+	u8 data[EC_APP_EOE_QUEUE][EC_EOE_FRAME_MAX];
 };
 
 enum ec_app_tcp_state { EC_APP_TCP_FREE, EC_APP_TCP_SYN, EC_APP_TCP_OPEN };
@@ -117,6 +130,7 @@ struct ec_app_tcp {
  * @frames: frames to the master
  * @conns: TCP connections
  * @bufs: bytes that they send
+ * @port: frames that leave by the Ethernet port, NULL: it has none
  */
 struct ec_app_eoe {
 	u8 mac[6];
@@ -139,6 +153,7 @@ struct ec_app_eoe {
 	struct ec_app_eoe_frame frames[EC_APP_EOE_QUEUE];
 	struct ec_app_tcp conns[EC_APP_EOE_CONNS];
 	u8 bufs[EC_APP_EOE_CONNS][EC_APP_EOE_BUF];
+	struct ec_app_eoe_port *port;
 };
 
 static inline u16 ec_app_get_be16(const u8 *p)
@@ -167,6 +182,9 @@ static inline void ec_app_put_be32(u8 *p, u32 v)
 struct ec_app_eoe_frame *ec_app_eoe_place(struct ec_app *app);
 void ec_app_eoe_send(struct ec_app *app, struct ec_app_eoe_frame *f, u16 len, u64 due);
 const u8 *ec_app_eoe_mac(const struct ec_app *app);
+
+/* eoe_port.c */
+void ec_app_eoe_out(struct ec_app *app, const u8 *frame, u16 len);
 
 /* eoe_host.c */
 u8 *ec_app_eoe_eth(struct ec_app *app, struct ec_app_eoe_frame *f, const u8 *to, u16 type);

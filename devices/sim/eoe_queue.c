@@ -13,11 +13,18 @@
  */
 size_t ec_app_eoe_bytes(const struct ec_app_model *m)
 {
-	return m->params.eoe ? sizeof(struct ec_app_eoe) : 0;
+	switch (m->params.eoe) {
+	case EC_APP_EOE_HOST:
+		return sizeof(struct ec_app_eoe);
+	case EC_APP_EOE_SWITCH:
+		return sizeof(struct ec_app_eoe) + sizeof(struct ec_app_eoe_port);
+	default:
+		return 0;
+	}
 }
 
 /**
- * ec_app_eoe_init() - give a new slave its address
+ * ec_app_eoe_init() - give a new slave its address, or its Ethernet port
  * @app: slave
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
@@ -32,6 +39,8 @@ void ec_app_eoe_init(struct ec_app *app)
 	mac[0] = 0x02;		/* locally administered, unicast */
 	mac[1] = 0xec;
 	put_unaligned_le32(ec_sim_random(app->model->sim), mac + 2);
+	if (app->model->params.eoe == EC_APP_EOE_SWITCH)
+		app->eoe->port = (void *)(app->eoe + 1);
 }
 
 /**
@@ -52,6 +61,8 @@ void ec_app_eoe_reset(struct ec_app *app)
 	e->n = 0;
 	e->used = 0;
 	e->number = 0;
+	if (e->port)
+		e->port->n = 0;
 	memset(&e->in, 0, sizeof(e->in));
 	for (u32 i = 0; i < EC_APP_EOE_CONNS; i++)
 		e->conns[i].state = EC_APP_TCP_FREE;
@@ -69,8 +80,14 @@ const u8 *ec_app_eoe_mac(const struct ec_app *app)
 	return app->ip.now.which & EC_EOE_MAC ? app->ip.now.mac : app->eoe->mac;
 }
 
-/* frames pass in these states */
-static bool runs(const struct ec_app *app)
+/**
+ * ec_app_eoe_runs() - do frames pass
+ * @app: slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true from PREOP on, in a slave with Ethernet.
+ */
+bool ec_app_eoe_runs(const struct ec_app *app)
 {
 	return app->eoe && (app->state == EC_AL_PREOP || app->state == EC_AL_SAFEOP ||
 			    app->state == EC_AL_OP);
@@ -148,7 +165,7 @@ void ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len)
 	struct ec_eoe_fragment f;
 	int ret;
 
-	if (!runs(app))
+	if (!ec_app_eoe_runs(app))
 		return;
 	ret = ec_eoe_fragment_decode(rx, len, &f);
 	if (!ret)
@@ -161,7 +178,10 @@ void ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len)
 	app->esc->own.mbox_ns += app->response_ns;
 	e->heard = true;
 	memcpy(e->peer, e->in_data + 6, 6);
-	ec_app_eoe_host(app, e->in_data, (u16)ret, app->mbox.now);
+	if (e->port)
+		ec_app_eoe_out(app, e->in_data, (u16)ret);
+	else
+		ec_app_eoe_host(app, e->in_data, (u16)ret, app->mbox.now);
 }
 
 /**
@@ -178,7 +198,7 @@ bool ec_app_eoe_waits(const struct ec_app *app)
 	const struct ec_sm *p = &app->esc->sm[0].page;
 	const u8 *h = app->esc->mem + p->start;
 
-	return runs(app) && ec_esc_sm_readable(app->esc, 0) &&
+	return ec_app_eoe_runs(app) && ec_esc_sm_readable(app->esc, 0) &&
 	       (p->control & EC_SM_MODE_MASK) == EC_SM_MODE_MAILBOX &&
 	       min(p->len, app->mbox.cap) >= EC_MBOX_HDR + EC_EOE_HDR &&
 	       get_unaligned_le16(h) >= EC_EOE_HDR &&
@@ -274,7 +294,7 @@ int ec_app_eoe_next(struct ec_app *app, u8 *tx, size_t cap, u64 now)
 {
 	struct ec_app_eoe *e = app->eoe;
 
-	if (!runs(app))
+	if (!ec_app_eoe_runs(app))
 		return 0;
 	ec_app_eoe_fill(app, now);
 	while (e->n && e->frames[e->order[0]].due <= now) {
@@ -300,7 +320,7 @@ int ec_app_eoe_next(struct ec_app *app, u8 *tx, size_t cap, u64 now)
  */
 void ec_app_eoe_poll(struct ec_app *app, u64 now)
 {
-	if (runs(app))
+	if (ec_app_eoe_runs(app))
 		ec_app_tcp_poll(app, now);
 }
 
@@ -316,7 +336,7 @@ u64 ec_app_eoe_due(const struct ec_app *app)
 	const struct ec_app_eoe *e = app->eoe;
 	u64 at = EC_ESC_NEVER;
 
-	if (!runs(app))
+	if (!ec_app_eoe_runs(app))
 		return at;
 	/* a message that is on its way has its own time, and the next one follows it */
 	if (e->n && !app->mbox.out_len && ec_esc_sm_writable(app->esc, 1))

@@ -280,6 +280,7 @@ void ec_app_tcp(struct ec_app *app, const u8 *frame, const u8 *ip, u16 len, u64 
 	u64 due = now + app->response_ns;
 	struct ec_app_tcp *c;
 	struct seg s;
+	bool ask;
 
 	if (!decode(&s, frame, ip, len))
 		return;
@@ -307,10 +308,12 @@ void ec_app_tcp(struct ec_app *app, const u8 *frame, const u8 *ip, u16 len, u64 
 		c->state = EC_APP_TCP_OPEN;
 		c->tries = 0;
 	}
+	/* with another number than expected it may be a probe of the window */
+	ask = s.len || s.flags & FIN || s.seq != c->rcv;
 	acknowledged(c, &s);
 	take(app, c, &s);
 	if (!output(app, c, due) &&
-	    (s.len || s.flags & FIN || (c->told < c->mss && EC_APP_EOE_BUF - c->len >= c->mss)))
+	    (ask || (c->told < c->mss && EC_APP_EOE_BUF - c->len >= c->mss)))
 		put(app, c, ACK, c->una + c->sent + (c->fin_sent && !c->fin_acked), NULL, 0, due);
 	arm(c, now);
 	if (c->fin_acked && c->peer_fin)

@@ -495,7 +495,7 @@ static u32 generic_revision(const struct ec_app_model *m)
 		    (u64)!!p->id << 25 | (u64)!!p->foe << 30 |
 		    (u64)!!p->diag << 31 | (u64)p->quirks.no_mbox_words << 48 |
 		    (u64)p->quirks.no_protocols << 49 |
-		    (u64)p->eoe << 60 | (u64)p->quirks.sms[EC_APP_OUT] << 50 |
+		    (u64)p->eoe << 58 | (u64)p->quirks.sms[EC_APP_OUT] << 50 |
 		    (u64)p->quirks.sms[EC_APP_IN] << 54;
 
 	for (u32 i = 0; i < p->quirks.dc_modes.n; i++)

@@ -236,7 +236,7 @@ static void sim_app_eoe_fault_needs_ethernet(struct kunit *test)
 
 	KUNIT_EXPECT_EQ(test, ec_sim_command(b->sim, &bed_ops, "eoe s lost", 10, &f, &err),
 			-EINVAL);
-	KUNIT_EXPECT_STREQ(test, err.text, "the slave has no Ethernet; add eoe=host to it");
+	KUNIT_EXPECT_STREQ(test, err.text, "the slave has no Ethernet; add eoe=host or eoe=switch to it");
 }
 
 static struct kunit_case cases[] = {

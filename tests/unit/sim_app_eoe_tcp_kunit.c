@@ -186,10 +186,18 @@ static void sim_app_eoe_tcp_keeps_windows(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, get(h, &s, 500));	/* does the window open? */
 	KUNIT_EXPECT_EQ(test, s.len, 1);
 	c.window = 300;
+	c.seq = s.ack;
 	KUNIT_ASSERT_TRUE(test, put(h, &c, ACK, NULL, 0));
 	KUNIT_ASSERT_TRUE(test, get(h, &s, 5));
 	KUNIT_EXPECT_EQ(test, s.len, 300);
 	KUNIT_EXPECT_EQ(test, s.seq, c.ack);
+	/* a probe of a station that waits for the window: one byte before what comes next */
+	c.seq--;
+	c.window = 0;
+	KUNIT_ASSERT_TRUE(test, put(h, &c, ACK, NULL, 0));
+	KUNIT_ASSERT_TRUE(test, get(h, &s, 5));
+	KUNIT_EXPECT_EQ(test, s.len, 0);
+	KUNIT_EXPECT_EQ(test, s.ack, c.seq + 1);
 }
 
 static void sim_app_eoe_tcp_refuses_with_reset(struct kunit *test)

@@ -106,7 +106,7 @@ static const struct {
 	{ "slave a drive\nfault eoe a lost", 2, "add eoe=host" },
 	{ "slave a drive eoe=host\nfault eoe a full", 2, "expected good, interleave" },
 	{ "slave a drive eoe=host\nfault eoe a lost every=0", 2, "out of range" },
-	{ "slave a drive eoe=yes", 1, "invalid eoe 'yes': expected host" },
+	{ "slave a drive eoe=yes", 1, "invalid eoe 'yes': expected host or switch" },
 	{ "slave a EL2008 eoe=host", 1, "remove soe=, voe=, foe= and eoe=" },
 	{ "slave a drive\nfault mailbox a lost after=-1", 2, "out of range" },
 	{ "slave a drive\nfault mailbox a delay by=5s", 2, "too long here" },

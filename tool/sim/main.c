@@ -17,6 +17,8 @@ static const char usage[] =
 "second port of a master.\n"
 "\n"
 "  -s, --segment NAME   built-in segment or file with a description (default: bench)\n"
+"      --port SLAVE=IF  the Ethernet port of a slave with eoe=switch is the interface IF,\n"
+"                       which exists, or else a tap that is created\n"
 "      --control PATH   socket that accepts faults while the simulator runs\n"
 "      --tell PATH FAULT...  send a fault to the ethercat-sim with this socket\n"
 "      --seed N         replaces the seed of the segment\n"
@@ -38,6 +40,8 @@ struct options {
 	const char *check;
 	const char *control;
 	const char *tell;
+	const char *port[UPLINKS];
+	int n_ports;
 	long long seed;
 	enum ec_sim_bug bug;
 	bool verbose;
@@ -77,6 +81,7 @@ static int parse(int argc, char **argv, struct options *o)
 		{ "segment", required_argument, NULL, 's' },
 		{ "seed", required_argument, NULL, 'S' },
 		{ "bug", required_argument, NULL, 'B' },
+		{ "port", required_argument, NULL, 'P' },
 		{ "control", required_argument, NULL, 'C' },
 		{ "tell", required_argument, NULL, 'T' },
 		{ "verbose", no_argument, NULL, 'v' },
@@ -96,6 +101,14 @@ static int parse(int argc, char **argv, struct options *o)
 			break;
 		case 'c':
 			o->check = optarg;
+			break;
+		case 'P':
+			if (o->n_ports == UPLINKS) {
+				fprintf(stderr, "ethercat-sim: more than %d times --port\n",
+					UPLINKS);
+				return -1;
+			}
+			o->port[o->n_ports++] = optarg;
 			break;
 		case 'C':
 			o->control = optarg;
@@ -173,14 +186,20 @@ static int serve(const struct options *o, char **names, int n)
 {
 	struct port ports[EC_SIM_PORTS] = { { .fd = -1, .claim = -1 }, { .fd = -1, .claim = -1 } };
 	struct ec_sim *sim = load_segment(o->segment, o->seed);
-	int i, ret = 1, control = -1;
+	struct uplink uplinks[UPLINKS];
+	int i, n_up = 0, ret = 1, control = -1;
 
 	if (!sim)
 		return 1;
 	ec_sim_set_bug(sim, o->bug);
 	for (i = 0; i < n; i++)
-		if (port_open(&ports[i], names[i]))
+		if (port_open(&ports[i], names[i], false))
 			goto out;
+	while (n_up < o->n_ports) {
+		n_up++;
+		if (uplink_open(&uplinks[n_up - 1], sim, o->port[n_up - 1]))
+			goto out;
+	}
 	if (o->control) {
 		control = control_open(o->control);
 		if (control < 0)
@@ -189,11 +208,13 @@ static int serve(const struct options *o, char **names, int n)
 	printf("segment %s, %u slave(s), at %s%s%s\n", o->segment, ec_sim_count(sim), names[0],
 	       n > 1 ? " and " : "", n > 1 ? names[1] : "");
 	fflush(stdout);
-	ret = run_segment(sim, ports, n, control, o->verbose);
+	ret = run_segment(sim, ports, n, uplinks, n_up, control, o->verbose);
 out:
 	control_close(control, o->control);
 	for (i = 0; i < n; i++)
 		port_close(&ports[i]);
+	for (i = 0; i < n_up; i++)
+		uplink_close(&uplinks[i]);
 	ec_sim_free(sim);
 	return ret;
 }

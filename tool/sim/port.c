@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Packet socket which gets the EtherCAT frames of one interface, direct, tagged or in UDP. */
+/* Packet socket which gets frames of one interface: EtherCAT direct, tagged or in UDP; or all. */
 #include <arpa/inet.h>
 #include <errno.h>
 #include <linux/filter.h>
@@ -95,7 +95,7 @@ static struct sock_filter ethercat[] = {
 };
 
 /* Receive frames from the wire only, with any destination address. */
-static int attach(struct port *p)
+static int attach(struct port *p, bool all)
 {
 	struct sockaddr_ll at = {
 		.sll_family = AF_PACKET, .sll_protocol = htons(ETH_P_ALL), .sll_ifindex = p->index,
@@ -106,7 +106,7 @@ static int attach(struct port *p)
 	struct packet_mreq promisc = { .mr_ifindex = p->index, .mr_type = PACKET_MR_PROMISC };
 	int on = 1, space = 4 << 20;
 
-	if (setsockopt(p->fd, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter)) ||
+	if ((!all && setsockopt(p->fd, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter))) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_AUXDATA, &on, sizeof(on)) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof(on)) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_ADD_MEMBERSHIP, &promisc, sizeof(promisc)) ||
@@ -123,10 +123,11 @@ static int attach(struct port *p)
  * port_open() - begin to listen; reports errors on stderr
  * @p: port
  * @name: of the interface
+ * @all: receive all frames, not only those of EtherCAT
  *
  * Return: 0 or -1.
  */
-int port_open(struct port *p, const char *name)
+int port_open(struct port *p, const char *name, bool all)
 {
 	p->fd = -1;
 	p->claim = -1;
@@ -142,7 +143,7 @@ int port_open(struct port *p, const char *name)
 			strerror(errno), errno == EPERM ? "; run as root or with CAP_NET_RAW" : "");
 		return -1;
 	}
-	return check_kind(p) || claim(p) || attach(p) ? -1 : 0;
+	return check_kind(p) || claim(p) || attach(p, all) ? -1 : 0;
 }
 
 /**

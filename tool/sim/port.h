@@ -25,7 +25,7 @@ struct port {
 	bool gone;
 };
 
-int port_open(struct port *p, const char *name);
+int port_open(struct port *p, const char *name, bool all);
 void port_close(struct port *p);
 void port_check(struct port *p);
 int port_receive(struct port *p, void *buf, size_t cap);

@@ -18,6 +18,7 @@
 #define FRAMES	1024		/* in flight at once */
 #define BURST	64		/* frames read before others are sent */
 #define LOOK_NS	100000000ull	/* longest sleep */
+#define UPLINK_NS	1000000ull	/* the same with Ethernet ports */
 #define SECOND	1000000000ull
 
 /* a frame that returns to the master */
@@ -35,6 +36,8 @@ struct flying {
  * @sim: the segment
  * @ports: interfaces, of master port 0 and 1
  * @n_ports: how many
+ * @uplinks: Ethernet ports of slaves
+ * @n_uplinks: how many
  * @control: socket of control_open(), -1: none
  * @flying: by time of arrival
  * @under_way: frames of which it is not known yet whether and when they return
@@ -50,6 +53,8 @@ struct run {
 	struct ec_sim *sim;
 	struct port *ports;
 	int n_ports;
+	struct uplink *uplinks;
+	int n_uplinks;
 	int control;
 	struct flying *flying;
 	struct flying *under_way;
@@ -239,11 +244,21 @@ static void show(const struct run *r)
 	fflush(stdout);
 }
 
+/* Frames that leave slaves by their Ethernet ports. */
+static void leave(struct run *r)
+{
+	if (r->n_uplinks)
+		advance(r);
+	for (int i = 0; i < r->n_uplinks; i++)
+		uplink_out(&r->uplinks[i]);
+}
+
 /* Sleep until a frame arrives or is due. */
 static void rest(struct run *r, const sigset_t *mask)
 {
-	struct pollfd fds[EC_SIM_PORTS + 1];
-	u64 now = now_ns(r), left = LOOK_NS, next = ec_sim_next_step(r->sim);
+	struct pollfd fds[EC_SIM_PORTS + 1 + UPLINKS], *up;
+	u64 now = now_ns(r), left = r->n_uplinks ? UPLINK_NS : LOOK_NS;
+	u64 next = ec_sim_next_step(r->sim);
 	struct timespec t;
 	int i;
 
@@ -254,8 +269,14 @@ static void rest(struct run *r, const sigset_t *mask)
 	for (i = 0; i < r->n_ports; i++)
 		fds[i] = (struct pollfd){ .fd = r->ports[i].fd, .events = r->free ? POLLIN : 0 };
 	fds[i] = (struct pollfd){ .fd = r->control, .events = POLLIN };
+	up = &fds[i + 1];
+	for (int k = 0; k < r->n_uplinks; k++)
+		up[k] = (struct pollfd){
+			.fd = r->uplinks[k].port.fd,
+			.events = ec_app_eoe_takes(r->uplinks[k].app) ? POLLIN : 0,
+		};
 	t = (struct timespec){ .tv_nsec = (long)left };
-	if (ppoll(fds, (nfds_t)r->n_ports + 1, &t, mask) <= 0)
+	if (ppoll(fds, (nfds_t)(r->n_ports + 1 + r->n_uplinks), &t, mask) <= 0)
 		return;
 	for (i = 0; i < r->n_ports; i++)
 		if (fds[i].revents)
@@ -264,6 +285,9 @@ static void rest(struct run *r, const sigset_t *mask)
 		advance(r);	/* a fault begins now */
 		control_receive(r->control, r->sim);
 	}
+	for (int k = 0; k < r->n_uplinks; k++)
+		if (up[k].revents)
+			uplink_in(&r->uplinks[k], now_ns(r));
 }
 
 /* Periodic: advance the time of a quiet segment, check the interfaces. */
@@ -286,6 +310,7 @@ static void loop(struct run *r, const sigset_t *mask, bool verbose)
 		u64 now = now_ns(r);
 
 		deliver(r);
+		leave(r);
 		if (now - looked >= LOOK_NS) {
 			looked = now;
 			if (!look(r))
@@ -320,14 +345,20 @@ static void catch_signals(sigset_t *old)
  * @sim: segment
  * @ports: interfaces, of master port 0 and 1
  * @n_ports: how many
+ * @uplinks: Ethernet ports of slaves
+ * @n_uplinks: how many
  * @control: socket of control_open(), -1: none
  * @verbose: counters every second
  *
  * Return: exit status: 0 after a signal, 1 when an interface was removed.
  */
-int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, int control, bool verbose)
+int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, struct uplink *uplinks,
+		int n_uplinks, int control, bool verbose)
 {
-	struct run r = { .sim = sim, .ports = ports, .n_ports = n_ports, .control = control };
+	struct run r = {
+		.sim = sim, .ports = ports, .n_ports = n_ports, .uplinks = uplinks,
+		.n_uplinks = n_uplinks, .control = control,
+	};
 	struct flying *frames = calloc(FRAMES, sizeof(*frames));
 	sigset_t mask;
 

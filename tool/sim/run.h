@@ -5,7 +5,9 @@
 
 #include "port.h"
 #include "sim.h"
+#include "uplink.h"
 
-int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, int control, bool verbose);
+int run_segment(struct ec_sim *sim, struct port *ports, int n_ports, struct uplink *uplinks,
+		int n_uplinks, int control, bool verbose);
 
 #endif
