@@ -581,8 +581,8 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
  * @sim: segment whose memory it takes
  * @eeprom: image
  * @len: bytes in it
- * @params: of these only @mapping and @id count, and @soe, @voe and @foe where
- *          the image has the protocol
+ * @params: of these only @mapping and @id count, and @soe, @voe, @foe and @eoe
+ *          where the image has the protocol
  * @err: -ENOMEM without memory, -EINVAL: not an image
  *
  * The dictionary is made from the PDOs of the image.

@@ -126,7 +126,8 @@ static void drain(u32 limit, bool right)
 		MUST(!ec_eoe_fragment_decode(msg, (size_t)n, &f));
 		n = ec_eoe_part_add(&part, data, sizeof(data), &f);
 		MUST(!right || n >= 0);
-		MUST(!right || !n || (n >= EC_EOE_FRAME_MIN && !memcmp(data + 6, "\2\0\0\0\0\2", 6)));
+		MUST(!right || n < 1 || n >= EC_EOE_FRAME_MIN);
+		MUST(!right || n < 1 || !memcmp(data + 6, "\2\0\0\0\0\2", 6));
 	}
 }
 

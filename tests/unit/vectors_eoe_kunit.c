@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* EoE messages typed from the tables of the specification. */
 #include "wire_kunit.h"
-#include "../../master/wire/eoe.h"
+#include "../../master/wire/eoe_frame.h"
 
 /* type 2, last fragment; flags; MAC; addresses as 32-bit numbers; name */
 static const u8 set[62] = {
@@ -73,10 +73,41 @@ static void vectors_eoe_get_ip(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, p.ip, ip, 4);
 }
 
+/*
+ * Frame 5 of 70 bytes in two parts: type 0, no port; number 0, size 3 units of 32; then port 2,
+ * last fragment, time stamp; number 1, offset 2 units.
+ */
+static void vectors_eoe_fragments(struct kunit *test)
+{
+	static const u8 first[4 + 64] = { 0x00, 0x00, 0xc0, 0x50, 0x11 };
+	static const u8 second[] = {
+		0x20, 0x03, 0x81, 0x50, 0xa0, 0xa1, 0xa2, 0xa3, 0xa4, 0xa5,
+		0x78, 0x56, 0x34, 0x12,		/* time */
+	};
+	struct ec_eoe_part p = { 0 };
+	struct ec_eoe_fragment f;
+	u8 frame[96], out[68];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_decode(first, sizeof(first), &f), 0);
+	KUNIT_EXPECT_EQ(test, f.units, 3);
+	KUNIT_EXPECT_EQ(test, f.frame, 5);
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_encode(out, sizeof(out), &f), 68);
+	KUNIT_EXPECT_MEMEQ(test, out, first, sizeof(first));
+	KUNIT_EXPECT_EQ(test, ec_eoe_part_add(&p, frame, sizeof(frame), &f), 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_decode(second, sizeof(second), &f), 0);
+	KUNIT_EXPECT_EQ(test, f.number, 1);
+	KUNIT_EXPECT_EQ(test, f.units, 2);
+	KUNIT_EXPECT_EQ(test, ec_eoe_part_add(&p, frame, sizeof(frame), &f), 70);
+	KUNIT_EXPECT_EQ(test, p.port, 2);
+	KUNIT_EXPECT_EQ(test, frame[0], 0x11);
+	KUNIT_EXPECT_MEMEQ(test, frame + 64, second + 4, 6);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(vectors_eoe_set_ip_request),
 	KUNIT_CASE(vectors_eoe_set_ip_response),
 	KUNIT_CASE(vectors_eoe_get_ip),
+	KUNIT_CASE(vectors_eoe_fragments),
 	{ }
 };
 
