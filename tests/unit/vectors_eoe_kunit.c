@@ -100,6 +100,15 @@ static void vectors_eoe_fragments(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_eoe_part_add(&p, frame, sizeof(frame), &f), 70);
 	KUNIT_EXPECT_EQ(test, p.port, 2);
 	KUNIT_EXPECT_EQ(test, frame[0], 0x11);
+	/* a mailbox of 74 bytes has just the space of the first one */
+	f = (struct ec_eoe_fragment){ .frame = 5 };
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_cut(&f, frame, 70, 0, 0, 74), 64u);
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_encode(out, sizeof(out), &f), 68);
+	KUNIT_EXPECT_MEMEQ(test, out, first, sizeof(first));
+	f.port = 2;
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_cut(&f, frame, 70, 64, 1, 74), 6u);
+	KUNIT_EXPECT_EQ(test, ec_eoe_fragment_encode(out, sizeof(out), &f), 10);
+	KUNIT_EXPECT_MEMEQ(test, out, "\x20\x01\x81\x50\xa0\xa1\xa2\xa3\xa4\xa5", 10);
 	KUNIT_EXPECT_MEMEQ(test, frame + 64, second + 4, 6);
 }
 
