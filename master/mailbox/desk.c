@@ -5,6 +5,7 @@
  */
 #include <linux/ktime.h>
 #include "../wire/coe.h"
+#include "../wire/eoe.h"
 #include "box_state.h"
 #include "desk.h"
 
@@ -157,11 +158,22 @@ static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
 	       (u == mb->desk.sending && ec_box_is_doubtful(&mb->box));
 }
 
+/* Of EoE, frames of the network go to the user that reads them, never to one with a request. */
+static bool is_kind(const struct ec_mbox *mb, const struct ec_mbox_user *u, u16 len)
+{
+	int type;
+
+	if (u->type != EC_MBOX_EOE)
+		return true;
+	type = ec_eoe_type_decode(mb->box.rx + EC_MBOX_HDR, len);
+	return u->answer ? type != EC_EOE_FRAGMENT : type == EC_EOE_FRAGMENT;
+}
+
 /*
  * The user that a message of a type is for. An error reply has no type: it is for the user that
  * has sent its request first. A user that is DONE has to take its previous message first.
  */
-static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type)
+static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type, u16 len)
 {
 	struct ec_mbox_user *u, *reader = NULL;
 
@@ -170,7 +182,8 @@ static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type)
 		/* it only sends */
 		if (!u->rx)
 			continue;
-		if (type != EC_MBOX_ERR && u->type != type)
+		if (type == EC_MBOX_ERR ? !u->answer && u->type == EC_MBOX_EOE :
+		    u->type != type || !is_kind(mb, u, len))
 			continue;
 		if (!may_have(mb, u) && !(u->phase == EC_MBOX_USER_DONE && u->answer))
 			continue;
@@ -212,7 +225,7 @@ static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 static void desk_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
 	bool emergency = is_emergency(mb, h);
-	struct ec_mbox_user *u = emergency ? NULL : desk_find(mb, h->type);
+	struct ec_mbox_user *u = emergency ? NULL : desk_find(mb, h->type, h->len);
 
 	lockdep_assert_held(&mb->box.lock);
 	if (!u && !emergency && h->type != EC_MBOX_VOE && h->type != EC_MBOX_EOE)
@@ -231,7 +244,7 @@ static void desk_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 
 static void refuse_malformed(struct ec_mbox *mb)
 {
-	struct ec_mbox_user *u = desk_find(mb, EC_MBOX_ERR);
+	struct ec_mbox_user *u = desk_find(mb, EC_MBOX_ERR, 0);
 
 	if (!u || u->phase == EC_MBOX_USER_DONE)
 		return;
@@ -343,7 +356,7 @@ bool ec_desk_has_reader(struct ec_mbox *mb)
 	lockdep_assert_held(&mb->box.lock);
 	if (ec_box_message(&mb->box, &h) || h.type != EC_MBOX_VOE)
 		return false;
-	u = desk_find(mb, EC_MBOX_VOE);
+	u = desk_find(mb, EC_MBOX_VOE, h.len);
 	if (!u)
 		return false;
 	deliver(mb, u, &h);
