@@ -25,6 +25,7 @@
 #include "ethercat-tools/app.h"
 #include "ethercat-tools/cards.h"
 #include "ethercat-tools/eeprom.h"
+#include "ethercat-tools/eoe.h"
 #include "ethercat-tools/events.h"
 #include "ethercat-tools/handle.h"
 #include "ethercat-tools/mailbox.h"

@@ -81,6 +81,7 @@ static void destroy(struct ec_master *m)
 	ec_monitor_stop(m);
 	ec_event_readers_exit(m);
 	ec_slave_devices_stop(&m->slave_devices);
+	ec_eoe_stop(&m->eoe);
 	ec_dc_exit(&m->dc);
 	ec_dc_track_exit(&m->dc);
 	queues_destroy(m);

@@ -21,6 +21,10 @@ static unsigned int debug_level;
 module_param(debug_level, uint, 0444);
 MODULE_PARM_DESC(debug_level, "0 quiet, 1 more, 2 every frame");
 
+static bool eoe = true;
+module_param(eoe, bool, 0444);
+MODULE_PARM_DESC(eoe, "each slave with EoE has a network device (default: yes)");
+
 static int __init ec_init(void)
 {
 	int ret = ec_cdev_init();
@@ -34,7 +38,7 @@ static int __init ec_init(void)
 	if (ret)
 		goto err_masters;
 	/* the last step, see there */
-	ret = ec_cdev_publish();
+	ret = ec_cdev_publish(eoe);
 	if (ret)
 		goto err_power;
 	if (!n_main)

@@ -731,6 +731,7 @@ static int monitor(void *data)
 		ec_log_flush(m->base, false);
 		ec_event_readers_kick(m);
 		ec_slave_devices_kick(&m->slave_devices);
+		ec_eoe_look(&m->eoe);
 		set_current_state(TASK_IDLE);
 		watch_events(&w);
 		if (!kthread_should_stop() && !READ_ONCE(m->pause) &&

@@ -22,6 +22,7 @@
 #include "ethercat_cause.h"
 #include "ethercat_common.h"
 #include "ethercat_config.h"
+#include "ethercat_eoe.h"
 #include "ethercat_event.h"
 #include "ethercat_group.h"
 #include "ethercat_info.h"
@@ -64,6 +65,7 @@
 #define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
 #define EC_IOC_ABSENT		EC_IOC_RW(0x13, struct ec_ioc_absent)
 #define EC_IOC_CONFIG_WRITE	EC_IOC_RW(0x14, struct ec_ioc_config_write)
+#define EC_IOC_EOE		EC_IOC_RW(0x16, struct ec_ioc_eoe)
 #define EC_IOC_CONFIG_COMMAND	EC_IOC_RW(0x17, struct ec_ioc_config_command)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 #define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
@@ -89,6 +91,7 @@
 #define EC_IOC_RESET		EC_IOC_N(0x27)
 #define EC_IOC_CYCLE_RESET	EC_IOC_N(0x28)
 #define EC_IOC_SDO_INFO		EC_IOC_RW(0x2f, struct ec_ioc_sdo_info)
+#define EC_IOC_EOE_WISH		EC_IOC_W(0x34, struct ec_ioc_eoe_wish)
 #define EC_IOC_IP_SET		EC_IOC_RW(0x30, struct ec_ioc_ip)
 #define EC_IOC_IP_GET		EC_IOC_RW(0x31, struct ec_ioc_ip)
 #define EC_IOC_SOE_READ		EC_IOC_RW(0x29, struct ec_ioc_soe)

@@ -241,13 +241,14 @@ static char *devnode(EC_DEVNODE_DEVICE *dev, umode_t *mode)
 }
 
 /* Udev makes nodes of them; a program that knows the numbers needs none. */
-static void make_nodes(void)
+static void make_nodes(bool eoe)
 {
 	struct device *dev;
 	unsigned int i;
 
 	for (i = 0; i < n_published; i++) {
 		dev = device_create(ec_class, NULL, first_dev + i, NULL, "EtherCAT%u", i);
+		ec_eoe_start(&masters[i]->eoe, &masters[i]->bus, IS_ERR(dev) ? NULL : dev, eoe);
 		if (IS_ERR(dev))
 			pr_err("EtherCAT %u: cannot make its device node (%pe); make it with \"mknod /dev/EtherCAT%u c %u %u\"\n",
 			       i, dev, i, MAJOR(first_dev), MINOR(first_dev) + i);
@@ -258,6 +259,7 @@ static void make_nodes(void)
 
 /**
  * ec_cdev_publish() - let programs open the devices of all masters
+ * @eoe: each slave with EoE has a network device
  *
  * The last step of the load. The memory of a module whose load fails is freed while a program
  * has its device open, so nothing that can fail may come after it.
@@ -265,14 +267,14 @@ static void make_nodes(void)
  * Context: Process. May sleep.
  * Return: 0 or -errno; on failure no program has been able to open anything.
  */
-int ec_cdev_publish(void)
+int ec_cdev_publish(bool eoe)
 {
 	int ret = n_masters ? cdev_add(cdev, first_dev, n_masters) : 0;
 
 	if (ret)
 		return ret;
 	n_published = n_masters;
-	make_nodes();
+	make_nodes(eoe);
 	return 0;
 }
 
@@ -289,6 +291,7 @@ void ec_cdev_unpublish(void)
 		return;
 	for (i = 0; i < n_published; i++) {
 		ec_slave_devices_stop(&masters[i]->slave_devices);
+		ec_eoe_stop(&masters[i]->eoe);
 		device_destroy(ec_class, first_dev + i);
 	}
 	n_published = 0;

@@ -50,7 +50,7 @@ unsigned int ec_cdev_count(void);
 struct ec_master *ec_cdev_master(unsigned int index);
 void ec_cdev_add(struct ec_master *m);
 struct ec_master *ec_cdev_remove(void);
-int ec_cdev_publish(void);
+int ec_cdev_publish(bool eoe);
 void ec_cdev_unpublish(void);
 
 long ec_ioctl(struct file *filp, unsigned int cmd, unsigned long arg);

@@ -53,6 +53,7 @@ CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
 CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
 	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
 CMD(EC_IOC_UNIT_INFO, ec_ioc_unit_info, 0, SHOW)
+CMD(EC_IOC_EOE, ec_ioc_eoe, 0, RSV1(ec_ioc_eoe))
 CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
 	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)))
 CMD(EC_IOC_SDO_UPLOAD, ec_ioc_sdo_upload, F_WRITE, SLAVE(ec_ioc_sdo),
@@ -81,6 +82,7 @@ CMD(EC_IOC_SII_WRITE, ec_ioc_sii_write, F_WRITE, SLAVE(ec_ioc_sii_write),
 CMD(EC_IOC_ALIAS, ec_ioc_alias, F_WRITE, SLAVE(ec_ioc_alias), RSV1(ec_ioc_alias),
 	FLAGS(EC_SII_FLAG_FORCE | EC_SII_FLAG_REPAIR))
 CMD(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state))
+CMD(EC_IOC_EOE_WISH, ec_ioc_eoe_wish, F_WRITE, SLAVE(ec_ioc_eoe_wish), RSV1(ec_ioc_eoe_wish))
 CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
 	RSV(FIELD(ec_ioc_ip, params.reserved), FIELD(ec_ioc_ip, reserved)))
 CMD(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, SLAVE(ec_ioc_ip),

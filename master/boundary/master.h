@@ -11,6 +11,7 @@
 #include "../carry/carry.h"
 #include "../carry/rider.h"
 #include "../session/session.h"
+#include "../eoe/netdevs.h"
 #include "event_readers.h"
 #include "slave_devices.h"
 
@@ -39,6 +40,8 @@ struct ec_master {
 	struct ec_event_readers readers;
 	/** @slave_devices: slaves for the rest of Linux */
 	struct ec_slave_devices slave_devices;
+	/** @eoe: network devices of slaves */
+	struct ec_eoe eoe;
 	/** @api: for applications in the kernel, immutable */
 	struct ec_api *api;
 	/** @monitor: thread that watches the bus; only monitor.c uses it and @rider */

@@ -18,7 +18,7 @@ static void all_refuse(int fd, const struct ec_ioc_address *a, int err, const ch
 		EC_IOC_REG_RDWR, EC_IOC_STATE, EC_IOC_SDO_UPLOAD, EC_IOC_SDO_DOWNLOAD,
 		EC_IOC_SDO_INFO, EC_IOC_SOE_READ, EC_IOC_SOE_WRITE, EC_IOC_FOE_READ,
 		EC_IOC_FOE_WRITE, EC_IOC_IP_GET, EC_IOC_IP_SET, EC_IOC_EMERGENCIES,
-		EC_IOC_LET_IN,
+		EC_IOC_LET_IN, EC_IOC_EOE_WISH,
 	};
 	union {
 		struct ec_ioc_reg reg;

@@ -50,6 +50,8 @@ const struct cmd cmds[] = {
 	CMD(EMERGENCIES, DATA(ec_ioc_emergencies)),
 	CMD(EVENTS, .flags = EC_EVENTS_FLAG_NEW),
 	CMD(SLAVES_DOWN, APP),
+	CMD(EOE, RSV1(ec_ioc_eoe)),
+	CMD(EOE_WISH, BUS, RSV1(ec_ioc_eoe_wish)),
 	CMD(IP_GET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved), AT(ec_ioc_ip, reserved) }),
 	CMD(IP_SET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved), AT(ec_ioc_ip, reserved) }),
 	CMD(SC_IP, APP, .reserved = { AT(ec_ioc_sc_ip, params.reserved) }),

@@ -1,0 +1,378 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The network device of a slave with EoE. It has a carrier while it is up and the mailbox of its
+ * slave runs. EtherCAT frames pass in neither direction: there is no loop into the fieldbus.
+ */
+#include <linux/etherdevice.h>
+#include <linux/ethtool.h>
+#include <linux/if_vlan.h>
+#include <linux/jhash.h>
+#include "../bus/slave.h"
+#include "../kernel/compat.h"
+#include "netdevs.h"
+#include "netdev.h"
+
+#define DRIVER	"ec_eoe"
+
+static struct ec_eoe_netdev *of_port(struct ec_eoe_port *p)
+{
+	return container_of(p, struct ec_eoe_netdev, port);
+}
+
+/* Is it an EtherCAT frame, behind VLAN tags perhaps? */
+static bool is_ethercat(const struct sk_buff *skb)
+{
+	unsigned int at = 2 * ETH_ALEN;
+	const u8 *p = skb->data;
+	u16 type;
+
+	for (; at + 2 <= skb_headlen(skb); at += VLAN_HLEN) {
+		type = get_unaligned_be16(p + at);
+		if (!eth_type_vlan(htons(type)))
+			return type == EC_ETHERTYPE;
+	}
+	return false;
+}
+
+/* frames --------------------------------------------------------------------*/
+
+static netdev_tx_t eoe_xmit(struct sk_buff *skb, struct net_device *nd)
+{
+	struct ec_eoe_netdev *d = netdev_priv(nd);
+	int ret;
+
+	if (is_ethercat(skb)) {
+		d->tx_dropped++;
+		dev_kfree_skb_any(skb);
+		return NETDEV_TX_OK;
+	}
+	/* it frees the frame if there is no memory */
+	if (skb_linearize(skb) || eth_skb_pad(skb)) {
+		d->tx_dropped++;
+		return NETDEV_TX_OK;
+	}
+	skb_tx_timestamp(skb);
+	ret = ec_eoe_port_send(&d->port, skb);
+	if (ret == -EBUSY) {
+		netif_stop_queue(nd);
+		return NETDEV_TX_BUSY;
+	}
+	if (ret) {
+		d->tx_dropped++;
+		dev_kfree_skb_any(skb);
+		return NETDEV_TX_OK;
+	}
+	if (ec_eoe_port_has_room(&d->port))
+		return NETDEV_TX_OK;
+	netif_stop_queue(nd);
+	/* some may have left in between */
+	smp_mb();
+	if (ec_eoe_port_has_room(&d->port))
+		netif_start_queue(nd);
+	return NETDEV_TX_OK;
+}
+
+static void eoe_room(struct ec_eoe_port *p)
+{
+	netif_wake_queue(of_port(p)->nd);
+}
+
+static void eoe_deliver(struct ec_eoe_port *p, struct sk_buff *skb)
+{
+	struct ec_eoe_netdev *d = of_port(p);
+	const struct ethhdr *eth = (const struct ethhdr *)skb->data;
+
+	/* nobody else has the address of this device */
+	if (is_ethercat(skb) || !is_valid_ether_addr(eth->h_source) ||
+	    ether_addr_equal(eth->h_source, d->nd->dev_addr)) {
+		d->rx_dropped++;
+		kfree_skb(skb);
+		return;
+	}
+	/* it frees the frame if there is no memory */
+	if (eth_skb_pad(skb)) {
+		d->rx_dropped++;
+		return;
+	}
+	d->rx_packets++;
+	d->rx_bytes += skb->len;
+	skb->protocol = eth_type_trans(skb, d->nd);
+	netif_rx(skb);
+}
+
+/* slave ---------------------------------------------------------------------*/
+
+static void leave(struct ec_eoe_netdev *d)
+{
+	lockdep_assert_held(&d->lock);
+	if (!d->slave)
+		return;
+	netif_carrier_off(d->nd);
+	ec_eoe_port_close(&d->port);
+	/* no eoe_xmit() runs behind it */
+	netif_tx_disable(d->nd);
+	ec_eoe_port_detach(&d->port);
+	ec_slave_unref(d->slave);
+	d->slave = NULL;
+}
+
+static void join(struct ec_eoe_netdev *d, struct ec_slave *s)
+{
+	lockdep_assert_held(&d->lock);
+	if (ec_eoe_port_attach(&d->port, &s->mbox))
+		return;
+	d->slave = ec_slave_ref(s);
+	netif_start_queue(d->nd);
+	netif_carrier_on(d->nd);
+}
+
+/**
+ * ec_eoe_netdev_follow() - the slave of a device, now
+ * @d: device
+ * @s: its slave; NULL: it is not connected
+ *
+ * Context: Process. May sleep.
+ */
+void ec_eoe_netdev_follow(struct ec_eoe_netdev *d, struct ec_slave *s)
+{
+	bool runs = s && !ec_box_is_off(&s->mbox.box) && !READ_ONCE(d->port.err);
+
+	mutex_lock(&d->lock);
+	if (d->slave && (d->slave != s || !runs))
+		leave(d);
+	if (d->open && s && !d->slave && !ec_box_is_off(&s->mbox.box))
+		join(d, s);
+	mutex_unlock(&d->lock);
+}
+
+static void eoe_failed(struct ec_eoe_port *p, int err)
+{
+	struct ec_eoe_netdev *d = of_port(p);
+
+	netif_carrier_off(d->nd);
+	ec_eoe_kick(d->eoe);
+}
+
+static const struct ec_eoe_port_ops port_ops = {
+	.deliver = eoe_deliver,
+	.room = eoe_room,
+	.failed = eoe_failed,
+};
+
+/* network device ------------------------------------------------------------*/
+
+static int eoe_open(struct net_device *nd)
+{
+	struct ec_eoe_netdev *d = netdev_priv(nd);
+
+	mutex_lock(&d->lock);
+	d->open = true;
+	mutex_unlock(&d->lock);
+	ec_eoe_kick(d->eoe);
+	return 0;
+}
+
+static int eoe_stop(struct net_device *nd)
+{
+	struct ec_eoe_netdev *d = netdev_priv(nd);
+
+	mutex_lock(&d->lock);
+	d->open = false;
+	leave(d);
+	mutex_unlock(&d->lock);
+	ec_eoe_kick(d->eoe);
+	return 0;
+}
+
+static void eoe_stats(struct net_device *nd, struct rtnl_link_stats64 *st)
+{
+	struct ec_eoe_netdev *d = netdev_priv(nd);
+	struct ec_eoe_counts c;
+
+	ec_eoe_port_counts(&d->port, &c);
+	st->rx_packets = READ_ONCE(d->rx_packets);
+	st->rx_bytes = READ_ONCE(d->rx_bytes);
+	st->rx_errors = c.rx_errors;
+	st->rx_dropped = READ_ONCE(d->rx_dropped) + c.rx_dropped;
+	st->rx_missed_errors = c.rx_missed;
+	st->tx_packets = c.tx_frames;
+	st->tx_bytes = c.tx_bytes;
+	st->tx_errors = c.tx_lost;
+	st->tx_dropped = READ_ONCE(d->tx_dropped);
+}
+
+/**
+ * ec_eoe_netdev_measure() - the rates of the last second
+ * @d: device
+ *
+ * Context: The work of the master.
+ */
+void ec_eoe_netdev_measure(struct ec_eoe_netdev *d)
+{
+	u64 now = ktime_get_ns(), took = now - d->measured_ns;
+	u64 rx = READ_ONCE(d->rx_bytes), tx;
+	struct ec_eoe_counts c;
+
+	if (took < NSEC_PER_SEC)
+		return;
+	ec_eoe_port_counts(&d->port, &c);
+	tx = c.tx_bytes;
+	/* the first time it is not known since when they count */
+	if (d->measured_ns) {
+		WRITE_ONCE(d->rx_rate, div64_u64((rx - d->measured[0]) * NSEC_PER_SEC, took));
+		WRITE_ONCE(d->tx_rate, div64_u64((tx - d->measured[1]) * NSEC_PER_SEC, took));
+	}
+	d->measured_ns = now;
+	d->measured[0] = rx;
+	d->measured[1] = tx;
+}
+
+/**
+ * ec_eoe_netdev_show() - a device and its statistics
+ * @d: device
+ * @info: result, but for @index and EC_EOE_CONNECTED
+ *
+ * Context: Process.
+ */
+void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info)
+{
+	bool up = READ_ONCE(d->nd->flags) & IFF_UP;
+	struct ec_eoe_counts c;
+
+	ec_eoe_port_counts(&d->port, &c);
+	*info = (struct ec_ioc_eoe){
+		.index = info->index, .device = d->id.device, .position = d->id.position,
+		.state = (up ? EC_EOE_UP : 0) |
+			 (up && netif_carrier_ok(d->nd) ? EC_EOE_RUNNING : 0),
+		.waiting = ec_eoe_port_waiting(&d->port), .room = EC_EOE_FRAMES,
+		.rx_rate = up ? d->rx_rate : 0, .tx_rate = up ? d->tx_rate : 0,
+		.rx_frames = d->rx_packets, .rx_bytes = d->rx_bytes, .rx_errors = c.rx_errors,
+		.rx_missed = c.rx_missed, .rx_dropped = d->rx_dropped + c.rx_dropped,
+		.tx_frames = c.tx_frames, .tx_bytes = c.tx_bytes, .tx_lost = c.tx_lost,
+		.tx_dropped = d->tx_dropped,
+	};
+	/* it may be renamed at this moment */
+	memcpy(info->name, d->nd->name, sizeof(info->name) - 1);
+	ether_addr_copy(info->address, d->nd->dev_addr);
+}
+
+static const struct net_device_ops eoe_ops = {
+	.ndo_open = eoe_open,
+	.ndo_stop = eoe_stop,
+	.ndo_start_xmit = eoe_xmit,
+	.ndo_get_stats64 = eoe_stats,
+	.ndo_set_mac_address = eth_mac_addr,
+	.ndo_validate_addr = eth_validate_addr,
+};
+
+static void eoe_drvinfo(struct net_device *nd, struct ethtool_drvinfo *info)
+{
+	struct ec_eoe_netdev *d = netdev_priv(nd);
+
+	strscpy(info->driver, DRIVER, sizeof(info->driver));
+	snprintf(info->bus_info, sizeof(info->bus_info), "%u:%u, device %llu",
+		 d->eoe->bus->base->index, d->id.position, d->id.device);
+}
+
+static const struct ethtool_ops eoe_ethtool = {
+	.get_drvinfo = eoe_drvinfo,
+	.get_link = ethtool_op_get_link,
+	.get_ts_info = ethtool_op_get_ts_info,
+};
+
+/* udev rules know the devices by this type */
+static const struct device_type eoe_type = { .name = "ethercat_eoe" };
+
+static void eoe_setup(struct net_device *nd)
+{
+	ether_setup(nd);
+	nd->netdev_ops = &eoe_ops;
+	nd->ethtool_ops = &eoe_ethtool;
+	nd->max_mtu = ETH_DATA_LEN;
+	/* tags need four bytes more than a frame with the whole MTU has: they are in the data */
+	nd->priv_flags &= ~IFF_TX_SKB_SHARING;
+	SET_NETDEV_DEVTYPE(nd, &eoe_type);
+}
+
+/*
+ * The name is that of the incumbent where the slave has an alias, else by the serial number, which
+ * also moves with the slave; only one without both is called by its position.
+ */
+static void make_name(char *name, unsigned int master, const struct ec_eoe_id *id)
+{
+	if (id->alias)
+		snprintf(name, IFNAMSIZ, "eoe%ua%u", master, id->alias);
+	else if (id->serial)
+		snprintf(name, IFNAMSIZ, "eoe%un%x", master, id->serial);
+	else
+		snprintf(name, IFNAMSIZ, "eoe%us%u", master, id->position);
+}
+
+/*
+ * Locally administered, and the same after each restart: from the address of the main device, so
+ * that two hosts differ, and what the slave is called.
+ */
+static void make_address(struct net_device *nd, const u8 *main, const struct ec_eoe_id *id,
+			 const char *name)
+{
+	u32 what[] = { id->vendor, id->product, id->serial };
+	u32 a = jhash(main, ETH_ALEN, jhash2(what, ARRAY_SIZE(what), 0));
+	u32 b = jhash(name, strlen(name), a);
+	u8 addr[ETH_ALEN];
+
+	put_unaligned_be16(b, addr);
+	put_unaligned_be32(a ^ b, addr + 2);
+	addr[0] = (addr[0] & ~1) | 2;
+	eth_hw_addr_set(nd, addr);
+}
+
+/**
+ * ec_eoe_netdev_create() - make the network device of a slave; it is down
+ * @eoe: of the master
+ * @id: slave
+ *
+ * Context: Process. Takes rtnl.
+ * Return: device; ERR_PTR(): -EEXIST: another device has the name, or -errno.
+ */
+struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id)
+{
+	struct ec_eoe_netdev *d;
+	struct net_device *nd;
+	char name[IFNAMSIZ], alias[IFNAMSIZ];
+	int ret;
+
+	make_name(name, eoe->bus->base->index, id);
+	nd = alloc_netdev(sizeof(*d), name, NET_NAME_PREDICTABLE, eoe_setup);
+	if (!nd)
+		return ERR_PTR(-ENOMEM);
+	d = netdev_priv(nd);
+	d->nd = nd;
+	d->eoe = eoe;
+	d->id = *id;
+	mutex_init(&d->lock);
+	ec_eoe_port_init(&d->port, &port_ops);
+	make_address(nd, eoe->main, id, name);
+	/* a udev rule makes it another name */
+	snprintf(alias, sizeof(alias), "eoe%us%u", eoe->bus->base->index, id->position);
+	if (strcmp(alias, name))
+		dev_set_alias(nd, alias, strlen(alias));
+	SET_NETDEV_DEV(nd, eoe->parent);
+	netif_carrier_off(nd);
+	ret = register_netdev(nd);
+	if (!ret)
+		return d;
+	free_netdev(nd);
+	return ERR_PTR(ret);
+}
+
+/**
+ * ec_eoe_netdev_destroy() - remove a network device
+ * @d: device
+ *
+ * Context: Process. Takes rtnl.
+ */
+void ec_eoe_netdev_destroy(struct ec_eoe_netdev *d)
+{
+	unregister_netdev(d->nd);
+	free_netdev(d->nd);
+}

@@ -1,0 +1,75 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The network device of a slave with EoE. */
+#ifndef EC_EOE_NETDEV_H
+#define EC_EOE_NETDEV_H
+
+#include <linux/if.h>
+#include <linux/mutex.h>
+#include <linux/netdevice.h>
+#include "port.h"
+
+struct ec_eoe;
+struct ec_ioc_eoe;
+struct ec_slave;
+
+/**
+ * struct ec_eoe_id - what a slave is called as a network device
+ * @device: device number
+ * @alias: alias, 0: none, or another slave has it too
+ * @serial: serial number, 0: as @alias
+ * @position: ring position when it was found
+ * @vendor: vendor ID
+ * @product: product code
+ */
+struct ec_eoe_id {
+	u64 device;
+	u16 alias;
+	u32 serial;
+	u16 position;
+	u32 vendor;
+	u32 product;
+};
+
+/**
+ * struct ec_eoe_netdev - private part of a network device
+ * @nd: network device
+ * @eoe: those of the master; immutable
+ * @id: its slave
+ * @lock: protects @slave and @open, and attaching; inside rtnl
+ * @slave: slave that @port is attached to, with a reference; NULL: none
+ * @open: the device is up
+ * @port: way of the frames
+ * @rx_packets: frames of the slave that were delivered; by the work of @port
+ * @rx_bytes: bytes of them
+ * @rx_dropped: that were not
+ * @tx_dropped: frames that are not allowed to go to a slave, or came without one
+ * @rx_rate: bytes/s before @measured_ns; these four by the work of the master
+ * @tx_rate: the same of those to the slave
+ * @measured_ns: when they were measured last (ktime)
+ * @measured: bytes at that time, of the slave and to it
+ */
+struct ec_eoe_netdev {
+	struct net_device *nd;
+	struct ec_eoe *eoe;
+	struct ec_eoe_id id;
+	struct mutex lock;
+	struct ec_slave *slave;
+	bool open;
+	struct ec_eoe_port port;
+	unsigned long rx_packets;
+	unsigned long rx_bytes;
+	unsigned long rx_dropped;
+	unsigned long tx_dropped;
+	u32 rx_rate;
+	u32 tx_rate;
+	u64 measured_ns;
+	u64 measured[2];
+};
+
+struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id);
+void ec_eoe_netdev_destroy(struct ec_eoe_netdev *d);
+void ec_eoe_netdev_measure(struct ec_eoe_netdev *d);
+void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info);
+void ec_eoe_netdev_follow(struct ec_eoe_netdev *d, struct ec_slave *s);
+
+#endif

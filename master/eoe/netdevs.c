@@ -1,0 +1,452 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * The network devices follow the list of slaves, in a work behind the monitor. A network device
+ * belongs to a device number, so it finds its slave again wherever that is connected. While it is
+ * up it stays when its slave is lost, without a carrier: addresses, bridges and rules remain.
+ */
+#include <linux/etherdevice.h>
+#include <linux/rtnetlink.h>
+#include <linux/slab.h>
+#include "../bus/known.h"
+#include "../bus/slave.h"
+#include "../link/device.h"
+#include "../link/links.h"
+#include "netdevs.h"
+#include "netdev.h"
+
+#define STEP		64	/* slaves in a section of a reader */
+#define FOLLOW		(HZ / 10)	/* distance of the looks at slaves of devices that are up */
+
+/* the list ------------------------------------------------------------------*/
+
+static bool has_eoe(const struct ec_slave *s)
+{
+	return ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_EOE;
+}
+
+static void identify(const struct ec_slave *s, struct ec_eoe_id *id)
+{
+	*id = (struct ec_eoe_id){
+		.device = s->device, .alias = s->alias, .serial = s->info.serial,
+		.position = s->position, .vendor = s->info.vendor, .product = s->info.product,
+	};
+}
+
+/* Slaves with EoE; NULL: there is no memory, or the list changes at present. To be freed. */
+static struct ec_eoe_id *read_ids(struct ec_bus *bus, u32 lists, unsigned int *n)
+{
+	unsigned int i = 0, size = READ_ONCE(bus->n_slaves);
+	struct ec_eoe_id *ids = kvcalloc(size + 1, sizeof(*ids), GFP_KERNEL);
+	bool more = ids;
+
+	*n = 0;
+	while (more) {
+		unsigned int end = i + STEP;
+
+		cond_resched();
+		if (ec_show_begin(&bus->base->show))
+			break;
+		if (READ_ONCE(bus->lists) != lists || ec_bus_scan_busy(bus) ||
+		    bus->n_slaves > size) {
+			ec_show_end(&bus->base->show);
+			break;
+		}
+		for (; i < min(end, bus->n_slaves); i++)
+			if (has_eoe(bus->slaves[i]))
+				identify(bus->slaves[i], &ids[(*n)++]);
+		more = i < bus->n_slaves;
+		ec_show_end(&bus->base->show);
+		if (!more)
+			return ids;
+	}
+	kvfree(ids);
+	return NULL;
+}
+
+/* A name that two slaves would have is none. */
+static void drop_shared(struct ec_eoe_id *ids, unsigned int n)
+{
+	unsigned int i, k;
+	bool alias, serial;
+
+	for (i = 0; i < n; i++) {
+		alias = false;
+		serial = false;
+		for (k = i + 1; k < n; k++) {
+			if (ids[i].alias && ids[k].alias == ids[i].alias) {
+				ids[k].alias = 0;
+				alias = true;
+			}
+			if (ids[i].serial && ids[k].serial == ids[i].serial) {
+				ids[k].serial = 0;
+				serial = true;
+			}
+		}
+		if (alias)
+			ids[i].alias = 0;
+		if (serial)
+			ids[i].serial = 0;
+	}
+}
+
+/* devices -------------------------------------------------------------------*/
+
+static bool wanted(struct ec_eoe *eoe, u64 device)
+{
+	void *wish = xa_load(&eoe->wishes, device);
+
+	return wish ? xa_to_value(wish) == EC_EOE_WISH_ON : eoe->automatic;
+}
+
+static const struct ec_eoe_id *find_id(const struct ec_eoe_id *ids, unsigned int n, u64 device)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		if (ids[i].device == device)
+			return &ids[i];
+	return NULL;
+}
+
+/*
+ * Would they have the same name? A slave that was without power may come with a new device number,
+ * but has its alias or serial number; one without both is known by its place alone.
+ */
+static bool is_same(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
+{
+	return a->vendor == b->vendor && a->product == b->product && a->alias == b->alias &&
+	       a->serial == b->serial && (a->alias || a->serial || a->position == b->position);
+}
+
+/* The slave of a device that is up has come back under another device number. */
+static void adopt_one(struct ec_eoe *eoe, struct ec_eoe_netdev *d, const struct ec_eoe_id *ids,
+		      unsigned int n)
+{
+	unsigned long old = d->id.device;
+	unsigned int i;
+
+	lockdep_assert_held(&eoe->lock);
+	for (i = 0; i < n; i++)
+		if (!xa_load(&eoe->table, ids[i].device) && is_same(&ids[i], &d->id))
+			break;
+	if (i == n || xa_err(xa_store(&eoe->table, ids[i].device, d, GFP_KERNEL)))
+		return;
+	xa_erase(&eoe->table, old);
+	d->id.device = ids[i].device;
+}
+
+static void adopt(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+{
+	struct ec_eoe_netdev *d;
+	unsigned long device;
+
+	lockdep_assert_held(&eoe->lock);
+	xa_for_each(&eoe->table, device, d)
+		if (!find_id(ids, n, device))
+			adopt_one(eoe, d, ids, n);
+}
+
+/*
+ * Remove devices that are not wished, and those that are down and whose slave is lost or would have
+ * another name.
+ */
+static void remove_old(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+{
+	const struct ec_eoe_id *id;
+	struct ec_eoe_netdev *d;
+	unsigned long device;
+
+	lockdep_assert_held(&eoe->lock);
+	xa_for_each(&eoe->table, device, d) {
+		id = find_id(ids, n, device);
+		if (wanted(eoe, device) &&
+		    (READ_ONCE(d->nd->flags) & IFF_UP ||
+		     (id && is_same(id, &d->id))))
+			continue;
+		xa_erase(&eoe->table, device);
+		ec_eoe_netdev_destroy(d);
+	}
+}
+
+/* Where the slaves are now. */
+static void note_positions(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+{
+	const struct ec_eoe_id *id;
+	struct ec_eoe_netdev *d;
+	unsigned long device;
+
+	lockdep_assert_held(&eoe->lock);
+	xa_for_each(&eoe->table, device, d) {
+		id = find_id(ids, n, device);
+		if (id)
+			d->id.position = id->position;
+	}
+}
+
+static int create_one(struct ec_eoe *eoe, const struct ec_eoe_id *id)
+{
+	struct ec_eoe_id other = *id;
+	struct ec_eoe_netdev *d;
+	int ret;
+
+	lockdep_assert_held(&eoe->lock);
+	/* an index may have 32 bits */
+	if (id->device != (unsigned long)id->device)
+		return -ENOSPC;
+	d = ec_eoe_netdev_create(eoe, id);
+	if (PTR_ERR_OR_ZERO(d) == -EEXIST) {
+		other.alias = 0;
+		other.serial = 0;
+		d = ec_eoe_netdev_create(eoe, &other);
+	}
+	if (IS_ERR(d))
+		return PTR_ERR(d);
+	d->id = *id;
+	ret = xa_err(xa_store(&eoe->table, id->device, d, GFP_KERNEL));
+	if (ret)
+		ec_eoe_netdev_destroy(d);
+	return ret;
+}
+
+static void note_main(struct ec_eoe *eoe)
+{
+	const struct ecdev *dev;
+
+	if (!is_zero_ether_addr(eoe->main))
+		return;
+	rcu_read_lock();
+	dev = READ_ONCE(ec_links_at(eoe->bus->links, 0)->dev);
+	if (dev)
+		ether_addr_copy(eoe->main, dev->mac);
+	rcu_read_unlock();
+}
+
+/* Return: whether all are devices now. */
+static bool create_new(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+{
+	bool all = true;
+	unsigned int i;
+	int ret;
+
+	lockdep_assert_held(&eoe->lock);
+	note_main(eoe);
+	for (i = 0; i < n && READ_ONCE(eoe->bus); i++) {
+		if (!wanted(eoe, ids[i].device) || xa_load(&eoe->table, ids[i].device))
+			continue;
+		ret = create_one(eoe, &ids[i]);
+		all &= !ret;
+		if (ret)
+			ec_log_event(eoe->bus->base, ids[i].position, 0, KERN_WARNING,
+				     "no network device for its EoE (%pe); retrying\n",
+				     ERR_PTR(ret));
+	}
+	return all;
+}
+
+/* Compare the devices with the list of slaves. Return: whether they agree. */
+static bool compare(struct ec_eoe *eoe, struct ec_bus *bus)
+{
+	u32 lists = READ_ONCE(bus->lists);
+	struct ec_eoe_id *ids;
+	unsigned int n;
+	bool all;
+
+	lockdep_assert_held(&eoe->lock);
+	if (lists == eoe->synced && !READ_ONCE(eoe->stale))
+		return true;
+	WRITE_ONCE(eoe->stale, false);
+	ids = read_ids(bus, lists, &n);
+	if (ids) {
+		drop_shared(ids, n);
+		adopt(eoe, ids, n);
+		remove_old(eoe, ids, n);
+		all = create_new(eoe, ids, n);
+		note_positions(eoe, ids, n);
+		kvfree(ids);
+		eoe->synced = lists;
+		if (all)
+			return true;
+	}
+	WRITE_ONCE(eoe->stale, true);
+	return false;
+}
+
+/* The slave of a device number, with a reference; NULL: it is not connected. */
+static struct ec_slave *get_slave(struct ec_bus *bus, u64 device)
+{
+	struct ec_slave *s;
+
+	if (ec_show_begin(&bus->base->show))
+		return NULL;
+	s = ec_known_slave(bus, device);
+	if (s)
+		ec_slave_ref(s);
+	ec_show_end(&bus->base->show);
+	return s;
+}
+
+static void follow(struct work_struct *work)
+{
+	struct ec_eoe *eoe = container_of(to_delayed_work(work), struct ec_eoe, work);
+	struct ec_bus *bus = READ_ONCE(eoe->bus);
+	struct ec_eoe_netdev *d;
+	unsigned long device;
+	struct ec_slave *s;
+	bool again;
+
+	if (!bus)
+		return;
+	mutex_lock(&eoe->lock);
+	again = !compare(eoe, bus);
+	xa_for_each(&eoe->table, device, d) {
+		if (!READ_ONCE(d->open))
+			continue;
+		again = true;
+		ec_eoe_netdev_measure(d);
+		s = get_slave(bus, device);
+		ec_eoe_netdev_follow(d, s);
+		if (s)
+			ec_slave_unref(s);
+	}
+	mutex_unlock(&eoe->lock);
+	if (again)
+		queue_delayed_work(system_unbound_wq, &eoe->work, FOLLOW);
+}
+
+/**
+ * ec_eoe_start() - slaves with EoE are network devices from now on
+ * @eoe: zeroed structure
+ * @bus: slaves
+ * @parent: device of the master, until ec_eoe_stop(); or NULL
+ * @automatic: all of them, unless ec_eoe_wish() says otherwise; false: none unless it does
+ *
+ * Context: Process.
+ */
+void ec_eoe_start(struct ec_eoe *eoe, struct ec_bus *bus, struct device *parent, bool automatic)
+{
+	mutex_init(&eoe->lock);
+	xa_init(&eoe->table);
+	xa_init(&eoe->wishes);
+	INIT_DELAYED_WORK(&eoe->work, follow);
+	eoe->parent = parent;
+	eoe->automatic = automatic;
+	eoe->stale = true;
+	/* all of it before the monitor sees that it has begun */
+	smp_store_release(&eoe->bus, bus);
+}
+
+/**
+ * ec_eoe_stop() - remove all network devices
+ * @eoe: of a master, or zeroed
+ *
+ * While the monitor runs it may queue the work once more, without effect: the call is repeated when
+ * the monitor has ended.
+ *
+ * Context: Process. Takes rtnl.
+ */
+void ec_eoe_stop(struct ec_eoe *eoe)
+{
+	struct ec_eoe_netdev *d;
+	unsigned long device;
+
+	if (!eoe->work.work.func)
+		return;
+	WRITE_ONCE(eoe->bus, NULL);
+	cancel_delayed_work_sync(&eoe->work);
+	mutex_lock(&eoe->lock);
+	xa_for_each(&eoe->table, device, d) {
+		xa_erase(&eoe->table, device);
+		ec_eoe_netdev_destroy(d);
+	}
+	mutex_unlock(&eoe->lock);
+	/* a device that was closed just now has queued it */
+	cancel_delayed_work_sync(&eoe->work);
+	xa_destroy(&eoe->table);
+	xa_destroy(&eoe->wishes);
+}
+
+/**
+ * ec_eoe_kick() - a network device was set up or down, or another one is wished
+ * @eoe: of a master
+ *
+ * Context: Any.
+ */
+void ec_eoe_kick(struct ec_eoe *eoe)
+{
+	WRITE_ONCE(eoe->stale, true);
+	mod_delayed_work(system_unbound_wq, &eoe->work, 0);
+}
+
+/**
+ * ec_eoe_look() - the list of slaves may have changed
+ * @eoe: of a master
+ *
+ * Context: The monitor.
+ */
+void ec_eoe_look(struct ec_eoe *eoe)
+{
+	/* pairs with ec_eoe_start() */
+	const struct ec_bus *bus = smp_load_acquire(&eoe->bus);
+
+	if (bus && !ec_bus_scan_busy(bus) &&
+	    (READ_ONCE(eoe->synced) != READ_ONCE(bus->lists) || READ_ONCE(eoe->stale)))
+		mod_delayed_work(system_unbound_wq, &eoe->work, 0);
+}
+
+/**
+ * ec_eoe_wish() - does a slave have a network device?
+ * @eoe: of a master
+ * @device: device number of the slave
+ * @wish: EC_EOE_WISH_ON; EC_EOE_WISH_OFF: also if it is up; EC_EOE_WISH_AUTO: as all others
+ *
+ * Context: Process. May sleep.
+ * Return: 0; -ENOSPC; -ENOMEM.
+ */
+int ec_eoe_wish(struct ec_eoe *eoe, u64 device, unsigned int wish)
+{
+	int ret;
+
+	if (device != (unsigned long)device)
+		return -ENOSPC;
+	mutex_lock(&eoe->lock);
+	ret = xa_err(xa_store(&eoe->wishes, device,
+			      wish == EC_EOE_WISH_AUTO ? NULL : xa_mk_value(wish), GFP_KERNEL));
+	mutex_unlock(&eoe->lock);
+	if (!ret)
+		ec_eoe_kick(eoe);
+	return ret;
+}
+
+/**
+ * ec_eoe_show() - a network device and its statistics
+ * @eoe: of a master, or zeroed
+ * @info: @index is that of the device, in the order of device numbers; result
+ *
+ * Context: Process. May sleep.
+ * Return: 0; -ENOENT: there are fewer.
+ */
+int ec_eoe_show(struct ec_eoe *eoe, struct ec_ioc_eoe *info)
+{
+	struct ec_bus *bus = READ_ONCE(eoe->bus);
+	struct ec_eoe_netdev *d;
+	unsigned long device;
+	struct ec_slave *s;
+	u32 i = 0;
+
+	if (!bus)
+		return -ENOENT;
+	mutex_lock(&eoe->lock);
+	xa_for_each(&eoe->table, device, d)
+		if (i++ == info->index)
+			break;
+	if (d) {
+		ec_eoe_netdev_show(d, info);
+		s = get_slave(bus, device);
+		if (s) {
+			info->state |= EC_EOE_CONNECTED;
+			ec_slave_unref(s);
+		}
+	}
+	mutex_unlock(&eoe->lock);
+	return d ? 0 : -ENOENT;
+}
