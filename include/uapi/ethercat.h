@@ -65,7 +65,7 @@
 #define EC_IOC_CYCLE_STATS	EC_IOC_RW(0x11, struct ec_ioc_cycle_stats)
 #define EC_IOC_ABSENT		EC_IOC_RW(0x13, struct ec_ioc_absent)
 #define EC_IOC_CONFIG_WRITE	EC_IOC_RW(0x14, struct ec_ioc_config_write)
-#define EC_IOC_EOE		EC_IOC_RW(0x16, struct ec_ioc_eoe)
+#define EC_IOC_EOE		EC_IOC_RW(0x35, struct ec_ioc_eoe)
 #define EC_IOC_CONFIG_COMMAND	EC_IOC_RW(0x17, struct ec_ioc_config_command)
 #define EC_IOC_CONFIG_IP	EC_IOC_RW(0x18, struct ec_ioc_sc_ip)
 #define EC_IOC_CONFIG_WHY	EC_IOC_RW(0x19, struct ec_ioc_config_why)
