@@ -725,15 +725,15 @@ EC_PUBLIC_API int ecrt_master_sdo_upload(ec_master_t *master,
  * @idn: bit 15: P, else S; bits 12-14 parameter set; bits 0-11 number
  * @data: little-endian; a list begins with its length and largest length, 16
  *	bit each
- * @data_size: bytes, at least 1; it must fit into one message of the mailbox
+ * @data_size: bytes, at least 1, at most 65536
  * @error_code: out, may be NULL: SoE error code, 0 if the slave gave none
  *
  * SoE write of the value (ETG.1000.6 5.7).
  *
  * Context: Process. Waits for bus traffic.
  * Return: 0; %-EIO refused, see @error_code; %-EINVAL no such slave or drive,
- * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE too
- * large; %-ETIMEDOUT no reply; %-EAGAIN slave in INIT; %-EBADMSG an invalid
+ * or bad arguments; %-EPROTONOSUPPORT slave without SoE; %-EMSGSIZE the
+ * mailbox has no space for data; %-ETIMEDOUT no reply; %-EAGAIN slave in INIT; %-EBADMSG an invalid
  * reply; %-ECANCELED the slave was disconnected (while it is being configured the
  * call waits); %-ENODEV the master has no device, %-ENETDOWN no link; %-EINTR;
  * %-ENOMEM; %-ENOTRECOVERABLE and a mailbox error reply as in

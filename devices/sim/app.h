@@ -139,15 +139,71 @@ struct ec_app_voe {
 };
 
 /**
+ * struct ec_app_idn - an IDN of a drive
+ * @idn: number
+ * @attribute: EC_SOE_ATTR_*
+ * @name: text
+ * @unit: text, NULL: none
+ * @value: of a number, at power-on
+ * @min: of a number
+ * @max: of a number; 0: no limits and no default value
+ * @room: bytes of a list; 0: the drive makes it
+ * @text: in the list at power-on
+ */
+struct ec_app_idn {
+	u16 idn;
+	u32 attribute;
+	const char *name;
+	const char *unit;
+	u64 value;
+	u64 min;
+	u64 max;
+	u16 room;
+	const char *text;
+};
+
+/**
+ * struct ec_app_soe_message - an SoE message without a request
+ * @hdr: its header
+ * @size: bytes in it
+ * @data: behind the header
+ */
+struct ec_app_soe_message {
+	struct ec_soe_hdr hdr;
+	u16 size;
+	u8 data[EC_APP_SOE_DATA];
+};
+
+/**
  * struct ec_app_soe - SoE server of a slave
  * @drives: how many
  * @values: of all IDNs, drive after drive
  * @writes: values written since power-on
+ * @buf: a request or an answer, EC_APP_SOE_BUF bytes
+ * @hdr: its header
+ * @len: bytes in it
+ * @at: of an answer: bytes sent
+ * @writing: it is a request that is not complete
+ * @left: fragments of it to come
+ * @home: when the homing of each drive ends, EC_ESC_NEVER: it does not run
+ * @due: the first of these
+ * @unasked: messages to send
+ * @n_unasked: how many
  */
 struct ec_app_soe {
 	u8 drives;
 	u8 *values;
 	u32 writes;
+	u8 *buf;
+	struct ec_soe_hdr hdr;
+	u16 len;
+	u16 at;
+	bool writing;
+	u16 left;
+	u64 home[EC_SOE_DRIVES];
+	u64 due;
+	struct ec_app_soe_message unasked[EC_APP_SOE_UNASKED];
+	u8 n_unasked;
 };
 
 /**
@@ -264,16 +320,18 @@ struct ec_app_ip {
  * struct ec_app_event - a message the script asks for
  * @next: later one
  * @at_ns: when
- * @is_voe: it is @voe, else @emcy
+ * @type: enum ec_mbox_type: CoE: @emcy, VoE: @voe, SoE: @soe
  * @emcy: emergency: error code, error register, five bytes
  * @voe: VoE message
+ * @soe: SoE message
  */
 struct ec_app_event {
 	struct ec_app_event *next;
 	u64 at_ns;
-	bool is_voe;
+	u8 type;
 	u8 emcy[8];
 	struct ec_app_voe voe;
+	struct ec_app_soe_message soe;
 };
 
 /**
@@ -484,9 +542,27 @@ u64 ec_app_mbox_late(const struct ec_app *app);
 bool ec_app_mbox_spoil(struct ec_app *app, u16 len);
 void ec_app_mbox_sent(struct ec_app *app);
 
-/* slave_soe.c, slave_voe.c */
-size_t ec_app_soe_bytes(void);
+/* soe_idn.c */
+const struct ec_app_idn *ec_app_idn(u16 idn);
+u16 ec_app_idn_bytes(const struct ec_app_idn *i);
+bool ec_app_idn_is_list(const struct ec_app_idn *i);
+u16 ec_app_idn_room(const struct ec_app_idn *i);
+u8 *ec_app_idn_value(const struct ec_app *app, u8 drive, const struct ec_app_idn *which);
+void ec_app_idn_put_text(struct ec_wbuf *w, const char *text);
+void ec_app_idn_put_number(struct ec_wbuf *w, const struct ec_app_idn *i, u64 v);
+void ec_app_idn_put_value(struct ec_wbuf *w, const struct ec_app *app, u8 drive,
+			  const struct ec_app_idn *i);
+bool ec_app_idn_is_mappable(enum ec_app_dir dir, u16 idn);
+size_t ec_app_soe_bytes(u8 drives);
 void ec_app_soe_reset(struct ec_app *app);
+
+/* slave_soe.c, slave_voe.c */
+void ec_app_soe_restart(struct ec_app *app);
+u64 ec_app_soe_due(const struct ec_app *app);
+void ec_app_soe_poll(struct ec_app *app, u64 now);
+int ec_app_soe_next(struct ec_app *app, u8 *tx, size_t cap);
+int ec_app_soe_unasked(struct ec_app *app, u8 *tx, size_t cap);
+void ec_app_soe_send(struct ec_app *app, const struct ec_app_soe_message *m, u64 now);
 int ec_app_soe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 int ec_app_voe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 int ec_app_voe_unasked(const struct ec_app_voe *m, u8 *tx, size_t cap);

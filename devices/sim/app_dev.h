@@ -10,6 +10,11 @@
 #define EC_APP_SDO_BUF		2048	/* largest object, complete access too */
 #define EC_APP_EMCY		8	/* emergencies waiting */
 #define EC_APP_VOE		4	/* VoE messages waiting */
+#define EC_APP_SOE_MAP		8	/* IDNs of a telegram of an axis, besides the word */
+#define EC_APP_SOE_LIST		2000	/* bytes of the largest list of a drive */
+#define EC_APP_SOE_BUF		2100	/* largest SoE request or answer, all elements */
+#define EC_APP_SOE_UNASKED	4	/* SoE messages without a request, waiting */
+#define EC_APP_SOE_DATA		32	/* bytes of one of them */
 #define EC_APP_DIAG_MAX		64	/* messages in 0x10F3 */
 #define EC_APP_DIAG_BYTES	33	/* of a message there */
 #define EC_APP_FOE_KIB		64	/* largest file of a slave without foe= */
@@ -128,16 +133,21 @@ struct ec_app_mbox_area {
 /**
  * struct ec_app_profile - what a device does between outputs and inputs
  * @size: bytes of private memory per slave
+ * @map_cap: entries that @map makes per direction at most
+ * @map: lay out the process data, NULL: by PDOs; 0, or the AL status code
  * @init: power was switched on, entries are at their defaults
  * @run: outputs are in the dictionary, compute the inputs for time @now
  */
 struct ec_app_profile {
 	size_t size;
+	u16 map_cap;
+	u16 (*map)(struct ec_app *app);
 	void (*init)(struct ec_app *app);
 	void (*run)(struct ec_app *app, u64 now);
 };
 
 extern const struct ec_app_profile ec_app_profile_drive;
+extern const struct ec_app_profile ec_app_profile_sercos;
 
 /**
  * struct ec_app_dev - table of a device

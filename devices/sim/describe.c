@@ -105,7 +105,7 @@ static int model_of(struct ec_desc *d, const struct ec_desc_word *device,
 		dev = ec_app_catalogue("750-354", 7);
 	if (!dev)
 		return ec_desc_fail(d, "unknown device '", device,
-			"': expected EK1100, EL1008, EL2008, EL3062, EL4002, EL7201, drive, io...");
+			"': expected EK1100, EL1008, EL2008, EL3062, EL4002, EL7201, drive, sercos, io...");
 	for (u32 i = 0; i < d->n_models; i++) {
 		*m = d->model[i];
 		if ((*m)->table == dev && same(&(*m)->params, p)) {

@@ -125,6 +125,7 @@ static int mailbox_number(struct ec_desc *d, struct ec_sim_fault *f)
 	case EC_SIM_MAILBOX_ERROR:
 	case EC_SIM_MAILBOX_ABORT:
 	case EC_SIM_MAILBOX_DENY:
+	case EC_SIM_MAILBOX_SOE:
 		ret = ec_desc_number(d, "code", 0, word ? 0xFFFF : 0xFFFFFFFF, &code);
 		f->arg2 = (u32)code;
 		break;
@@ -141,7 +142,7 @@ static int mailbox(struct ec_desc *d, struct ec_sim_fault *f)
 	static const char * const kinds[EC_SIM_MAILBOX_FAULTS] = {
 		"good", "length", "short", "counter", "type", "babble", "stale", "fragments",
 		"error", "abort", "delay", "busy", "deny", "garbage", "duplicate", "lost",
-		"almost",
+		"almost", "soe",
 	};
 	struct ec_desc_word *w = ec_desc_next(d);
 	s64 after = 0;
@@ -242,7 +243,7 @@ static int add_event(struct ec_desc *d, int slave, const struct ec_app_event *e)
 static int emergency(struct ec_desc *d, u64 at)
 {
 	int slave = ec_desc_slave(d, ec_desc_next(d));
-	struct ec_app_event e = { .at_ns = at };
+	struct ec_app_event e = { .at_ns = at, .type = EC_MBOX_COE };
 	s64 code = 0x1000, reg = 1;
 
 	if (slave < 0)
@@ -265,7 +266,7 @@ static int emergency(struct ec_desc *d, u64 at)
 static int voe(struct ec_desc *d, u64 at)
 {
 	int slave = ec_desc_slave(d, ec_desc_next(d));
-	struct ec_app_event e = { .at_ns = at, .is_voe = true };
+	struct ec_app_event e = { .at_ns = at, .type = EC_MBOX_VOE };
 	s64 vendor = 0, type = 0, size = 0;
 
 	if (slave < 0)
@@ -281,6 +282,35 @@ static int voe(struct ec_desc *d, u64 at)
 	e.voe = (struct ec_app_voe){
 		.hdr = { .vendor = (u32)vendor, .type = (u16)type }, .size = (u16)size,
 	};
+	return add_event(d, slave, &e);
+}
+
+/* a notification, or with opcode=6 an emergency */
+static int soe(struct ec_desc *d, u64 at)
+{
+	int slave = ec_desc_slave(d, ec_desc_next(d));
+	struct ec_app_event e = { .at_ns = at, .type = EC_MBOX_SOE };
+	s64 opcode = EC_SOE_NOTIFICATION, drive = 0, idn = 0, elements = 0, size = 0;
+
+	if (slave < 0)
+		return slave;
+	if (d->command)
+		return ec_desc_fail(d, "SoE messages are accepted in a description only", NULL, "");
+	if (ec_desc_number(d, "opcode", EC_SOE_NOTIFICATION, EC_SOE_EMERGENCY, &opcode) ||
+	    ec_desc_number(d, "drive", 0, EC_SOE_DRIVES - 1, &drive) ||
+	    ec_desc_number(d, "idn", 0, 0xFFFF, &idn) ||
+	    ec_desc_number(d, "elements", 0, 0xFF, &elements) ||
+	    ec_desc_number(d, "size", 0, EC_APP_SOE_DATA, &size))
+		return -EINVAL;
+	if (drive >= d->node[slave].app->soe.drives)
+		return ec_desc_fail(d, "the slave has no such drive; add soe=N to it", NULL, "");
+	e.soe = (struct ec_app_soe_message){
+		.hdr = { .opcode = (u8)opcode, .drive = (u8)drive, .elements = (u8)elements,
+			 .idn = (u16)idn },
+		.size = (u16)size,
+	};
+	for (u16 i = 0; i < size; i++)
+		e.soe.data[i] = (u8)(i + 1);
 	return add_event(d, slave, &e);
 }
 
@@ -411,6 +441,8 @@ int ec_desc_fault(struct ec_desc *d)
 		return emergency(d, f.at_ns);
 	if (ec_desc_is(w, "voe"))
 		return voe(d, f.at_ns);
+	if (ec_desc_is(w, "soe"))
+		return soe(d, f.at_ns);
 	for (u32 i = 0; i < ARRAY_SIZE(verbs); i++)
 		if (ec_desc_is(w, verbs[i].name))
 			v = &verbs[i];

@@ -102,6 +102,49 @@ static void deny(const struct ec_app *app, u8 *h, u32 code)
 	}
 }
 
+/* A response to an SoE request, wrong in one way. */
+static void soe(u8 *h, u32 how)
+{
+	u16 len = get_unaligned_le16(h), left = get_unaligned_le16(h + BODY + 2);
+
+	if (type_of(h) != EC_MBOX_SOE || len < EC_SOE_HDR || (h[BODY] & 7) > EC_SOE_WRITE_RESP)
+		return;
+	switch (how) {
+	case EC_SIM_SOE_ENDLESS:
+	case EC_SIM_SOE_COUNTDOWN:
+		left = how == EC_SIM_SOE_COUNTDOWN && h[BODY] & 8 ? left - 1 : 0xffff;
+		h[BODY] |= 8;
+		put_unaligned_le16(left, h + BODY + 2);
+		break;
+	case EC_SIM_SOE_SKIP:
+		if (h[BODY] & 8)
+			put_unaligned_le16(2 * left, h + BODY + 2);
+		break;
+	case EC_SIM_SOE_DRIVE:
+		h[BODY] ^= 0x20;
+		break;
+	case EC_SIM_SOE_IDN:
+		if (!(h[BODY] & 8))
+			h[BODY + 2] ^= 1;
+		break;
+	case EC_SIM_SOE_ELEMENTS:
+		h[BODY + 1] ^= 1;
+		break;
+	case EC_SIM_SOE_ERROR:
+		put_unaligned_le16(EC_SOE_HDR + 2, h);
+		h[BODY] |= 0x10;
+		put_unaligned_le16(0x700B, h + BODY + EC_SOE_HDR);
+		break;
+	case EC_SIM_SOE_LIST:
+		h[BODY + EC_SOE_HDR + 1] = 0xff;
+		break;
+	case EC_SIM_SOE_EMPTY:
+		if (h[BODY] & 8)
+			put_unaligned_le16(EC_SOE_HDR, h);
+		break;
+	}
+}
+
 static void garbage(struct ec_sim *sim, u8 *h, u16 len)
 {
 	u16 at = 0;
@@ -269,6 +312,9 @@ bool ec_app_mbox_spoil(struct ec_app *app, u16 len)
 	case EC_SIM_MAILBOX_ALMOST:
 		almost(app->esc->sim, h);
 		break;
+	case EC_SIM_MAILBOX_SOE:
+		soe(h, f->mailbox_code);
+		break;
 	case EC_SIM_MAILBOX_LOST:
 		return false;
 	default:
@@ -296,6 +342,12 @@ void ec_app_mbox_sent(struct ec_app *app)
 	}
 	if (kind == EC_SIM_MAILBOX_BABBLE)
 		return;
+	if (kind == EC_SIM_MAILBOX_SOE && type_of(m->out) == EC_MBOX_SOE &&
+	    app->esc->fault.mailbox_code <= EC_SIM_SOE_COUNTDOWN) {
+		m->tx_counter = ec_mbox_next_counter(m->tx_counter);
+		m->out[5] = (u8)((m->out[5] & 0x0f) | m->tx_counter << 4);
+		return;
+	}
 	m->out_again = kind == EC_SIM_MAILBOX_DUPLICATE && !m->out_again;
 	if (!m->out_again)
 		m->out_len = 0;

@@ -133,6 +133,30 @@ enum ec_sim_fault_type {
 #define EC_SIM_EDGE_FALLING	2
 
 /**
+ * enum ec_sim_soe_fault - what is wrong with SoE responses
+ * @EC_SIM_SOE_ENDLESS: it is a fragment, and comes again and again, with the same count
+ * @EC_SIM_SOE_COUNTDOWN: likewise, but the count goes down, from 65535
+ * @EC_SIM_SOE_SKIP: fragments count down by two
+ * @EC_SIM_SOE_DRIVE: another drive
+ * @EC_SIM_SOE_IDN: another IDN, in messages that have it
+ * @EC_SIM_SOE_ELEMENTS: other elements
+ * @EC_SIM_SOE_ERROR: the error flag and code 0x700B instead of data
+ * @EC_SIM_SOE_LIST: the length in a list is too large
+ * @EC_SIM_SOE_EMPTY: fragments without data
+ */
+enum ec_sim_soe_fault {
+	EC_SIM_SOE_ENDLESS = 1,
+	EC_SIM_SOE_COUNTDOWN,
+	EC_SIM_SOE_SKIP,
+	EC_SIM_SOE_DRIVE,
+	EC_SIM_SOE_IDN,
+	EC_SIM_SOE_ELEMENTS,
+	EC_SIM_SOE_ERROR,
+	EC_SIM_SOE_LIST,
+	EC_SIM_SOE_EMPTY,
+};
+
+/**
  * enum ec_sim_mailbox_fault - what is wrong with messages from a mailbox
  * @EC_SIM_MAILBOX_GOOD: nothing
  * @EC_SIM_MAILBOX_LENGTH: the header says more than the mailbox holds
@@ -151,6 +175,7 @@ enum ec_sim_fault_type {
  * @EC_SIM_MAILBOX_DUPLICATE: each is sent twice, with the same counter
  * @EC_SIM_MAILBOX_LOST: requests are executed, replies are not sent
  * @EC_SIM_MAILBOX_ALMOST: in half of them one field is wrong
+ * @EC_SIM_MAILBOX_SOE: SoE responses are wrong as @arg2 says, enum ec_sim_soe_fault
  * @EC_SIM_MAILBOX_FAULTS: number of faults
  */
 enum ec_sim_mailbox_fault {
@@ -171,6 +196,7 @@ enum ec_sim_mailbox_fault {
 	EC_SIM_MAILBOX_DUPLICATE,
 	EC_SIM_MAILBOX_LOST,
 	EC_SIM_MAILBOX_ALMOST,
+	EC_SIM_MAILBOX_SOE,
 	EC_SIM_MAILBOX_FAULTS
 };
 

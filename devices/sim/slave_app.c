@@ -32,9 +32,9 @@ static void power_on(struct ec_esc *esc, u64 now)
 	app->eep_due = EC_ESC_NEVER;
 	app->id_due = EC_ESC_NEVER;
 	ec_app_diag_reset(app, now);
+	ec_app_soe_reset(app);
 	ec_app_pdo_build(app);
 	ec_app_mbox_reset(app);
-	ec_app_soe_reset(app);
 	if (m->dev.profile && m->dev.profile->init)
 		m->dev.profile->init(app);
 	if (!m->emulation)
@@ -190,13 +190,17 @@ static void poll(struct ec_esc *esc, u64 now)
 	while (app->next_event && app->next_event->at_ns <= now) {
 		const u8 *e = app->next_event->emcy;
 
-		if (app->next_event->is_voe)
+		if (app->next_event->type == EC_MBOX_VOE)
 			ec_app_voe_send(app, &app->next_event->voe, now);
+		else if (app->next_event->type == EC_MBOX_SOE)
+			ec_app_soe_send(app, &app->next_event->soe, now);
 		else
 			ec_app_emergency(app, get_unaligned_le16(e), e[2], e + 3, now);
 		app->next_event = app->next_event->next;
 	}
 	if (!mute(app, now) && !app->model->emulation) {
+		if (now >= ec_app_soe_due(app))
+			ec_app_soe_poll(app, now);
 		if (esc->al_unread)
 			ec_app_al_control(app, now);
 		ec_app_al_poll(app, now);
@@ -222,6 +226,7 @@ void ec_app_rewake(struct ec_app *app, u64 now)
 		at = app->al_waits ? app->al_deadline : app->al_due;
 	at = min(at, ec_app_mbox_due(app));
 	at = min(at, ec_app_eoe_due(app));
+	at = min(at, ec_app_soe_due(app));
 	at = min(at, app->eep_due);
 	at = min(at, app->id_due);
 	if (app->next_event)
@@ -331,7 +336,7 @@ static struct ec_app *app_alloc(struct ec_app_model *m)
 	at[7] = at[6] + 3 * (size_t)mbox;
 	at[8] = at[7] + info;
 	at[9] = at[8] + (mbox ? EC_APP_SDO_BUF + 1024 : 0);
-	at[10] = at[9] + m->params.soe * ec_app_soe_bytes();
+	at[10] = at[9] + ec_app_soe_bytes(m->params.soe);
 	at[11] = align8(at[10] + ec_app_foe_bytes(m));
 	size = at[11] + ec_app_eoe_bytes(m);
 

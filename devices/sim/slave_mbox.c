@@ -50,6 +50,7 @@ void ec_app_mbox_reset(struct ec_app *app)
 	m->n_voe = 0;
 	ec_app_foe_reset(app);
 	ec_app_eoe_reset(app);
+	ec_app_soe_restart(app);
 	memset(&m->info, 0, sizeof(m->info));
 	m->info.done = true;
 	if (m->cap)
@@ -391,6 +392,18 @@ static bool next_fragment(struct ec_app *app, u64 now)
 	return len > 0;
 }
 
+/* an unrequested SoE message, or else the next fragment of an answer */
+static void next_soe(struct ec_app *app, u64 now)
+{
+	u8 *tx = app->mbox.out + EC_MBOX_HDR;
+	size_t cap = tx_size(app) - (size_t)EC_MBOX_HDR;
+	int len = app->soe.n_unasked ? ec_app_soe_unasked(app, tx, cap) :
+				       ec_app_soe_next(app, tx, cap);
+
+	if (len > 0)
+		out_set(app, EC_MBOX_SOE, (size_t)len, now);
+}
+
 /* moves what can be moved, until nothing does */
 static void step(struct ec_app *app, u64 now)
 {
@@ -429,6 +442,8 @@ static void step(struct ec_app *app, u64 now)
 			next_emergency(app, now);
 		} else if (m->n_voe) {
 			next_voe(app, now);
+		} else if (app->soe.n_unasked || app->soe.at) {
+			next_soe(app, now);
 		} else if (!m->info.done) {
 			info_next(app, now);
 		} else if (next_fragment(app, now)) {

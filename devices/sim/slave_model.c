@@ -470,6 +470,8 @@ static int finish(struct ec_app_model *m)
 		m->map_cap[dir] += pdo_cap(m, &d->pdos[i]);
 		bits[dir] += pdo_bits(&d->pdos[i]);
 	}
+	for (int dir = 0; dir < EC_APP_DIRS && d->profile; dir++)
+		m->map_cap[dir] += d->profile->map_cap;
 	for (int dir = 0; dir < EC_APP_DIRS; dir++)
 		m->max_bytes[dir] = d->max_bytes[dir] ? d->max_bytes[dir] :
 					(u16)((bits[dir] + 7) / 8);
@@ -547,7 +549,9 @@ struct ec_app_model *ec_app_model_new(struct ec_sim *sim,
 		m->dev.flags |= EC_SII_FLAG_ID_AL;
 	if (params->no_repeat)
 		m->dev.flags &= ~EC_SII_FLAG_MBOX_DLL;
-	if (params->soe)
+	if (dev->profile && dev->profile->map && !params->soe)
+		m->params.soe = 2;	/* axes */
+	if (m->params.soe)
 		m->dev.protocols |= EC_SII_PROTO_SOE;
 	if (params->voe)
 		m->dev.protocols |= EC_SII_PROTO_VOE;

@@ -241,8 +241,11 @@ static bool build(struct ec_app *app, enum ec_app_dir dir)
  */
 u16 ec_app_pdo_build(struct ec_app *app)
 {
+	const struct ec_app_profile *p = app->model->dev.profile;
 	bool out, in;
 
+	if (p && p->map)
+		return p->map(app);
 	if (app->n_map[EC_APP_OUT] + app->n_map[EC_APP_IN] &&
 	    ec_app_bug(app, EC_SIM_BUG_PDO_FIXED))
 		return 0;

@@ -174,6 +174,51 @@ long ect_soe_read(struct ect_handle *h, uint64_t device, unsigned int drive, uin
 int ect_soe_write(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
 		  uint32_t timeout_ms, const void *data, size_t size);
 
+/* @element of ect_soe_read_element(): of an IDN */
+#define ECT_SOE_STATE		0x01	/* data state, 2 bytes */
+#define ECT_SOE_NAME		0x02	/* text: length and largest length, 2 bytes each, first */
+#define ECT_SOE_ATTRIBUTE	0x04	/* 4 bytes: length, protection, display */
+#define ECT_SOE_UNIT		0x08	/* text */
+#define ECT_SOE_MIN		0x10
+#define ECT_SOE_MAX		0x20
+#define ECT_SOE_VALUE		0x40
+#define ECT_SOE_DEFAULT		0x80
+
+/**
+ * ect_soe_read_element() - read an element of an IDN of a servo drive (SoE)
+ * @h: master, open for writing
+ * @device: number of the slave
+ * @drive: 0 to 7
+ * @idn: of the parameter
+ * @element: ECT_SOE_*; several bits: their data follow one another in this order
+ * @timeout_ms: of each reply, 0: default
+ * @data: for @size bytes
+ * @size: bytes
+ *
+ * Context: The thread of the handle; waits for the slave.
+ * Return: bytes of the element; or a negative errno as ect_soe_read().
+ */
+long ect_soe_read_element(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
+			  unsigned int element, uint32_t timeout_ms, void *data, size_t size);
+
+/**
+ * ect_soe_write_element() - write an element of an IDN of a servo drive (SoE)
+ * @h: master, open for writing
+ * @device: number of the slave
+ * @drive: 0 to 7
+ * @idn: of the parameter
+ * @element: ECT_SOE_*, one bit
+ * @timeout_ms: of each reply, 0: default
+ * @data: @size bytes
+ * @size: bytes
+ *
+ * Context: The thread of the handle; waits for the slave.
+ * Return: 0, or a negative errno as ect_soe_read().
+ */
+int ect_soe_write_element(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
+			  unsigned int element, uint32_t timeout_ms, const void *data,
+			  size_t size);
+
 /**
  * ect_foe_read() - read a file of a slave (FoE)
  * @h: master, open for writing

@@ -74,6 +74,9 @@
 #define EC_EVENT_EEPROM		0x25
 #define EC_EVENT_NO_CLOCK	0x26	/* SYNC signals configured, but no clock */
 #define EC_EVENT_REVISION	0x27	/* expected, found */
+/* of a SERCOS drive (SoE): drive, IDN, elements, bytes of data, bytes 0..3, bytes 4..7 */
+#define EC_EVENT_SOE_NOTIFICATION 0x28
+#define EC_EVENT_SOE_EMERGENCY	0x29	/* the same */
 
 /*
  * domain, working counter, before, expected; changes before this one that have no record; 1: the

@@ -76,12 +76,22 @@ struct ec_ioc_emergencies {
 	__u64 data;		/* of struct ec_emergency, at most EC_EMERGENCIES */
 };
 
-/* value of an IDN of a servo drive */
+/* struct ec_ioc_soe.elements, in the order of their data */
+#define EC_SOE_ELEMENT_STATE	0x01	/* data state */
+#define EC_SOE_ELEMENT_NAME	0x02
+#define EC_SOE_ELEMENT_ATTRIBUTE 0x04
+#define EC_SOE_ELEMENT_UNIT	0x08
+#define EC_SOE_ELEMENT_MIN	0x10
+#define EC_SOE_ELEMENT_MAX	0x20
+#define EC_SOE_ELEMENT_VALUE	0x40
+#define EC_SOE_ELEMENT_DEFAULT	0x80
+
+/* elements of an IDN of a servo drive; one is written at a time */
 struct ec_ioc_soe {
 	__u32 flags;
 	__u16 idn;		/* in */
 	__u8 drive;		/* in: 0..7 */
-	__u8 reserved;
+	__u8 elements;		/* in: EC_SOE_ELEMENT_*; 0: the value */
 	struct ec_ioc_address slave;	/* in */
 	__u32 error_code;	/* out: of the slave, after -EIO */
 	__u32 size;		/* write: bytes; read: buffer size, then result */

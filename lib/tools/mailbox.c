@@ -37,28 +37,43 @@ int ect_sdo_download(struct ect_handle *h, uint64_t device, uint16_t index, uint
 	return ect_coded(h, ret, s.abort_code);
 }
 
-long ect_soe_read(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
-		  uint32_t timeout_ms, void *data, size_t size)
+long ect_soe_read_element(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
+			  unsigned int element, uint32_t timeout_ms, void *data, size_t size)
 {
 	struct ec_ioc_soe s = {
 		.slave = ect_address(device), .idn = idn, .drive = (u8)drive,
-		.size = room(size), .timeout_ms = timeout_ms, .data = (uintptr_t)data,
+		.elements = (u8)element, .size = room(size), .timeout_ms = timeout_ms,
+		.data = (uintptr_t)data,
 	};
 	int ret = ect_command(h, EC_IOC_SOE_READ, &s);
 
 	return ret ? ect_coded(h, ret, s.error_code) : (long)min((size_t)s.size, size);
 }
 
-int ect_soe_write(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
-		  uint32_t timeout_ms, const void *data, size_t size)
+int ect_soe_write_element(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
+			  unsigned int element, uint32_t timeout_ms, const void *data, size_t size)
 {
 	struct ec_ioc_soe s = {
 		.slave = ect_address(device), .idn = idn, .drive = (u8)drive,
-		.size = room(size), .timeout_ms = timeout_ms, .data = (uintptr_t)data,
+		.elements = (u8)element, .size = room(size), .timeout_ms = timeout_ms,
+		.data = (uintptr_t)data,
 	};
 	int ret = ect_command(h, EC_IOC_SOE_WRITE, &s);
 
 	return ect_coded(h, ret, s.error_code);
+}
+
+/* The value has no bit here, so that an older module understands this as well. */
+long ect_soe_read(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
+		  uint32_t timeout_ms, void *data, size_t size)
+{
+	return ect_soe_read_element(h, device, drive, idn, 0, timeout_ms, data, size);
+}
+
+int ect_soe_write(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
+		  uint32_t timeout_ms, const void *data, size_t size)
+{
+	return ect_soe_write_element(h, device, drive, idn, 0, timeout_ms, data, size);
 }
 
 static int foe(struct ect_handle *h, unsigned long command, struct ec_ioc_foe *f, const char *name)

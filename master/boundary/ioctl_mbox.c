@@ -203,10 +203,6 @@ static int idn_failed(struct ec_call *call, const struct ec_ioc_soe *i, int ret)
 		return ec_refuse(call, ret, "%s of drive %u: error 0x%04x: %s", what, i->drive,
 				 i->error_code,
 				 ec_soe_error_text(i->error_code) ?: "unknown code");
-	case -EMSGSIZE:
-		return ec_refuse(call, ret,
-				 "%s: the value does not fit into one message of the mailbox of slave %u; fragments are not supported",
-				 what, call->slave->position);
 	case -ENOBUFS:
 		return ec_refuse(call, ret, "%s is larger than %u bytes", what, i->size);
 	default:
@@ -214,43 +210,54 @@ static int idn_failed(struct ec_call *call, const struct ec_ioc_soe *i, int ret)
 	}
 }
 
-int ec_ioc_soe_read(struct ec_call *call)
+/* @a: with the direction */
+static int idn_access(struct ec_call *call, struct ec_soe_access *a)
 {
 	struct ec_ioc_soe *i = call->arg;
 	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
+	int ret;
+
+	a->drive = i->drive;
+	a->elements = i->elements ?: EC_SOE_VALUE;
+	a->idn = i->idn;
+	a->data = call->data;
+	ret = ec_soe_access(&call->slave->mbox, a, &limit);
+	i->error_code = a->error;
+	return idn_failed(call, i, ret);
+}
+
+int ec_ioc_soe_read(struct ec_call *call)
+{
+	struct ec_soe_access a = { .cap = call->size };
+	struct ec_ioc_soe *i = call->arg;
 	int ret = check_drive(call, i->drive);
-	size_t got = 0;
-	u16 error = 0;
 
 	if (ret)
 		return ret;
 	i->size = call->size;
-	ret = ec_soe_read(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &got,
-			  &error, &limit);
-	i->error_code = error;
-	ret = idn_failed(call, i, ret);
-	i->size = got;
+	ret = idn_access(call, &a);
+	i->size = a.size;
 	return ret;
 }
 
 int ec_ioc_soe_write(struct ec_call *call)
 {
+	struct ec_soe_access a = { .write = true, .size = call->size };
 	struct ec_ioc_soe *i = call->arg;
-	struct ec_mbox_limit limit = { .timeout_ms = min(i->timeout_ms, EC_MAX_SDO_MS) };
 	const struct ec_startup what = {
 		.type = EC_STARTUP_IDN, .index = i->idn, .sub = i->drive,
 	};
 	int ret = check_drive(call, i->drive) ?: check_size(call, 1, EC_MAX_SOE_SIZE);
-	u16 error = 0;
 
 	if (ret)
 		return ret;
-	ret = ec_soe_write(&call->slave->mbox, i->drive, i->idn, call->data, call->size, &error,
-			   &limit);
-	i->error_code = error;
-	if (!ret)
+	if (hweight8(i->elements) > 1)
+		return ec_refuse(call, -EINVAL, "elements 0x%02x: one is written at a time",
+				 i->elements);
+	ret = idn_access(call, &a);
+	if (!ret && a.elements == EC_SOE_VALUE)
 		ec_ioc_record(call, &what);
-	return idn_failed(call, i, ret);
+	return ret;
 }
 
 int ec_ioc_sc_idn(struct ec_call *call)

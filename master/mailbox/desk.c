@@ -6,6 +6,7 @@
 #include <linux/ktime.h>
 #include "../wire/coe.h"
 #include "../wire/eoe.h"
+#include "../wire/soe.h"
 #include "box_state.h"
 #include "desk.h"
 
@@ -213,22 +214,25 @@ static void deliver(struct ec_mbox *mb, struct ec_mbox_user *u, const struct ec_
 	desk_finish(mb, u, 0);
 }
 
-static bool is_emergency(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
+/* Is it an emergency, or a notification of a drive? They are no answers. */
+static bool is_unasked(const struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
+	const u8 *rx = mb->box.rx + EC_MBOX_HDR;
 	struct ec_coe_emergency e;
 
-	return h->type == EC_MBOX_COE &&
-	       !ec_coe_emergency_decode(mb->box.rx + EC_MBOX_HDR, h->len, &e);
+	if (h->type == EC_MBOX_SOE)
+		return ec_soe_is_unasked(rx, h->len);
+	return h->type == EC_MBOX_COE && !ec_coe_emergency_decode(rx, h->len, &e);
 }
 
 /* Find the user that a message is for. The transport holds it until it is taken. */
 static void desk_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 {
-	bool emergency = is_emergency(mb, h);
-	struct ec_mbox_user *u = emergency ? NULL : desk_find(mb, h->type, h->len);
+	bool unasked = is_unasked(mb, h);
+	struct ec_mbox_user *u = unasked ? NULL : desk_find(mb, h->type, h->len);
 
 	lockdep_assert_held(&mb->box.lock);
-	if (!u && !emergency && h->type != EC_MBOX_VOE && h->type != EC_MBOX_EOE)
+	if (!u && !unasked && h->type != EC_MBOX_VOE && h->type != EC_MBOX_EOE)
 		mark_heard(mb);
 	if (u && u->phase == EC_MBOX_USER_DONE)
 		return;

@@ -207,6 +207,17 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 	return ret == -ETIMEDOUT && (c.user.lost || c.user.gap) ? -ENOTRECOVERABLE : ret;
 }
 
+static int mailbox_give(struct ec_mbox *mb, struct ec_caller *c, const struct ec_mbox_limit *limit)
+{
+	struct ec_mbox_until until = ec_mbox_until(limit);
+	int ret;
+
+	ec_caller_enter(mb, c);
+	ret = ec_caller_wait(mb, c, limit, &until) ?: c->user.err;
+	ec_desk_leave(mb, &c->user, false);
+	return ret == -ETIMEDOUT && c->user.lost ? -ENOTRECOVERABLE : ret;
+}
+
 /**
  * ec_mbox_send() - send one message that has no answer
  * @mb: mailbox that ec_mbox_check() has accepted
@@ -226,12 +237,32 @@ int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 	struct ec_caller c = { .user = { .type = type, .tx = b->tx, .len = len } };
 	int ret = ec_box_get_memory(&mb->box) ?: ec_mbox_over(mb, &until);
 
-	if (ret)
-		return ret;
-	ec_caller_enter(mb, &c);
-	ret = ec_caller_wait(mb, &c, limit, &until) ?: c.user.err;
-	ec_desk_leave(mb, &c.user, false);
-	return ret == -ETIMEDOUT && c.user.lost ? -ENOTRECOVERABLE : ret;
+	return ret ?: mailbox_give(mb, &c, limit);
+}
+
+/**
+ * ec_mbox_send_part() - send a message of a request that only its last message has an answer to
+ * @mb: mailbox that ec_mbox_check() has accepted
+ * @r: request; its protocol is claimed
+ * @b: message in @tx; before the first one, replies to earlier requests may use @rx
+ * @len: bytes of the message
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_mbox_send().
+ */
+int ec_mbox_send_part(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
+		      size_t len)
+{
+	struct ec_mbox_until until = ec_mbox_until(&r->limit);
+	struct ec_caller c = { .user = {
+		.type = r->type, .first = r->first, .tx = b->tx, .len = len,
+	} };
+	int ret = ec_box_get_memory(&mb->box) ?: ec_mbox_over(mb, &until);
+
+	lockdep_assert(ec_mbox_is_claimed(mb, BIT(r->type)));
+	if (!ret && r->late && r->first)
+		ret = ec_mbox_await_late(mb, r, b);
+	return ret ?: mailbox_give(mb, &c, &r->limit);
 }
 
 /**

@@ -19,6 +19,8 @@ int ec_mbox_request(struct ec_mbox *mb, const struct ec_mbox_request *r, struct 
 		    size_t len);
 int ec_mbox_send(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len,
 		 const struct ec_mbox_limit *limit);
+int ec_mbox_send_part(struct ec_mbox *mb, const struct ec_mbox_request *r, struct ec_mbox_buf *b,
+		      size_t len);
 void ec_mbox_send_last(struct ec_mbox *mb, u8 type, struct ec_mbox_buf *b, size_t len);
 int ec_mbox_forget(struct ec_mbox *mb);
 int ec_mbox_wait_voe(struct ec_mbox *mb, struct ec_mbox_buf *b, bool blind,

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Messages that a slave sends without a request: emergencies, VoE. */
+/* Messages that a slave sends without a request: emergencies, notifications of drives, VoE. */
 #include <linux/slab.h>
 #include "../base/report.h"
 #include "../wire/coe.h"
 #include "../wire/emergency.h"
+#include "../wire/soe.h"
 #include "desk.h"
 #include "emerg.h"
 #include "late.h"
@@ -26,6 +27,24 @@ static bool emergency(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 
 	ec_report_more(mb->base, EC_EVENT_EMERGENCY, *mb->position, NULL, e.code, e.reg,
 		       get_unaligned_le32(e.data), e.data[4], profile);
 	ec_emerg_push(mb, rx + EC_COE_HDR);
+	return true;
+}
+
+/* A notification or an emergency of a drive; the event has its first eight bytes. */
+static bool soe_unasked(struct ec_mbox *mb, const struct ec_mbox_hdr *h, const u8 *rx)
+{
+	struct ec_rbuf r = ec_rbuf(rx, h->len);
+	u8 data[8] = { 0 };
+	struct ec_soe_hdr s;
+	size_t n;
+
+	if (h->type != EC_MBOX_SOE || !ec_soe_is_unasked(rx, h->len) || ec_soe_hdr_decode(&r, &s))
+		return false;
+	n = ec_rbuf_left(&r);
+	memcpy(data, r.p, min(n, sizeof(data)));
+	ec_report_more(mb->base, s.opcode == EC_SOE_EMERGENCY ? EC_EVENT_SOE_EMERGENCY :
+		       EC_EVENT_SOE_NOTIFICATION, *mb->position, NULL, s.drive, s.idn, s.elements,
+		       (u32)n, get_unaligned_le32(data), get_unaligned_le32(data + 4));
 	return true;
 }
 
@@ -153,7 +172,7 @@ static void unasked_take(struct ec_mbox *mb)
 		return;
 	if (h.type == EC_MBOX_VOE)
 		unasked_keep(mb, rx, h.len);
-	else if (!emergency(mb, &h, rx))
+	else if (!emergency(mb, &h, rx) && !soe_unasked(mb, &h, rx))
 		ec_mbox_took_late(mb, h.type);
 }
 

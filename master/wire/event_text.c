@@ -129,6 +129,22 @@ static void about_emergency(struct ec_event_buf *t, const struct ec_event *e,
 	    ec_emergency_text((u16)e->arg[0], e->arg[4]), e->arg[1]);
 }
 
+static void about_soe(struct ec_event_buf *t, const struct ec_event *e,
+		      const struct ec_event_more *more)
+{
+	const u32 *a = e->arg;
+	unsigned int i;
+
+	(void)more;
+	add(t, "SoE %s of drive %u: IDN %c-%u-%04u, elements 0x%02x, %u byte(s)",
+	    e->kind == EC_EVENT_SOE_EMERGENCY ? "emergency" : "notification", a[0],
+	    a[1] & 0x8000 ? 'P' : 'S', a[1] >> 12 & 7, a[1] & 0xfff, a[2], a[3]);
+	for (i = 0; i < 8 && i < a[3]; i++)
+		add(t, i ? " %02x" : ": %02x", a[4 + i / 4] >> 8 * (i % 4) & 0xff);
+	if (a[3] > 8)
+		add(t, "...");
+}
+
 /* a startup command with its code; without one the mailbox itself failed */
 static void startup(struct ec_event_buf *t, const u32 *a)
 {
@@ -424,6 +440,8 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 		{ EC_EVENT_SLAVE_BACK, about_back },
 		{ EC_EVENT_AL_STATE, about_al },
 		{ EC_EVENT_EMERGENCY, about_emergency },
+		{ EC_EVENT_SOE_NOTIFICATION, about_soe },
+		{ EC_EVENT_SOE_EMERGENCY, about_soe },
 		{ EC_EVENT_SLAVE_FAILED, about_failure },
 		{ EC_EVENT_EEPROM, about_eeprom },
 		{ EC_EVENT_WKC, about_wkc },

@@ -39,27 +39,48 @@ void ec_soe_hdr_encode(struct ec_wbuf *w, const struct ec_soe_hdr *h)
 }
 
 /**
- * ec_soe_tx() - request of an access
- * @a: access; @error is cleared
+ * ec_soe_tx() - next message of an access
+ * @a: access; its results are reset before the first message
  * @tx: message behind the mailbox header
  * @cap: bytes at @tx
  *
+ * A value that is larger than a message is written in fragments. They count down how many follow;
+ * only the last one has the IDN.
+ *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: bytes, -EMSGSIZE when it does not fit into one message.
+ * Return: bytes, -EMSGSIZE when it does not fit into messages of @cap bytes.
  */
 int ec_soe_tx(struct ec_soe_access *a, u8 *tx, size_t cap)
 {
+	size_t room = cap > EC_SOE_HDR ? cap - EC_SOE_HDR : 0, n = a->write ? a->size - a->at : 0;
 	struct ec_wbuf w = ec_wbuf(tx, cap);
 	struct ec_soe_hdr h = {
 		.opcode = a->write ? EC_SOE_WRITE_REQ : EC_SOE_READ_REQ,
-		.drive = a->drive, .elements = a->element, .idn = a->idn,
+		.drive = a->drive, .elements = a->elements, .idn = a->idn,
 	};
 
-	a->error = 0;
+	if (!a->begun) {
+		a->error = 0;
+		a->wrong = 0;
+	}
+	if (n > room) {
+		if (!room || (n - 1) / room > 0xffff)
+			return -EMSGSIZE;
+		a->left = (u16)((n - 1) / room);
+		h.incomplete = true;
+		h.idn = a->left;
+		n = room;
+	} else {
+		a->left = 0;
+	}
 	ec_soe_hdr_encode(&w, &h);
-	if (a->write)
-		ec_wbuf_bytes(&w, a->data, a->size);
-	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
+	if (n)
+		ec_wbuf_bytes(&w, a->data + a->at, n);
+	if (w.bad)
+		return -EMSGSIZE;
+	a->at += n;
+	a->begun = a->left;
+	return (int)(w.p - tx);
 }
 
 /*
@@ -74,42 +95,95 @@ static int soe_refused(struct ec_soe_access *a, const struct ec_rbuf *r)
 	return -EIO;
 }
 
+/*
+ * Take the data of one message of a read. The rest of a wrong answer is waited for: a fragment of
+ * it must not be taken for an answer to the next request. That does not restart the time limit.
+ */
+static int soe_take(struct ec_soe_access *a, const struct ec_soe_hdr *h, const struct ec_rbuf *r)
+{
+	size_t n = ec_rbuf_left(r);
+	u16 left = h->incomplete ? h->idn : 0;
+
+	/* frames with fragments were lost, or the slave miscounts */
+	if (a->begun && left + 1u != a->left)
+		a->wrong = a->wrong ? a->wrong : -EPROTO;
+	/* a fragment has data, and another one behind it */
+	if (h->incomplete && (!n || !left))
+		a->wrong = a->wrong ? a->wrong : -EBADMSG;
+	a->begun = h->incomplete;
+	a->left = left;
+	if (!a->wrong && n > a->cap - a->at)
+		a->wrong = -ENOBUFS;
+	if (a->wrong)
+		return h->incomplete ? EC_STALE : a->wrong;
+	if (n)
+		memcpy(a->data + a->at, r->p, n);
+	a->at += n;
+	a->size = a->at;
+	return h->incomplete ? EC_WAIT : 0;
+}
+
+/* The end of an answer to something else: the fragments so far were of that. */
+static int soe_other(struct ec_soe_access *a)
+{
+	if (!a->write) {
+		a->at = 0;
+		a->left = 0;
+		a->wrong = 0;
+		a->begun = false;
+	}
+	return EC_STALE;
+}
+
 /**
  * ec_soe_rx() - a message from the slave
- * @a: access whose request was sent
+ * @a: access whose request was sent, of a write at least the first fragment
  * @rx: message behind the mailbox header
  * @len: bytes at @rx
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: 0; EC_STALE for the answer to something else; -EIO with @error set;
- * -ENOBUFS for a value larger than @cap; -EMSGSIZE for one in several
- * fragments; -EBADMSG for a message that is too short.
+ * Return: 0; EC_WAIT for a fragment that others follow; EC_STALE for the answer to something else,
+ * or for a fragment of an answer that is of no use; -EIO with @error set; -ENOBUFS for data larger
+ * than @cap; -EPROTO for fragments that do not count down by one; -EBADMSG for a message that is
+ * too short or wrong.
  */
 int ec_soe_rx(struct ec_soe_access *a, const u8 *rx, size_t len)
 {
 	struct ec_rbuf r = ec_rbuf(rx, len);
 	struct ec_soe_hdr h;
+	bool part;
 
 	if (ec_soe_hdr_decode(&r, &h))
 		return -EBADMSG;
 	if (h.opcode != (a->write ? EC_SOE_WRITE_RESP : EC_SOE_READ_RESP) ||
 	    h.drive != a->drive)
 		return EC_STALE;
-	if (h.incomplete)
-		return -EMSGSIZE;
-	if (h.idn != a->idn)
-		return EC_STALE;
-	if (h.error)
+	part = h.incomplete || (a->write && a->left);
+	/* before the last fragment the slave does not know the IDN that it refuses */
+	if (h.error && (part || h.idn == a->idn))
 		return soe_refused(a, &r);
+	if (!part && (h.idn != a->idn || (!a->write && h.elements != a->elements)))
+		return soe_other(a);
 	if (a->write)
-		return 0;
-	if (h.elements != a->element)
-		return EC_STALE;
-	a->size = ec_rbuf_left(&r);
-	if (a->size > a->cap)
-		return -ENOBUFS;
-	memcpy(a->data, r.p, a->size);
-	return 0;
+		return part ? EC_STALE : 0;
+	return h.elements == a->elements ? soe_take(a, &h, &r) : EC_STALE;
+}
+
+/**
+ * ec_soe_is_unasked() - is a message a notification or an emergency?
+ * @rx: message behind the mailbox header
+ * @len: bytes at @rx
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: it is no answer.
+ */
+bool ec_soe_is_unasked(const u8 *rx, size_t len)
+{
+	struct ec_rbuf r = ec_rbuf(rx, len);
+	struct ec_soe_hdr h;
+
+	return !ec_soe_hdr_decode(&r, &h) &&
+	       (h.opcode == EC_SOE_NOTIFICATION || h.opcode == EC_SOE_EMERGENCY);
 }
 
 static const struct ec_text soe_errors[] = {
@@ -173,4 +247,22 @@ static const struct ec_text soe_errors[] = {
 const char *ec_soe_error_text(u16 code)
 {
 	return ec_text_find(soe_errors, ARRAY_SIZE(soe_errors), code);
+}
+
+/**
+ * ec_soe_command_text() - what a procedure command does
+ * @state: its data state
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: text.
+ */
+const char *ec_soe_command_text(u16 state)
+{
+	if (state & EC_SOE_COMMAND_ERROR)
+		return "error";
+	if (!(state & EC_SOE_COMMAND_SET))
+		return "not set";
+	if (!(state & EC_SOE_COMMAND_ENABLE))
+		return "interrupted";
+	return state & EC_SOE_COMMAND_BUSY ? "in process" : "executed";
 }

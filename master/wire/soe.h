@@ -1,5 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause */
-/* Servo drive profile over EtherCAT: header, read and write of an IDN (ETG.1000.6 clause 5.7). */
+/*
+ * Servo drive profile over EtherCAT: header, read and write of elements of an IDN in one message or
+ * in fragments (ETG.1000.6 clause 5.7), state of procedure commands.
+ */
 #ifndef EC_WIRE_SOE_H
 #define EC_WIRE_SOE_H
 
@@ -27,6 +30,23 @@ enum ec_soe_opcode {
 #define EC_SOE_VALUE		0x40
 #define EC_SOE_DEFAULT		0x80
 
+#define EC_SOE_LIST_HDR		4	/* of lists and texts: length, largest length, bytes */
+
+/* attribute of an IDN */
+#define EC_SOE_ATTR_LEN		0x00070000u	/* 1: 2 bytes, 2: 4, 3: 8, from 4 on: lists */
+#define EC_SOE_ATTR_LIST	0x00040000u
+#define EC_SOE_ATTR_COMMAND	0x00080000u	/* the IDN is a procedure command */
+#define EC_SOE_ATTR_PREOP	0x10000000u	/* write protected in PREOP */
+#define EC_SOE_ATTR_SAFEOP	0x20000000u
+#define EC_SOE_ATTR_OP		0x40000000u
+
+/* value of a procedure command, and the same bits in its data state */
+#define EC_SOE_COMMAND_SET	0x01
+#define EC_SOE_COMMAND_ENABLE	0x02
+/* more bits of its data state */
+#define EC_SOE_COMMAND_BUSY	0x04
+#define EC_SOE_COMMAND_ERROR	0x08
+
 /**
  * struct ec_soe_hdr - SoE header, decoded
  * @opcode: enum ec_soe_opcode
@@ -46,31 +66,47 @@ struct ec_soe_hdr {
 };
 
 /**
- * struct ec_soe_access - reading or writing one element of an IDN
+ * struct ec_soe_access - reading or writing elements of an IDN
  * @write: write, not read
  * @drive: drive number
- * @element: one of EC_SOE_STATE...
+ * @elements: EC_SOE_STATE...
  * @idn: number
- * @data: read: result; write: value
+ * @data: read: result; write: what to write
  * @cap: read: bytes at @data
  * @size: write: bytes to write; read: result, bytes read
  * @error: result: error code of the slave, 0: none
+ * @at: write: bytes sent; read: bytes received, of a wrong answer also those that were dropped
+ * @left: fragments that follow the present one
+ * @begun: the present one is not the first
+ * @wrong: read: -errno of an answer whose remaining fragments are dropped; 0: right so far
  */
 struct ec_soe_access {
 	bool write;
 	u8 drive;
-	u8 element;
+	u8 elements;
 	u16 idn;
 	u8 *data;
 	size_t cap;
 	size_t size;
 	u16 error;
+	size_t at;
+	u16 left;
+	bool begun;
+	int wrong;
 };
+
+/* Does the message of ec_soe_tx() have an answer? One that fragments follow has none. */
+static inline bool ec_soe_awaits(const struct ec_soe_access *a)
+{
+	return !a->write || !a->left;
+}
 
 int ec_soe_hdr_decode(struct ec_rbuf *r, struct ec_soe_hdr *h);
 void ec_soe_hdr_encode(struct ec_wbuf *w, const struct ec_soe_hdr *h);
 int ec_soe_tx(struct ec_soe_access *a, u8 *tx, size_t cap);
 int ec_soe_rx(struct ec_soe_access *a, const u8 *rx, size_t len);
+bool ec_soe_is_unasked(const u8 *rx, size_t len);
 const char *ec_soe_error_text(u16 code);
+const char *ec_soe_command_text(u16 state);
 
 #endif

@@ -39,7 +39,7 @@ static int ask(struct drive *x, u8 type, const void *msg, size_t len, u8 *got)
 static u32 soe(struct drive *x, bool write, u8 drive, u8 element, u16 idn, size_t size)
 {
 	struct ec_soe_access a = {
-		.write = write, .drive = drive, .element = element, .idn = idn, .data = x->buf,
+		.write = write, .drive = drive, .elements = element, .idn = idn, .data = x->buf,
 		.cap = sizeof(x->buf), .size = size,
 	};
 	u8 msg[256], type;
@@ -81,7 +81,7 @@ static void sim_app_soe_values_are_read_and_written(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get(x, 0, 30), 0u);
 	KUNIT_EXPECT_MEMEQ(test, x->buf, "\x07\0\x10\0SIM 1.0", 11);
 	KUNIT_EXPECT_EQ(test, get(x, 0, 17), 0u);
-	KUNIT_EXPECT_MEMEQ(test, x->buf, "\x14\0\x14\0\x0f\0\x11\0", 8);
+	KUNIT_EXPECT_MEMEQ(test, x->buf, "\x36\0\x36\0\1\0\2\0\x0f\0", 10);
 	memcpy(x->buf, "\3\0\0\0abc", 7);
 	KUNIT_EXPECT_EQ(test, soe(x, true, 0, EC_SOE_VALUE, 0x80A0, 7), 0u);
 	KUNIT_EXPECT_EQ(test, get(x, 0, 0x80A0), 0u);
@@ -156,14 +156,17 @@ static u16 error_of(struct drive *x, u8 type, const void *msg, size_t len)
 static void sim_app_soe_wrong_messages(struct kunit *test)
 {
 	struct drive *x = drive_new(test, "slave d drive soe=1\n");
-	static const u8 fragment[] = { 0x0B, 0x40, 0x01, 0x00, 1, 2 };
+	/* the first fragment has no answer; the second miscounts */
+	static const u8 fragment[] = { 0x0B, 0x40, 0x03, 0x00, 1, 2 };
+	static const u8 wrong[] = { 0x0B, 0x40, 0x01, 0x00, 1, 2 };
 	static const u8 error[] = { 0x14, 0x40, 0x01, 0x00, 0x0B, 0x80 };
 	u8 type;
 
 	KUNIT_EXPECT_EQ(test, error_of(x, EC_MBOX_SOE, "\1\x40\x5B", 3), EC_MBOX_ERR_TOO_SHORT);
 	KUNIT_EXPECT_EQ(test, error_of(x, EC_MBOX_SOE, "\2\x40\x5B\0", 4), EC_MBOX_ERR_SERVICE);
 	KUNIT_EXPECT_EQ(test, error_of(x, EC_MBOX_VOE, "123456", 6), EC_MBOX_ERR_PROTOCOL);
-	KUNIT_ASSERT_EQ(test, ask(x, EC_MBOX_SOE, fragment, 6, &type), 6);
+	KUNIT_ASSERT_EQ(test, ask(x, EC_MBOX_SOE, fragment, 6, &type), -1);
+	KUNIT_ASSERT_EQ(test, ask(x, EC_MBOX_SOE, wrong, 6, &type), 6);
 	KUNIT_EXPECT_MEMEQ(test, x->m.rx + EC_MBOX_HDR, error, 6);
 }
 

@@ -12,7 +12,7 @@ static void vectors_soe_read_s_0_0015_of_drive_2(struct kunit *test)
 	static const u8 error[] = { 0x52, 0x40, 0x0F, 0x00, 0x0A, 0x80 };
 	u8 out[8], value[2] = { 0 };
 	struct ec_soe_access a = {
-		.drive = 2, .element = EC_SOE_VALUE, .idn = 15, .data = value, .cap = 2,
+		.drive = 2, .elements = EC_SOE_VALUE, .idn = 15, .data = value, .cap = 2,
 	};
 
 	KUNIT_ASSERT_EQ(test, ec_soe_tx(&a, out, sizeof(out)), 4);
@@ -31,7 +31,7 @@ static void vectors_soe_write_p_0_0150(struct kunit *test)
 	static const u8 error[] = { 0x14, 0x40, 0x96, 0x80, 0x05, 0x70 };
 	u8 out[8], value[2] = { 0x34, 0x12 };
 	struct ec_soe_access a = {
-		.write = true, .element = EC_SOE_VALUE, .idn = 0x8096, .data = value, .size = 2,
+		.write = true, .elements = EC_SOE_VALUE, .idn = 0x8096, .data = value, .size = 2,
 	};
 
 	KUNIT_ASSERT_EQ(test, ec_soe_tx(&a, out, sizeof(out)), 6);
