@@ -33,7 +33,7 @@ static int soe_write(const struct tool *t, struct dev *d, const struct soe_addr 
 
 	if (dev_select_single(d, t, &s))
 		return 1;
-	err = ect_soe_write(d->h, s.device, a->drive, a->idn, t->timeout_ms, data, size);
+	err = soe_put(t, d, &s, a, data, size);
 	if (err)
 		return soe_failed(d, err, &s, a, "write");
 	out_u("master", d->master, NULL);
@@ -52,7 +52,8 @@ static int run(struct tool *t, int argc, char **argv)
 	u8 *data;
 	int ret;
 
-	if (sdo_timeout_check(t) || soe_addr_parse(&a, argc > 2 ? argv[0] : NULL, argv[argc - 2]))
+	if (sdo_timeout_check(t) || soe_addr_parse(&a, argc > 2 ? argv[0] : NULL, argv[argc - 2]) ||
+	    soe_element_parse(&a, t->element))
 		return 1;
 	if (!t->type)
 		return usage_error("the data type of %s is not known; give it with --type", a.text);
@@ -71,14 +72,15 @@ const struct cmd cmd_soe_write = {
 	.name = "soe_write",
 	.run = run,
 	.args = "[DRIVE] IDN VALUE",
-	.opts = "maptI",
+	.opts = "maptMI",
 	.summary = "Write an IDN of a servo drive (SoE)",
 	.help = "DRIVE := { 0 to 7 }, default 0\n"
 		"IDN := { S-SET-NUMBER | P-SET-NUMBER | 0 to 0xffff }     S-0-15, P-0-150, 0x8096\n"
 		"VALUE := { a value of the type given by --type | - for stdin }\n"
 		"--type is required. A text is sent as a list with its length; write other lists as\n"
-		"raw bytes. Negative numbers need no '--' before them.\n",
-	.json = "master, position, drive, idn, name, size_bytes",
+		"raw bytes. Negative numbers need no '--' before them. Without --element the value is\n"
+		"written.\n",
+	.json = "master, position, drive, idn, name, element (not for the value), size_bytes",
 	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
 	.min_args = 2,
 	.max_args = 3,

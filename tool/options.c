@@ -26,6 +26,7 @@ const struct opt opts[] = {
 	{ 'S', "save", "FILE", "write the result to a file" },
 	{ 'C', "compare", "FILE", "compare with a file of --save; - for stdin" },
 	{ 'L', "compare-slave", "POSITION", "compare with another slave" },
+	{ 'M', "element", "NAME", "of an IDN: state, name, attribute, unit, minimum, maximum, value, default" },
 	{ 'A', "acknowledge", NULL, "acknowledge the newest message" },
 	{ 'O', "coe", NULL, "read from the slave over CoE, now" },
 	{ 'T', "texts", "FILE", "device description (ESI) with the texts of messages; - for stdin" },
@@ -63,6 +64,7 @@ static const struct option longs[] = {
 	{ "save", required_argument, NULL, 'S' },
 	{ "compare", required_argument, NULL, 'C' },
 	{ "compare-slave", required_argument, NULL, 'L' },
+	{ "element", required_argument, NULL, 'M' },
 	{ "acknowledge", no_argument, NULL, 'A' },
 	{ "coe", no_argument, NULL, 'O' },
 	{ "texts", required_argument, NULL, 'T' },
@@ -241,6 +243,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'L':
 		return position(optarg, &t->compare_slave);
+	case 'M':
+		t->element = optarg;
+		return 0;
 	case 'A':
 		t->acknowledge = true;
 		return 0;

@@ -43,6 +43,7 @@
  * @save: --save, NULL when not given
  * @compare: --compare, NULL when not given
  * @compare_slave: --compare-slave, negative when not given
+ * @element: --element, NULL when not given
  * @acknowledge: --acknowledge
  * @coe: --coe
  * @texts: --texts, NULL when not given
@@ -77,6 +78,7 @@ struct tool {
 	const char *save;
 	const char *compare;
 	int compare_slave;
+	const char *element;
 	bool acknowledge;
 	bool coe;
 	const char *texts;

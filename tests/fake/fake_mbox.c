@@ -230,6 +230,48 @@ static int soe_error(struct ec_ioc_soe *x, __u16 code)
 	return fake_fail(EIO, "the slave refuses");
 }
 
+/*
+ * S-0-0148 is executed after three polls, S-0-0149 fails, S-0-0150 never ends; the name of S-0-0030
+ * is hostile, P-0-0150 has neither name nor attribute
+ */
+static int soe_element(struct ec_ioc_soe *x)
+{
+	static const struct {
+		__u16 idn;
+		__u8 element;
+		__u8 size;
+		const char *data;
+	} elements[] = {
+		{ 15, 2, 18, "\x0e\0\x0e\0Telegram type!" }, { 15, 4, 4, "\0\0\1\x60" },
+		{ 15, 8, 4, "\0\0\0\0" }, { 15, 0x10, 2, "\0\0" }, { 15, 0x20, 2, "\7\0" },
+		{ 15, 0x80, 2, "\7\0" },
+		{ 30, 2, 12, "\x08\0\x08\0a\033[2Jb\n\x9b" }, { 30, 4, 4, "\1\0\x44\x72" },
+		{ 30, 8, 6, "\xff\0\2\0us" },
+		{ 148, 2, 10, "\6\0\6\0Homing" }, { 148, 4, 4, "\0\0\x09\0" },
+		{ 148, 8, 5, "\1\0\1\0s" },
+		{ 149, 4, 4, "\0\0\x09\0" }, { 150, 4, 4, "\0\0\x09\0" },
+		{ 149, 1, 2, "\xf\0" }, { 150, 1, 2, "\7\0" }, { 151, 1, 3, "\7\0\0" },
+	};
+	static unsigned int polls;
+	__u8 *to = (__u8 *)(uintptr_t)x->data;
+
+	if (x->idn == 148 && x->elements == 1) {
+		memcpy(to, polls++ < 3 ? "\7\0" : "\3\0", 2);
+		x->size = 2;
+		return 0;
+	}
+	for (size_t i = 0; i < LEN(elements); i++) {
+		if (elements[i].idn != x->idn || elements[i].element != x->elements)
+			continue;
+		memcpy(to, elements[i].data, elements[i].size);
+		x->size = elements[i].size;
+		return 0;
+	}
+	if (x->idn == 99)
+		return fake_fail(ETIMEDOUT, "slave 2 did not answer in time");
+	return soe_error(x, x->elements == 1 ? 0x7014 : 0x2001);
+}
+
 static int soe_read(struct ec_ioc_soe *x)
 {
 	static const struct {
@@ -238,12 +280,17 @@ static int soe_read(struct ec_ioc_soe *x)
 		const char *data;
 	} idns[] = {
 		{ 15, 2, "\7\0" },
+		{ 16, 6, "\xff\0\x20\0\x33\0" },	/* the length is wrong */
+		{ 17, 12, "\x08\0\x08\0\x0f\0\x1e\0\x94\0\x96\x80" },
+		{ 25, 4, "\0\0\x20\0" },
 		{ 30, 11, "\7\0\x10\0SIM 1.0" },
 		{ 0x8096, 2, "\x34\x12" },
 	};
 
 	if (x->drive > 1)
 		return soe_error(x, 0x800a);
+	if (x->elements)
+		return soe_element(x);
 	if (x->idn == 99)
 		return fake_fail(ETIMEDOUT, "slave 2 did not answer in time");
 	for (size_t i = 0; i < LEN(idns); i++)
@@ -262,6 +309,8 @@ static int soe_write(struct ec_ioc_soe *x)
 	if (x->idn == 30)
 		return soe_error(x, 0x7004);
 	snprintf(what, sizeof(what), "soe %u %u 0x%04x ", x->slave.position, x->drive, x->idn);
+	if (x->elements)
+		sprintf(what + strlen(what), "element 0x%02x ", x->elements);
 	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
 	return 0;
 }
