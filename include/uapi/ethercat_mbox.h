@@ -76,7 +76,7 @@ struct ec_ioc_emergencies {
 	__u64 data;		/* of struct ec_emergency, at most EC_EMERGENCIES */
 };
 
-/* struct ec_ioc_soe.elements, in the order of their data */
+/* struct ec_ioc_soe.flags: elements of the IDN, in the order of their data; none: the value */
 #define EC_SOE_ELEMENT_STATE	0x01	/* data state */
 #define EC_SOE_ELEMENT_NAME	0x02
 #define EC_SOE_ELEMENT_ATTRIBUTE 0x04
@@ -85,13 +85,14 @@ struct ec_ioc_emergencies {
 #define EC_SOE_ELEMENT_MAX	0x20
 #define EC_SOE_ELEMENT_VALUE	0x40
 #define EC_SOE_ELEMENT_DEFAULT	0x80
+#define EC_SOE_ELEMENT_ALL	0xff
 
 /* elements of an IDN of a servo drive; one is written at a time */
 struct ec_ioc_soe {
-	__u32 flags;
+	__u32 flags;		/* in: EC_SOE_ELEMENT_* */
 	__u16 idn;		/* in */
 	__u8 drive;		/* in: 0..7 */
-	__u8 elements;		/* in: EC_SOE_ELEMENT_*; 0: the value */
+	__u8 reserved;
 	struct ec_ioc_address slave;	/* in */
 	__u32 error_code;	/* out: of the slave, after -EIO */
 	__u32 size;		/* write: bytes; read: buffer size, then result */

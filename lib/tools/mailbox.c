@@ -41,9 +41,8 @@ long ect_soe_read_element(struct ect_handle *h, uint64_t device, unsigned int dr
 			  unsigned int element, uint32_t timeout_ms, void *data, size_t size)
 {
 	struct ec_ioc_soe s = {
-		.slave = ect_address(device), .idn = idn, .drive = (u8)drive,
-		.elements = (u8)element, .size = room(size), .timeout_ms = timeout_ms,
-		.data = (uintptr_t)data,
+		.flags = element, .slave = ect_address(device), .idn = idn, .drive = (u8)drive,
+		.size = room(size), .timeout_ms = timeout_ms, .data = (uintptr_t)data,
 	};
 	int ret = ect_command(h, EC_IOC_SOE_READ, &s);
 
@@ -54,16 +53,15 @@ int ect_soe_write_element(struct ect_handle *h, uint64_t device, unsigned int dr
 			  unsigned int element, uint32_t timeout_ms, const void *data, size_t size)
 {
 	struct ec_ioc_soe s = {
-		.slave = ect_address(device), .idn = idn, .drive = (u8)drive,
-		.elements = (u8)element, .size = room(size), .timeout_ms = timeout_ms,
-		.data = (uintptr_t)data,
+		.flags = element, .slave = ect_address(device), .idn = idn, .drive = (u8)drive,
+		.size = room(size), .timeout_ms = timeout_ms, .data = (uintptr_t)data,
 	};
 	int ret = ect_command(h, EC_IOC_SOE_WRITE, &s);
 
 	return ect_coded(h, ret, s.error_code);
 }
 
-/* The value has no bit here, so that an older module understands this as well. */
+/* Without a bit for the value, so that an older module accepts it. */
 long ect_soe_read(struct ect_handle *h, uint64_t device, unsigned int drive, uint16_t idn,
 		  uint32_t timeout_ms, void *data, size_t size)
 {

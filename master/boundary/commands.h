@@ -71,9 +71,9 @@ CMD(EC_IOC_REG_RDWR, ec_ioc_reg_rdwr, F_WRITE, INOUT(ec_ioc_reg, EC_MAX_REG_SIZE
 CMD(EC_IOC_DATAGRAM, ec_ioc_datagram, F_WRITE, INOUT(ec_ioc_datagram, EC_MAX_DATAGRAM_SIZE),
 	RSV1(ec_ioc_datagram))
 CMD(EC_IOC_SOE_READ, ec_ioc_soe_read, F_WRITE, SLAVE(ec_ioc_soe), OUT(ec_ioc_soe, EC_MAX_SOE_SIZE),
-	RSV(FIELD(ec_ioc_soe, reserved2)))
+	RSV2(ec_ioc_soe), FLAGS(EC_SOE_ELEMENT_ALL))
 CMD(EC_IOC_SOE_WRITE, ec_ioc_soe_write, F_WRITE, SLAVE(ec_ioc_soe),
-	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV(FIELD(ec_ioc_soe, reserved2)))
+	IN(ec_ioc_soe, EC_MAX_SOE_SIZE), RSV2(ec_ioc_soe), FLAGS(EC_SOE_ELEMENT_ALL))
 CMD(EC_IOC_FOE_READ, ec_ioc_foe_read, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
 CMD(EC_IOC_FOE_WRITE, ec_ioc_foe_write, F_WRITE, SLAVE(ec_ioc_foe), RSV1(ec_ioc_foe))
 CMD(EC_IOC_SII_WRITE, ec_ioc_sii_write, F_WRITE, SLAVE(ec_ioc_sii_write),

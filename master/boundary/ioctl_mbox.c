@@ -218,7 +218,7 @@ static int idn_access(struct ec_call *call, struct ec_soe_access *a)
 	int ret;
 
 	a->drive = i->drive;
-	a->elements = i->elements ?: EC_SOE_VALUE;
+	a->elements = i->flags ?: EC_SOE_VALUE;
 	a->idn = i->idn;
 	a->data = call->data;
 	ret = ec_soe_access(&call->slave->mbox, a, &limit);
@@ -251,9 +251,9 @@ int ec_ioc_soe_write(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	if (hweight8(i->elements) > 1)
+	if (hweight8(i->flags) > 1)
 		return ec_refuse(call, -EINVAL, "elements 0x%02x: one is written at a time",
-				 i->elements);
+				 i->flags);
 	ret = idn_access(call, &a);
 	if (!ret && a.elements == EC_SOE_VALUE)
 		ec_ioc_record(call, &what);

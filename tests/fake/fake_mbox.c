@@ -255,13 +255,13 @@ static int soe_element(struct ec_ioc_soe *x)
 	static unsigned int polls;
 	__u8 *to = (__u8 *)(uintptr_t)x->data;
 
-	if (x->idn == 148 && x->elements == 1) {
+	if (x->idn == 148 && x->flags == 1) {
 		memcpy(to, polls++ < 3 ? "\7\0" : "\3\0", 2);
 		x->size = 2;
 		return 0;
 	}
 	for (size_t i = 0; i < LEN(elements); i++) {
-		if (elements[i].idn != x->idn || elements[i].element != x->elements)
+		if (elements[i].idn != x->idn || elements[i].element != x->flags)
 			continue;
 		memcpy(to, elements[i].data, elements[i].size);
 		x->size = elements[i].size;
@@ -269,7 +269,7 @@ static int soe_element(struct ec_ioc_soe *x)
 	}
 	if (x->idn == 99)
 		return fake_fail(ETIMEDOUT, "slave 2 did not answer in time");
-	return soe_error(x, x->elements == 1 ? 0x7014 : 0x2001);
+	return soe_error(x, x->flags == 1 ? 0x7014 : 0x2001);
 }
 
 static int soe_read(struct ec_ioc_soe *x)
@@ -289,7 +289,7 @@ static int soe_read(struct ec_ioc_soe *x)
 
 	if (x->drive > 1)
 		return soe_error(x, 0x800a);
-	if (x->elements)
+	if (x->flags)
 		return soe_element(x);
 	if (x->idn == 99)
 		return fake_fail(ETIMEDOUT, "slave 2 did not answer in time");
@@ -309,8 +309,8 @@ static int soe_write(struct ec_ioc_soe *x)
 	if (x->idn == 30)
 		return soe_error(x, 0x7004);
 	snprintf(what, sizeof(what), "soe %u %u 0x%04x ", x->slave.position, x->drive, x->idn);
-	if (x->elements)
-		sprintf(what + strlen(what), "element 0x%02x ", x->elements);
+	if (x->flags)
+		sprintf(what + strlen(what), "element 0x%02x ", x->flags);
 	fake_hex(what, (const __u8 *)(uintptr_t)x->data, x->size);
 	return 0;
 }

@@ -249,14 +249,14 @@ static void check_soe(int fd)
 	s.size = 300;
 	expect_errno(call(fd, EC_IOC_SOE_WRITE, &s), EIO, "more than a message");
 	expect(s.error_code == 0x7003, "error code 0x%08x", s.error_code);
-	s.elements = 0x30;
+	s.flags = 0x30;
 	s.size = 4;
 	expect_errno(call(fd, EC_IOC_SOE_WRITE, &s), EINVAL, "two elements at a time");
 	expect_errno(call(fd, EC_IOC_SOE_READ, &s), ENOBUFS, "minimum and maximum into 4 bytes");
 	s.size = 8;
 	expect_errno(call(fd, EC_IOC_SOE_READ, &s), 0, "minimum and maximum");
 	expect(s.size == 8 && data[0] == 10 && data[4] == (6000 & 255), "%u bytes", s.size);
-	s.elements = 0;
+	s.flags = 0;
 	s.size = 4;
 	s.idn = 92;
 	expect_errno(call(fd, EC_IOC_SOE_READ, &s), EIO, "IDN that does not exist");

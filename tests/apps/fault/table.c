@@ -62,8 +62,8 @@ const struct cmd cmds[] = {
 	CMD(REG_WRITE, BUS, RSV2(ec_ioc_reg), DATA(ec_ioc_reg), .flags = EC_REG_FLAG_EMERGENCY),
 	CMD(REG_RDWR, BUS, RSV2(ec_ioc_reg), DATA(ec_ioc_reg)),
 	CMD(DATAGRAM, BUS, RSV1(ec_ioc_datagram), DATA(ec_ioc_datagram)),
-	CMD(SOE_READ, BUS, .reserved = { AT(ec_ioc_soe, reserved2) }, DATA(ec_ioc_soe)),
-	CMD(SOE_WRITE, BUS, .reserved = { AT(ec_ioc_soe, reserved2) }, DATA(ec_ioc_soe)),
+	CMD(SOE_READ, BUS, RSV2(ec_ioc_soe), DATA(ec_ioc_soe), .flags = EC_SOE_ELEMENT_ALL),
+	CMD(SOE_WRITE, BUS, RSV2(ec_ioc_soe), DATA(ec_ioc_soe), .flags = EC_SOE_ELEMENT_ALL),
 	/* their data are not copied before the slave has been asked: check_foe() */
 	CMD(FOE_READ, BUS, RSV1(ec_ioc_foe)),
 	CMD(FOE_WRITE, BUS, RSV1(ec_ioc_foe)),
