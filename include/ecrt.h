@@ -92,6 +92,8 @@
 #endif
 /* ecrt_master_deactivate_slaves() */
 #define EC_HAVE_DEACTIVATE_SLAVES
+/* ecrt_master_rt_slave_requests(), ecrt_master_exec_slave_requests() */
+#define EC_HAVE_RT_SLAVE_REQUESTS
 /* requests for whole objects */
 #define EC_HAVE_SDO_REQUEST_COMPLETE
 /* ecrt_reg_request_readwrite() */
@@ -1461,6 +1463,37 @@ EC_PUBLIC_API int ecrt_master_setup_domain_memory(ec_master_t *master);
  * Context: Process. May sleep.
  */
 EC_PUBLIC_API void ecrt_master_deactivate_slaves(ec_master_t *master);
+#endif
+
+#ifdef EC_HAVE_RT_SLAVE_REQUESTS
+/**
+ * ecrt_master_rt_slave_requests() - say where the requests of slaves are processed
+ * @master: an opened master
+ * @rt_slave_requests: 1: the application calls ecrt_master_exec_slave_requests(); 0: it does not
+ *
+ * Extension (%EC_HAVE_RT_SLAVE_REQUESTS), of the patches to the IgH EtherCAT Master. There a
+ * thread of the master processes requests (SDO, SoE, FoE, registers), unless the application does
+ * it in its cycle. In this master the setting changes nothing. A message to a slave advances where
+ * ecrt_master_receive() is called, its frames leave with ecrt_master_send(), and a worker of each
+ * slave prepares the next message. No cycle waits for a worker, and no lock is held over a
+ * transfer.
+ *
+ * Context: Any. RT-safe: no system call.
+ * Return: 0; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_rt_slave_requests(ec_master_t *master,
+						unsigned int rt_slave_requests);
+
+/**
+ * ecrt_master_exec_slave_requests() - process the requests of slaves
+ * @master: an opened master
+ *
+ * Extension (%EC_HAVE_RT_SLAVE_REQUESTS). No effect: requests advance without it, as
+ * ecrt_master_rt_slave_requests() describes. For applications that call it in each cycle.
+ *
+ * Context: Any. RT-safe: no system call.
+ */
+EC_PUBLIC_API void ecrt_master_exec_slave_requests(ec_master_t *master);
 #endif
 
 #ifdef EC_HAVE_SDO_UPLOAD_COMPLETE

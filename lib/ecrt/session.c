@@ -44,6 +44,20 @@ void ecrt_master_deactivate_slaves(ec_master_t *master)
 }
 EXPORT_SYMBOL_GPL(ecrt_master_deactivate_slaves);
 
+/* Requests advance without calls of the application, with this setting and without it. */
+int ecrt_master_rt_slave_requests(ec_master_t *master, unsigned int rt_slave_requests)
+{
+	(void)rt_slave_requests;
+	return master ? 0 : -EINVAL;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_rt_slave_requests);
+
+void ecrt_master_exec_slave_requests(ec_master_t *master)
+{
+	(void)master;
+}
+EXPORT_SYMBOL_GPL(ecrt_master_exec_slave_requests);
+
 /* hot connect groups --------------------------------------------------------*/
 
 _Static_assert((int)EC_GROUP_ALIAS == EC_GROUP_BY_ALIAS, "groups");

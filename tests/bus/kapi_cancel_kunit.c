@@ -27,8 +27,10 @@ static u32 ends(struct kapp *k, ec_sdo_request_t *r)
 {
 	u32 n;
 
-	for (n = 0; n < 10000 && ecrt_sdo_request_state(r) == EC_REQUEST_BUSY; n++)
+	for (n = 0; n < 10000 && ecrt_sdo_request_state(r) == EC_REQUEST_BUSY; n++) {
+		ecrt_master_exec_slave_requests(k->m);
 		kapp_run(k, 1);
+	}
 	return n;
 }
 
@@ -40,6 +42,8 @@ static void cancel_of_waiting_request(struct kunit *test)
 	ec_sdo_request_t *r = ecrt_slave_config_create_sdo_request(absent, 0x1018, 4, 4);
 
 	KUNIT_ASSERT_NOT_NULL(test, r);
+	KUNIT_EXPECT_EQ(test, ecrt_master_rt_slave_requests(NULL, 1), -EINVAL);
+	KUNIT_EXPECT_EQ(test, ecrt_master_rt_slave_requests(k->m, 1), 0);
 	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_cancel(NULL), -EINVAL);
 	KUNIT_EXPECT_EQ(test, ecrt_sdo_request_cancel(r), -EINVAL);
 	kapp_op(k);

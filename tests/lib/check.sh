@@ -174,6 +174,22 @@ kernel_declares_list() {
 	diff <(names prototypes_kernel.txt) <(declared -D__KERNEL__ -nostdinc -Ikernel)
 }
 
+# --- what the IgH EtherCAT Master and its patches have ---
+kernel_exports() {	# a macro exports what several kinds of requests have
+	grep -rhoP '^EXPORT_SYMBOL(_GPL)?\(\Kecrt_[a-z0-9_]*' "$top/master"
+	for f in "$top"/lib/ecrt/*.c; do
+		sed 's/^EXPORT_SYMBOL_GPL(/EXPORTED(/' "$f" |
+			$CC -E -P -fms-extensions -D_GNU_SOURCE -I"$top/lib/ecrt" -x c -
+	done | grep -oP 'EXPORTED\(\Kecrt_[a-z0-9_]*'
+}
+
+igh() {	# igh.py with the functions of both sides
+	comm -12 <(declared) <(map_symbols | cut -d' ' -f1) >"$o/igh.user"
+	kernel_exports | sort |
+		comm -12 - <(declared -D__KERNEL__ -nostdinc -Ikernel) >"$o/igh.kernel"
+	./igh.py "$1" "$o/igh.user" "$o/igh.kernel"
+}
+
 library_works() {
 	$CC -std=gnu11 -fms-extensions $warn -Wno-pedantic $san -D_GNU_SOURCE \
 		-Wl,--wrap=open,--wrap=ioctl,--wrap=mmap,--wrap=close,--wrap=posix_fadvise \
@@ -268,6 +284,11 @@ t "ecrt.h has the prototypes of the list, C++" prototypes_equal $CXX c++
 t "ecrt.h declares the list and nothing else" header_declares_list
 t "ecrt.h has the prototypes of the list, kernel" kernel_prototypes_equal
 t "ecrt.h declares the list and nothing else, kernel" kernel_declares_list
+t "the functions of IgH are there, or have a reason" igh functions
+t "a function without both is noticed" igh selftest
+t "the list of them has what the books have" ./igh.py list
+[ -d "$top/../shared/reference" ] ||
+	echo "# ../shared/reference is not here: igh.txt was not compared with the books"
 t "data access in C" access_works $CC c
 t "data access in C++" access_works $CXX c++
 [ "$(uname -m)" != x86_64 ] || t "data access is one access" one_access

@@ -14,6 +14,8 @@ static void nobody(void)
 
 	CHECK(ecrt_master_setup_domain_memory(NULL) == -EINVAL);
 	ecrt_master_deactivate_slaves(NULL);
+	CHECK(ecrt_master_rt_slave_requests(NULL, 1) == -EINVAL);
+	ecrt_master_exec_slave_requests(NULL);
 	CHECK(ecrt_master_sdo_upload_complete(NULL, 0, 0, NULL, 0, &size, NULL) ==
 	      -EINVAL);
 	ecrt_master_64bit_reference_clock_time_queue(NULL);

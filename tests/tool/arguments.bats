@@ -367,3 +367,15 @@ for o in d["options"]:
 		[ "$(cat compopt)" = "-o filenames" ]
 	done
 }
+
+@test "the commands, options and types of IgH are there, or have a reason" {
+	real help --json >"$BATS_TEST_TMPDIR/help"
+	real help types --json >"$BATS_TEST_TMPDIR/types"
+	"$HERE/../lib/igh.py" commands "$BATS_TEST_TMPDIR/help" "$BATS_TEST_TMPDIR/types"
+	# a command that is missing is noticed
+	sed 's/"name":"alias"/"name":"other"/; s/"name": "alias"/"name": "other"/' \
+		"$BATS_TEST_TMPDIR/help" >"$BATS_TEST_TMPDIR/other"
+	run "$HERE/../lib/igh.py" commands "$BATS_TEST_TMPDIR/other" "$BATS_TEST_TMPDIR/types"
+	[ "$status" = 1 ]
+	[[ $output == "command alias: is missing; "* ]]
+}
