@@ -28,6 +28,7 @@
 #include "ethercat-tools/eoe.h"
 #include "ethercat-tools/events.h"
 #include "ethercat-tools/handle.h"
+#include "ethercat-tools/mail.h"
 #include "ethercat-tools/mailbox.h"
 #include "ethercat-tools/master.h"
 #include "ethercat-tools/slave.h"

@@ -8,6 +8,8 @@
 #include "log.h"
 #include "show.h"
 
+struct ec_mail_tap;
+
 /** struct ec_base - what all layers of one master use; they have it as @base */
 struct ec_base {
 	/** @index: number of the master, immutable */
@@ -20,6 +22,8 @@ struct ec_base {
 	struct ec_log log;
 	/** @events: what has happened, for readers of the device file */
 	struct ec_events events;
+	/** @mail_tap: copies of mailbox messages, NULL: they have no reader */
+	struct ec_mail_tap __rcu *mail_tap;
 	/** @show: readers of sessions and slaves, which take no lock, and changes of these */
 	struct ec_show show;
 };

@@ -11,6 +11,7 @@
 #include "../cycle/waiters.h"
 
 struct ec_event_reader;
+struct ec_mail_reader;
 struct ec_master;
 struct ec_session;
 
@@ -22,6 +23,7 @@ struct ec_session;
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
  * @reader: NULL, or it reads events; set once
+ * @mail: NULL, or it reads mailbox messages; set once
  * @holds: it has held a sync unit of another application
  * @admitted: bits EC_ADMITTED_*: commands of the cycle that ioctl() has let through on this file
  * @rcu: frees it after the cycle has finished with @waiters
@@ -33,6 +35,7 @@ struct ec_file {
 	char reason[EC_UAPI_REASON];
 	struct ec_waiters waiters;
 	struct ec_event_reader *reader;
+	struct ec_mail_reader *mail;
 	bool holds;
 	unsigned long admitted;
 	struct rcu_head rcu;

@@ -115,6 +115,10 @@ int ec_ioc_events(struct ec_call *call)
 		return ec_refuse(call, -EINVAL,
 				 "an event has %zu bytes, not %u; build the program with the header of this module",
 				 sizeof(struct ec_event), arg->size);
+	/* pairs with smp_store_release() of it */
+	if (smp_load_acquire(&call->file->mail))
+		return ec_refuse(call, -EBUSY,
+				 "this open file reads mailbox messages; open the device file again");
 	r = reader(call->file);
 	if (!r)
 		return -ENOMEM;

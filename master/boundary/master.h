@@ -13,6 +13,7 @@
 #include "../session/session.h"
 #include "../eoe/netdevs.h"
 #include "event_readers.h"
+#include "mail_readers.h"
 #include "slave_devices.h"
 
 struct ec_api;
@@ -38,6 +39,8 @@ struct ec_master {
 	struct ec_sessions sessions;
 	/** @readers: open files that read events */
 	struct ec_event_readers readers;
+	/** @mail_readers: open files that read mailbox messages */
+	struct ec_mail_readers mail_readers;
 	/** @slave_devices: slaves for the rest of Linux */
 	struct ec_slave_devices slave_devices;
 	/** @eoe: network devices of slaves */

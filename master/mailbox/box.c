@@ -17,6 +17,7 @@
 #include "box.h"
 #include "box_repeat.h"
 #include "box_state.h"
+#include "mail_tap.h"
 
 #define AWAY_NS	(20 * NSEC_PER_MSEC)	/* a slave that does not reply for longer has failed */
 
@@ -256,6 +257,13 @@ static void trace_message(const struct ec_box *box, bool to_slave, const struct 
 			 h->len);
 }
 
+/* For the readers of messages, if there are any. */
+static void show_message(const struct ec_box *box, u32 flags, const u8 *bytes, u16 size)
+{
+	if (ec_mail_tap_wanted(box->links->base))
+		ec_mail_tap_put(box, flags, bytes, size);
+}
+
 /* SM1 was read: its content is in @rx. */
 static void box_received(struct ec_box *box)
 {
@@ -265,12 +273,14 @@ static void box_received(struct ec_box *box)
 	if (box->gap == EC_BOX_UNREAD)
 		ec_box_set_gap(box, EC_BOX_WHOLE);
 	if (ec_box_message(box, &h)) {
+		show_message(box, EC_MAIL_MALFORMED, box->rx, box->rx_size);
 		box->ops->event(box, EC_BOX_ON_MALFORMED, 0);
 	} else if (ec_box_is_known(box, h.counter)) {
 		box->ops->event(box, EC_BOX_ON_REPEATED, 0);
 	} else {
 		box->held = true;
 		trace_message(box, false, &h);
+		show_message(box, 0, box->rx, EC_MBOX_HDR + h.len);
 		box->ops->event(box, EC_BOX_ON_RECEIVED, 0);
 	}
 	if (is_emptying(box) && ++box->drained >= EC_BOX_DRAIN)
@@ -384,12 +394,15 @@ static enum ec_box_step on_written(struct ec_box *box, int ret)
 			return EC_BOX_WRITE;
 		box->doubtful = false;
 		trace_written(box);
+		show_message(box, EC_MAIL_TO_SLAVE, box->tx, box->tx_len);
 		ec_box_written(box);
 	} else if (ret == -ETIMEDOUT) {
 		/* the slave may have it; if it can repeat, it drops a second one: send it again */
 		box->doubtful = true;
-		if (!box->can_repeat || box->orphan)
+		if (!box->can_repeat || box->orphan) {
+			show_message(box, EC_MAIL_TO_SLAVE | EC_MAIL_UNSURE, box->tx, box->tx_len);
 			ec_box_written(box);
+		}
 	} else if (ret == -EIO) {
 		/* SM0 is full, until the message of the slave is read */
 		ec_box_set_job(box, box->orphan ? EC_BOX_NO_JOB : EC_BOX_BLOCKED);

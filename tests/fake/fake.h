@@ -55,6 +55,8 @@ extern const struct ec_ip_params fake_net;
 int fake_app(unsigned long request, void *arg);
 int fake_mbox(unsigned long request, void *arg);
 int fake_events(unsigned long request, void *arg);
+int fake_mail(unsigned long request, void *arg);
+bool fake_mail_read(void *buf, unsigned long size, long *bytes);
 
 void fake_why(unsigned long request, void *arg);
 bool fake_why_unit(struct ec_ioc_unit_info *x);

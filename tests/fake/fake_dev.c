@@ -281,6 +281,8 @@ static int answer(int fd, unsigned long request, void *arg)
 			ret = fake_mbox(request, arg);
 		if (ret == FAKE_OTHER)
 			ret = fake_events(request, arg);
+		if (ret == FAKE_OTHER)
+			ret = fake_mail(request, arg);
 		if (ret != FAKE_OTHER)
 			return ret;
 		errno = ENOTTY;

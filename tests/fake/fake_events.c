@@ -74,8 +74,11 @@ long ect_sys_read(int fd, void *buf, unsigned long size)
 {
 	struct ec_event *e = buf;
 	unsigned int n;
+	long bytes;
 
 	(void)fd;
+	if (fake_mail_read(buf, size, &bytes))
+		return bytes;
 	for (n = 0; n < 3 && at < LEN(all) && size >= sizeof(*e); n++, e++, at++) {
 		*e = all[at];
 		e->number = 7 + at;

@@ -252,8 +252,8 @@ tools_work() {	# tools_work SANITIZERS
 	$CC -std=gnu11 -fms-extensions -Wall -Wextra -Werror $1 -D_GNU_SOURCE -pthread \
 		-o "$o/tools-test" tools.c ../fake/fake_*.c \
 		$(ls "$top"/lib/tools/*.c | grep -v /sys.c) \
-		"$top"/master/wire/{al,coe,dc,emergency,eoe{,_frame}}.c \
-		"$top"/master/wire/{event{,_text},port_text,replay,sdoinfo}.c &&
+		"$top"/master/wire/{al,coe,dc,emergency,eoe{,_frame},event{,_text},foe,mbox}.c \
+		"$top"/master/wire/{port_text,replay,sdo,sdoinfo,soe,voe}.c &&
 		setarch -R "$o/tools-test"
 }
 

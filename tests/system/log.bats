@@ -96,3 +96,55 @@ log_has() {
 	assert not select.select([fd], [], [], 0)[0]
 	END
 }
+
+mailbox() {	# mailbox NAME [OPTION...]: a reader of messages, its lines in a file
+	local name=$1
+
+	shift
+	"$EC_BUILD/tool/ethercat" mailbox --follow "$@" >"$BATS_TEST_TMPDIR/$name" 2>&1 3>&- &
+	readers[$name]=$!
+}
+rings() { grep -c ec_mail_tap_new /proc/vmallocinfo; }
+has_rings() { [ "$(rings)" = "$1" ]; }
+has_lines() { [ "$(grep -c 0x1018:01 "$BATS_TEST_TMPDIR/$1")" = "$2" ]; }
+
+@test "mailbox --follow shows messages to every reader with the right, and leaves nothing behind" {
+	declare -gA readers=()
+
+	run nobody "$EC_BUILD/tool/ethercat" mailbox --follow
+	[ "$status" = 1 ]
+	[[ $output == *"mailbox messages may contain passwords"* ]]
+	has_rings 0
+	mailbox all
+	mailbox drive -p1 --json
+	mailbox coupler -p0
+	wait_for 20 has_rings 1
+	sleep 1		# all three have begun
+	"$EC_BUILD/tool/ethercat" upload -p1 0x1018 1 -t uint32
+	wait_for 20 has_lines all 2
+	wait_for 20 has_lines drive 2
+	[[ $(grep 0x1018:01 "$BATS_TEST_TMPDIR/all") == \
+		*"  1  to    CoE    SDO upload request 0x1018:01"*"  1  from  CoE    SDO upload response 0x1018:01: 4 byte(s): "*", after "*" ms" ]]
+	[ ! -s "$BATS_TEST_TMPDIR/coupler" ]
+	kill -9 "${readers[all]}" "${readers[coupler]}"
+	"$EC_BUILD/tool/ethercat" upload -p1 0x1018 1 -t uint32
+	wait_for 20 has_lines drive 4
+	has_lines all 2
+	kill -9 "${readers[drive]}"
+	wait_for 20 has_rings 0
+	"$EC_BUILD/tool/ethercat" upload -p1 0x1018 1 -t uint32
+	# one that is stopped learns how many it has missed: SDOs of 4 messages each, and more
+	mailbox stopped --json
+	wait_for 20 has_rings 1
+	sleep 1
+	kill -STOP "${readers[stopped]}"
+	for _ in $(seq 600); do
+		"$EC_BUILD/tool/ethercat" upload -p1 0x1018 1 -t uint32 >/dev/null
+	done
+	kill -CONT "${readers[stopped]}"
+	wait_for 20 grep -q '"missed": [1-9]' "$BATS_TEST_TMPDIR/stopped"
+	sleep 1
+	kill -9 "${readers[stopped]}"
+	[ "$(gojq -s 'map(.missed) + [length] | add' "$BATS_TEST_TMPDIR/stopped")" -ge 1200 ]
+	wait_for 20 has_rings 0
+}

@@ -25,6 +25,7 @@ struct span {
  * @nr: its number
  * @write: needs a descriptor opened for writing
  * @owner: needs the reservation
+ * @raw: needs CAP_NET_RAW
  * @flags: flags it knows
  * @cyclic: called each cycle: no reason text
  * @min: bytes that programs of an earlier version send, 0: the present size
@@ -37,6 +38,7 @@ struct cmd {
 	unsigned long nr;
 	bool write;
 	bool owner;
+	bool raw;
 	unsigned int flags;
 	bool cyclic;
 	unsigned int min;

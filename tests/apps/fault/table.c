@@ -49,6 +49,7 @@ const struct cmd cmds[] = {
 	CMD(CONFIG_WHY, RSV1(ec_ioc_config_why)),
 	CMD(EMERGENCIES, DATA(ec_ioc_emergencies)),
 	CMD(EVENTS, .flags = EC_EVENTS_FLAG_NEW),
+	CMD(MAIL, .raw = true),
 	CMD(SLAVES_DOWN, APP),
 	CMD(EOE, RSV1(ec_ioc_eoe)),
 	CMD(EOE_WISH, BUS, RSV1(ec_ioc_eoe_wish)),
