@@ -92,7 +92,10 @@ static void mail_line(const struct dev *d, const struct ect_mail *m, u64 since)
 	out_text("%s.%06u UTC", when, (unsigned int)(m->wall_ns / 1000 % 1000000));
 	out_u("time_ns", m->wall_ns, NULL);
 	out_u("monotonic_ns", m->time_ns, NULL);
-	out_u("slave", m->position, "  %3u", m->position);
+	if (m->position == ECT_NONE32)
+		out_null("slave", "    -");
+	else
+		out_u("slave", m->position, "  %3u", m->position);
 	out_u("station", m->station, NULL);
 	out_str("direction", to ? "to_slave" : "from_slave", "  %-4s", to ? "to" : "from");
 	out_str("protocol", m->protocol, "  %-5s", m->protocol);

@@ -26,7 +26,7 @@ struct ect_mail {
 	uint64_t missed;	/* messages before it that this reader was too slow for */
 	uint64_t time_ns;	/* since the start of the computer, CLOCK_MONOTONIC */
 	uint64_t wall_ns;	/* since 1970 */
-	uint32_t position;	/* ring position of the slave, at the time of the message */
+	uint32_t position;	/* ring position of the slave, ECT_NONE32: it is absent by now */
 	uint32_t station;	/* its station address */
 	uint32_t size;		/* bytes of the message with its mailbox header */
 	uint32_t kept;		/* of these in @data */

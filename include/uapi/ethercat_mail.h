@@ -15,6 +15,7 @@
 
 #define EC_MAILS_KEPT		1023
 #define EC_MAIL_DATA		144
+#define EC_MAIL_ABSENT		0xffff	/* no slave has the station address any more */
 
 /* @flags */
 #define EC_MAIL_TO_SLAVE	1	/* else from the slave */
@@ -24,7 +25,7 @@
 struct ec_mail {
 	__u32 flags;		/* EC_MAIL_* */
 	__u16 station;		/* station address of the slave */
-	__u16 position;		/* its ring position, at the time of the message */
+	__u16 position;		/* its ring position when the record is read, or EC_MAIL_ABSENT */
 	__u64 number;		/* never reused */
 	__u64 missed;		/* messages before this one that this reader has missed */
 	__u64 time_ns;		/* CLOCK_MONOTONIC */

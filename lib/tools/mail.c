@@ -27,7 +27,7 @@ static void convert_mail(struct ect_mail *to, const struct ec_mail *from)
 	to->missed = from->missed;
 	to->time_ns = from->time_ns;
 	to->wall_ns = from->wall_ns;
-	to->position = from->position;
+	to->position = from->position == EC_MAIL_ABSENT ? ECT_NONE32 : from->position;
 	to->station = from->station;
 	to->size = from->size;
 	to->kept = min_t(u32, from->kept, ECT_MAIL_DATA);

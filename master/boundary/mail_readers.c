@@ -11,6 +11,8 @@
 #include <linux/slab.h>
 #include <linux/uaccess.h>
 #include "../base/once64.h"
+#include "../bus/find.h"
+#include "../bus/slave.h"
 #include "../mailbox/mail_tap.h"
 #include "ioctl.h"
 #include "master.h"
@@ -92,6 +94,7 @@ static int mail_readers_add(struct ec_file *f, u64 *next)
 	mutex_lock(&rs->lock);
 	ret = f->mail ? -EBUSY : mail_readers_tap(f->master);
 	if (!ret) {
+		r->master = f->master;
 		r->tap = rs->tap;
 		r->at = ec_mail_tap_head(r->tap);
 		*next = r->at;
@@ -160,6 +163,27 @@ static bool mail_is_behind(const struct ec_mail_reader *r)
 	return ec_mail_tap_head(r->tap) != ec_read64(&r->at);
 }
 
+/* The ring position of the slave with this station address. */
+static int mail_position(struct ec_master *m, u16 station, u16 *position)
+{
+	struct ec_ioc_address a = { .kind = EC_ADDRESS_STATION, .station = station };
+	unsigned int from = 0;
+	struct ec_slave *s;
+	int ret;
+
+	*position = EC_MAIL_ABSENT;
+	do {
+		ret = ec_show_begin(&m->base->show);
+		if (ret)
+			return ret;
+		ret = ec_find_slave(&m->bus, &a, &from, &s);
+		if (s)
+			*position = s->position;
+		ec_show_end(&m->base->show);
+	} while (ret == -EAGAIN);
+	return ret;
+}
+
 /* Copy as many messages as there are and fit; their bytes. */
 static ssize_t mail_readers_copy(struct ec_mail_reader *r, char __user *to, size_t size)
 {
@@ -173,6 +197,10 @@ static ssize_t mail_readers_copy(struct ec_mail_reader *r, char __user *to, size
 		at = r->at;
 		if (!ec_mail_tap_get(r->tap, &at, &m))
 			break;
+		if (mail_position(r->master, m.station, &m.position)) {
+			mutex_unlock(&r->lock);
+			return done ?: -ERESTARTSYS;
+		}
 		if (copy_to_user(to + done, &m, sizeof(m))) {
 			mutex_unlock(&r->lock);
 			return done ?: -EFAULT;

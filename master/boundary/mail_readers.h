@@ -33,6 +33,7 @@ struct ec_mail_readers {
 /**
  * struct ec_mail_reader - one open file
  * @list: in struct ec_mail_readers
+ * @master: of the file
  * @tap: messages; stays while the file is in the list
  * @lock: protects @at; one caller reads at a time
  * @at: number of the next message to read
@@ -40,6 +41,7 @@ struct ec_mail_readers {
  */
 struct ec_mail_reader {
 	struct list_head list;
+	struct ec_master *master;
 	const struct ec_mail_tap *tap;
 	struct mutex lock;
 	aligned_u64 at;

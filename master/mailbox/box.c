@@ -261,7 +261,7 @@ static void trace_message(const struct ec_box *box, bool to_slave, const struct 
 static void show_message(const struct ec_box *box, u32 flags, const u8 *bytes, u16 size)
 {
 	if (ec_mail_tap_wanted(box->links->base))
-		ec_mail_tap_put(box, flags, bytes, size);
+		ec_mail_tap_put(box->links->base, box->station, flags, bytes, size);
 }
 
 /* SM1 was read: its content is in @rx. */

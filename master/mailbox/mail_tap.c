@@ -7,7 +7,6 @@
 #include <linux/ktime.h>
 #include <linux/vmalloc.h>
 #include "mail_tap.h"
-#include "mbox.h"
 
 /**
  * ec_mail_tap_new() - allocate a ring for the messages of a master
@@ -53,7 +52,8 @@ static void mail_tap_store(struct ec_mail_tap *t, union ec_mail_place *from)
 
 /**
  * ec_mail_tap_put() - a message has passed
- * @box: mailbox of the slave, in a struct ec_mbox
+ * @base: of the master
+ * @station: station address of the slave
  * @flags: EC_MAIL_*
  * @bytes: the message from its mailbox header
  * @size: bytes there
@@ -62,18 +62,18 @@ static void mail_tap_store(struct ec_mail_tap *t, union ec_mail_place *from)
  *
  * Context: Any but NMI. RT-safe: one copy of 192 bytes, no sleep, no allocation.
  */
-void ec_mail_tap_put(const struct ec_box *box, u32 flags, const u8 *bytes, u16 size)
+void ec_mail_tap_put(const struct ec_base *base, u16 station, u32 flags, const u8 *bytes,
+		     u16 size)
 {
-	const struct ec_mbox *mb = container_of(box, const struct ec_mbox, box);
 	union ec_mail_place from = { .mail = {
-		.flags = flags, .station = box->station, .position = READ_ONCE(*mb->position),
-		.size = size, .kept = min_t(u16, size, EC_MAIL_DATA),
+		.flags = flags, .station = station, .size = size,
+		.kept = min_t(u16, size, EC_MAIL_DATA),
 	} };
 	struct ec_mail_tap *t;
 
 	memcpy(from.mail.data, bytes, from.mail.kept);
 	rcu_read_lock();
-	t = rcu_dereference(mb->base->mail_tap);
+	t = rcu_dereference(base->mail_tap);
 	if (t)
 		mail_tap_store(t, &from);
 	rcu_read_unlock();
@@ -105,7 +105,7 @@ static bool mail_tap_load(const struct ec_mail_tap *t, u64 at, union ec_mail_pla
  * ec_mail_tap_get() - the next message of a reader
  * @t: ring
  * @at: number of the message to read; then that of the next one
- * @m: result
+ * @m: result, without @position
  *
  * Context: Any. It never waits for a writer.
  * Return: false: there is no message yet.

@@ -11,8 +11,6 @@
 
 #define EC_MAIL_PLACES	(EC_MAILS_KEPT + 1)
 
-struct ec_box;
-
 /* a record as words, which are copied one by one */
 union ec_mail_place {
 	struct ec_mail mail;
@@ -45,7 +43,8 @@ static inline u64 ec_mail_tap_head(const struct ec_mail_tap *t)
 }
 
 struct ec_mail_tap *ec_mail_tap_new(u64 next);
-void ec_mail_tap_put(const struct ec_box *box, u32 flags, const u8 *bytes, u16 size);
+void ec_mail_tap_put(const struct ec_base *base, u16 station, u32 flags, const u8 *bytes,
+		     u16 size);
 bool ec_mail_tap_get(const struct ec_mail_tap *t, u64 *at, struct ec_mail *m);
 
 #endif
