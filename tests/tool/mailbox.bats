@@ -33,10 +33,14 @@ assert eval(sys.argv[1]), d
 	out mailbox --follow -j | lines 'len(d) == 25'
 	out mailbox --follow -j | lines 'd[1]["since_request_ns"] == 812000 and d[1]["slave"] == 2'
 	out mailbox --follow -j | lines 'd[3]["failed"] and d[3]["object"] == "0x8000:01"'
-	out mailbox --follow -j | lines '[m["number"] for m in d if m["malformed"]] == [29, 30]'
-	out mailbox --follow -j | lines '[m["number"] for m in d if m["frame_lost"]] == [18]'
-	out mailbox --follow -j | lines 'd[0]["direction"] == "to_slave" and d[0]["station"] == 0x3eb'
-	out mailbox --follow -j | lines '"since_request_ns" not in d[0] and d[0]["size_bytes"] == 16'
+	out mailbox --follow -j |
+		lines '[m["number"] for m in d if m["malformed"]] == [29, 30]'
+	out mailbox --follow -j |
+		lines '[m["number"] for m in d if m["frame_lost"]] == [18]'
+	out mailbox --follow -j |
+		lines 'd[0]["direction"] == "to_slave" and d[0]["station"] == 0x3eb'
+	out mailbox --follow -j |
+		lines '"since_request_ns" not in d[0] and d[0]["size_bytes"] == 16'
 }
 
 @test "mailbox --follow: a reader that is too slow gets the number of messages missed" {
