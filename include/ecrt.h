@@ -94,6 +94,8 @@
 #define EC_HAVE_DEACTIVATE_SLAVES
 /* ecrt_master_rt_slave_requests(), ecrt_master_exec_slave_requests() */
 #define EC_HAVE_RT_SLAVE_REQUESTS
+/* ecrt_master_eoe_addif() and its neighbors: network devices of slaves with EoE */
+#define EC_HAVE_EOE_INTERFACES
 /* requests for whole objects */
 #define EC_HAVE_SDO_REQUEST_COMPLETE
 /* ecrt_reg_request_readwrite() */
@@ -1494,6 +1496,62 @@ EC_PUBLIC_API int ecrt_master_rt_slave_requests(ec_master_t *master,
  * Context: Any. RT-safe: no system call.
  */
 EC_PUBLIC_API void ecrt_master_exec_slave_requests(ec_master_t *master);
+#endif
+
+#ifdef EC_HAVE_EOE_INTERFACES
+/**
+ * ecrt_master_eoe_addif() - make the network device of a slave with EoE
+ * @master: a master opened for writing; need not be reserved
+ * @alias: of the slave, 0: @posn is its ring position
+ * @posn: position behind the first slave with @alias
+ *
+ * Extension (%EC_HAVE_EOE_INTERFACES), as "ethercat eoe_addif". It is made shortly after the
+ * return, and down. Slaves with EoE have one anyway, unless ec_master was loaded with eoe=0.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EINVAL @master is NULL; %-ENOENT no such slave; %-EPROTONOSUPPORT the slave has no
+ * EoE; %-EPERM without CAP_NET_ADMIN, or @master not opened for writing. The reason is reported.
+ */
+EC_PUBLIC_API int ecrt_master_eoe_addif(ec_master_t *master, uint16_t alias,
+					uint16_t posn);
+
+/**
+ * ecrt_master_eoe_delif() - remove the network device of a slave with EoE
+ * @master: a master opened for writing; need not be reserved
+ * @alias: as ecrt_master_eoe_addif()
+ * @posn: as ecrt_master_eoe_addif()
+ *
+ * Extension (%EC_HAVE_EOE_INTERFACES), as "ethercat eoe_delif". It is removed shortly after the
+ * return, also one that is up, and not made again until ecrt_master_eoe_addif().
+ *
+ * Context: Process. May sleep.
+ * Return: As ecrt_master_eoe_addif().
+ */
+EC_PUBLIC_API int ecrt_master_eoe_delif(ec_master_t *master, uint16_t alias,
+					uint16_t posn);
+
+/**
+ * ecrt_master_eoe_is_open() - is a network device of a slave with EoE up?
+ * @master: an opened master
+ *
+ * Extension (%EC_HAVE_EOE_INTERFACES).
+ *
+ * Context: Process. May sleep.
+ * Return: 1: one is; 0: none is; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_eoe_is_open(ec_master_t *master);
+
+/**
+ * ecrt_master_eoe_process() - carry Ethernet frames
+ * @master: an opened master
+ *
+ * Extension (%EC_HAVE_EOE_INTERFACES). No effect: the mailboxes carry frames without it, beside the
+ * cycle and in between. For applications that call it.
+ *
+ * Context: Any. RT-safe: no system call.
+ * Return: 0: there is nothing to be sent, and nothing to be polled for; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_eoe_process(ec_master_t *master);
 #endif
 
 #ifdef EC_HAVE_SDO_UPLOAD_COMPLETE

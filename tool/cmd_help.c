@@ -51,9 +51,6 @@ static int run(struct tool *t, int argc, char **argv)
 		return cmd_unknown(argv[0]);
 	if (found[0]->alias_of)
 		found[0] = cmd_exact(found[0]->alias_of);
-	if (!found[0]->run)
-		return usage_error("unknown command '%s': not part of version " EC_TOOL_VERSION,
-				   found[0]->name);
 	if (man)
 		help_roff_cmd(found[0]);
 	else if (out_is_json())

@@ -1,13 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/*
- * Every command. Names of older tools without a function here are listed, so that a
- * message can say that this version lacks them.
- */
+/* Every command. */
 #include "tool.h"
 
-#define ABSENT(n) \
-	static const struct cmd cmd_##n = { .name = #n, .opts = "", .flags = CMD_HISTORIC, \
-					    .summary = "not in this version" }
 #define ALIAS(n, of) \
 	static const struct cmd cmd_##n = { .name = #n, .alias_of = of, .opts = "" }
 

@@ -230,6 +230,21 @@ motion() {
 	grep -q '^All is well' "$BATS_TEST_TMPDIR/why"
 }
 
+@test "eoe.rst: network devices of slaves" {
+	local f=Documentation/eoe.rst
+
+	modprobe bridge
+	doc $f 'modprobe ec_master main_devices=sim0'
+	wait_for 10 eval 'ethercat eoe | grep -q eoe0s2'
+	screen Documentation/eoe.rst '$ ethercat eoe'
+	doc $f 'ethercat ip -p1 ip_address 192.168.5.2/24'
+	wait_for 10 eval '[ "$(cat /sys/class/net/eoe0a5/carrier)" = 1 ]'
+	ip addr flush dev eoe0a5
+	doc $f 'ethercat eoe bridge br0'
+	doc $f 'sysctl -w net.ipv4.ip_forward=1'
+	ip link del br0
+}
+
 @test "debugging.rst: an application that is stopped" {
 	local f=Documentation/debugging.rst
 

@@ -67,6 +67,10 @@ static void master(void)
 	ecrt_master_deactivate_slaves(NULL);
 	IS(ecrt_master_rt_slave_requests(NULL, 1), -EINVAL);
 	ecrt_master_exec_slave_requests(NULL);
+	IS(ecrt_master_eoe_addif(NULL, 0, 0), -EINVAL);
+	IS(ecrt_master_eoe_delif(NULL, 0, 0), -EINVAL);
+	IS(ecrt_master_eoe_is_open(NULL), -EINVAL);
+	IS(ecrt_master_eoe_process(NULL), -EINVAL);
 	IS(ecrt_master_sdo_upload_complete(NULL, 0, 1, data, 4, &size, &time), -EINVAL);
 	IS(ecrt_master_foe_read(NULL, 0, "a", 0, data, 4, &size, &time, 0), -EINVAL);
 	IS(ecrt_master_sdo_info_list(NULL, 0, 1, u.list, 2, &size, &time), -EINVAL);

@@ -38,6 +38,11 @@ static void before(void)
 	NEED(sdo && small && lost && reg);
 	IS(CALL(ecrt_slave_config_emerg_size)(b.motor, 2), 0);
 	IS(CALL(ecrt_master_rt_slave_requests)(b.m, 1), 0);
+	IS(CALL(ecrt_master_eoe_is_open)(b.m), 0);
+	IS(CALL(ecrt_master_eoe_process)(b.m), 0);
+	/* it has no EoE; and no such slave */
+	SAYS(CALL(ecrt_master_eoe_addif)(b.m, 0, 0), -EPROTONOSUPPORT);
+	SAYS(CALL(ecrt_master_eoe_delif)(b.m, 0, 999), -ENOENT);
 
 	IS(CALL(ecrt_sdo_request_state)(sdo), EC_REQUEST_UNUSED);
 	IS(CALL(ecrt_sdo_request_data_size)(sdo), 8);
