@@ -228,7 +228,7 @@ const struct cmd cmd_eoe_addif = {
 	.help = "It is made also if ec_master was loaded with eoe=0. It remains until 'eoe_delif', or\n"
 		"ec_master is unloaded; also while the slave is lost, if it is up.\n",
 	.json = "master, position",
-	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.flags = CMD_ONE_MASTER,
 };
 
 const struct cmd cmd_eoe_delif = {
@@ -240,5 +240,5 @@ const struct cmd cmd_eoe_delif = {
 	.help = "The slave has none until 'eoe_addif', or until ec_master is loaded again. Its EoE costs\n"
 		"nothing then.\n",
 	.json = "master, position",
-	.flags = CMD_HISTORIC | CMD_ONE_MASTER,
+	.flags = CMD_ONE_MASTER,
 };

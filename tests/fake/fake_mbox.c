@@ -418,11 +418,37 @@ static void note_call(unsigned long request, const void *arg)
 		fclose(f);
 }
 
+/* network devices of slaves with EoE, with FAKE_EOE */
+static int eoe(struct ec_ioc_eoe *x)
+{
+	static const struct ec_ioc_eoe all[] = {
+		{ .index = 0, .device = 2, .name = "eoe0a1001", .position = 1,
+		  .address = { 2, 0xec, 1, 2, 3, 4 },
+		  .state = EC_EOE_CONNECTED | EC_EOE_UP | EC_EOE_RUNNING, .waiting = 3, .room = 64,
+		  .rx_rate = 1200, .tx_rate = 70, .rx_frames = 20, .rx_bytes = 30000,
+		  .rx_errors = 1, .tx_frames = 22, .tx_bytes = 2000, .tx_lost = 1 },
+		{ .index = 1, .device = 3, .name = "eoe0n1f3c", .position = 2, .room = 64,
+		  .state = EC_EOE_CONNECTED | EC_EOE_UP },
+		{ .index = 2, .device = 9, .name = "eoe0s7", .position = 7, .room = 64,
+		  .state = EC_EOE_UP },
+	};
+
+	if (!getenv("FAKE_EOE") || x->index >= LEN(all))
+		return fake_fail(ENOENT, "there is no such network device");
+	*x = all[x->index];
+	return 0;
+}
+
 int fake_mbox(unsigned long request, void *arg)
 {
 	note_call(request, arg);
 	switch (request) {
 	case EC_IOC_IP_GET:
+	case EC_IOC_EOE:
+		return eoe(arg);
+	case EC_IOC_EOE_WISH:
+		fake_record("eoe wish %u\n", ((struct ec_ioc_eoe_wish *)arg)->wish);
+		return 0;
 	case EC_IOC_IP_SET:
 		return ip(arg, request == EC_IOC_IP_SET);
 	case EC_IOC_SDO_UPLOAD:
