@@ -139,6 +139,11 @@ struct ec_bus {
 	u32 lists;
 	/** @thrown_away: scans in a row whose result contradicted the bus; the monitor's */
 	unsigned int thrown_away;
+	/**
+	 * @torn: scans in a row that have read other addresses than slaves had when they were to
+	 * get one; the monitor's
+	 */
+	unsigned int torn;
 	/** @doubt: contradictions of the graph */
 	struct ec_doubt doubt;
 	/** @complete_ns: when all slaves replied last (ktime); the monitor's */

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Station addresses are the only thing that is written by ring position, and another slave is at
- * that position when a contact has opened or closed. So the frame that writes an address reads the
- * one before: a slave that got an address by mistake gets its own back. Such a frame is never
- * repeated.
+ * that position when a contact has opened or closed. So none is written unless the addresses still
+ * are what the scan has read, and the frame that writes one reads the one before: a slave that got
+ * an address by mistake gets its own back. Such a frame is never repeated.
  */
 #include "../link/links.h"
 #include "../carry/xfer.h"
@@ -11,6 +11,8 @@
 #include "scan_address.h"
 #include "scan_count.h"
 #include "scan_int.h"
+
+#define TORN_MAX	20u	/* scans in a row that end as a slave contradicts itself */
 
 /* datagrams for a slave, the last one of which writes */
 enum {
@@ -24,6 +26,62 @@ static unsigned int datagrams(const struct scan *sc, unsigned int i)
 	const struct regs *r = &sc->regs[i];
 
 	return !sc->bus->n_slaves || r->own ? WRITE_ONLY : r->there ? READ_WRITE : NO_WRITE;
+}
+
+/* Was the address of the slave at @i read at another position as well? */
+static bool has_twin(const struct scan *sc, unsigned int i)
+{
+	return sc->regs[i].was && sc->claims[sc->regs[i].was] > 1;
+}
+
+/* Reads that say whether this is so now. Returns how many. */
+static unsigned int prove_add(struct scan *sc, struct ec_dg *dg, unsigned int i)
+{
+	struct regs *r = &sc->regs[i];
+
+	dg[0] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, r->before);
+	if (!has_twin(sc, i))
+		return 1;
+	dg[1] = EC_FPRD(r->was, EC_REG_STATION, 2, r->al);
+	return 2;
+}
+
+/* It still has its address, and of two that have the same both reply. */
+static bool is_as_read(const struct scan *sc, unsigned int i, const struct ec_dg *dg)
+{
+	const struct regs *r = &sc->regs[i];
+
+	return dg[0].wkc == 1 && get_unaligned_le16(r->before) == r->was &&
+	       (!has_twin(sc, i) || dg[1].wkc > 1);
+}
+
+/*
+ * When slaves come between two frames that read addresses, those behind them are read at two
+ * positions: at the second one is a slave that is known and runs. -EAGAIN: so it may be.
+ */
+static int prove_read(struct scan *sc, const u16 *at, unsigned int n)
+{
+	struct ec_bus *bus = sc->bus;
+	struct ec_dg *dg = sc->dg;
+	bool torn = false;
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < n; i++)
+		if (datagrams(sc, at[i]) == READ_WRITE)
+			dg += prove_add(sc, dg, at[i]);
+	ret = ec_xfer(bus->links, sc->dg, dg - sc->dg);
+	if (ret)
+		return ret;
+	dg = sc->dg;
+	for (i = 0; i < n; i++) {
+		if (datagrams(sc, at[i]) != READ_WRITE)
+			continue;
+		torn |= !is_as_read(sc, at[i], dg);
+		dg += has_twin(sc, at[i]) ? 2 : 1;
+	}
+	bus->torn = torn ? min(bus->torn + 1, TORN_MAX + 1) : 0;
+	return torn && bus->torn <= TORN_MAX ? -EAGAIN : 0;
 }
 
 static void address_add(struct scan *sc, struct ec_dg *dg, unsigned int i)
@@ -159,9 +217,11 @@ static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 {
 	struct ec_dg *dg = sc->dg;
-	int count = -1, ret;
+	int count = -1, ret = prove_read(sc, at, n);
 	unsigned int i, k;
 
+	if (ret)
+		return ret;
 	for (i = 0; i < n; i++) {
 		address_add(sc, dg, at[i]);
 		dg += datagrams(sc, at[i]);

@@ -2,6 +2,7 @@
 /* An address is written by position while slaves before that position leave the ring. */
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
+#include "master/boundary/ioctl.h"
 #include "master/bus/ports.h"
 
 static const char text[] =
@@ -19,25 +20,24 @@ enum { N = 8, A1 = 1, B1 = 4, B1_AT = 6 };
 /* of a shorter bus, in the segment; in the ring X1 precedes B1 */
 enum { M_B1 = 3, M_B2, M = 6 };
 
-#define FRAMES	12	/* of a scan up to the addresses */
+#define FRAMES	13	/* of a scan up to the addresses */
 #define MOST_HITS	8
 
 static struct bus *hooked;
 static bool hook_loses;	/* the frame that writes addresses does not return */
 static bool hook_forgets;	/* B2 has lost its address as well */
 
-/* The scan asks right after it has read the addresses: has the failed hub a configuration? */
+/*
+ * The scan asks right after it has read the addresses: has the failed hub a configuration? The
+ * next frame proves them, the one after it writes.
+ */
 static bool cut_now(const struct ec_slave *s)
 {
-	struct ec_sim_fault cut = {
-		.at_ns = ktime_get_ns(), .type = EC_SIM_FAULT_CUT, .slave = A1,
-	};
-
 	if (!hooked)
 		return true;
-	ec_sim_add_fault(hooked->sim, &cut);
+	bus_command(hooked, "cut a1.0 frame=2 register=0x10");
 	if (hook_loses)
-		bus_command(hooked, "lose frame=1 register=0x10 when=back");
+		bus_command(hooked, "lose frame=2 register=0x10 when=back");
 	if (hook_forgets)
 		put_unaligned_le16(0x5555, bus_esc(hooked, M_B2)->mem + EC_REG_STATION);
 	hooked = NULL;
@@ -225,7 +225,14 @@ static void expect_given_back(struct kunit *test, const struct hit *h)
 	"repeat 9 slave b drive in=8 out=8\n"					\
 	"branch fork 3\nrepeat 8 slave x drive in=8 out=8\n"
 
-enum { WIDE_B = 10, WIDE_N = 27 };
+enum { WIDE_FORK = 9, WIDE_B = 10, WIDE_N = 27 };
+
+/* In the segment B1 on precede X1 on, in the ring they follow. */
+static u32 wide_index(u32 position)
+{
+	return position == WIDE_FORK ? WIDE_FORK :
+	       position < WIDE_N - 9 ? position + 9 : position - MOST_HITS;
+}
 
 /* Counting says nothing, as B2 has lost its address at the same time. */
 static void address_reply_lost_given_back_by_fmmu(struct kunit *test)
@@ -286,6 +293,43 @@ static void address_unknown_given_back_by_scan(struct kunit *test)
 	ec_slave_unref(s);
 }
 
+/*
+ * Slaves come to the ring between two frames that read its addresses: those behind them are read
+ * at two positions. Each of them is one slave, and keeps its address.
+ */
+static void address_read_while_slaves_come(struct kunit *test)
+{
+	static const struct hit h = { .text = WIDE, .n = WIDE_N, .n_b = 9 };
+	struct cyc *c = run(test, &h);
+	struct bus *b = c->b;
+	struct ec_slave *s[WIDE_N];
+	u32 ms, i, wrong = 0, other = 0;
+
+	for (i = WIDE_FORK; i < WIDE_N; i++)
+		s[i] = ec_slave_ref(bus_slave(b, i));
+	bus_command(b, "cut a1.0");
+	for (ms = 0; ms < 2000 && bus_n_slaves(b) != WIDE_N - 8; ms++)
+		cyc_run(c, 1);
+	cyc_run(c, 200);
+	bus_command(b, "heal a1.0 frame=2 register=0x10");
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_RESCAN, NULL), 0);
+	for (ms = 0; ms < 1000; ms++) {
+		cyc_run(c, 1);
+		for (i = WIDE_FORK; i < WIDE_N; i++) {
+			wrong += !has_address(b, s[i], wide_index(i));
+			other += READ_ONCE(s[i]->stop.gone) ||
+				 (i >= WIDE_N - h.n_b && READ_ONCE(s[i]->al.status) != EC_AL_OP);
+		}
+	}
+	KUNIT_EXPECT_EQ(test, wrong, 0u);
+	KUNIT_EXPECT_EQ(test, other, 0u);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)WIDE_N);
+	for (i = WIDE_FORK; i < WIDE_N; i++) {
+		KUNIT_EXPECT_PTR_EQ(test, bus_slave(b, i), s[i]);
+		ec_slave_unref(s[i]);
+	}
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(address_after_slaves_left),
 	KUNIT_CASE(address_while_slaves_leave),
@@ -293,6 +337,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(address_reply_lost_given_back_without_process_data),
 	KUNIT_CASE(address_reply_lost_and_another_one_not),
 	KUNIT_CASE(address_unknown_given_back_by_scan),
+	KUNIT_CASE(address_read_while_slaves_come),
 	{}
 };
 
