@@ -204,11 +204,21 @@ static bool was_tried(const struct ec_bus *bus, u16 station)
 	       (u16)(bus->next_station - bus->listed_station);
 }
 
+/* It may have been passed over when addresses were read. */
+static bool replies_itself(const struct scan *sc, const struct ec_slave *s)
+{
+	u8 station[2];
+	struct ec_dg dg = EC_FPRD(s->station, EC_REG_STATION, 2, station);
+
+	return ec_xfer(sc->bus->links, &dg, 1) || dg.wkc;
+}
+
 /* Is the slave at @i, with an address that was meant for another one, @s by its state? */
 static bool may_be(const struct scan *sc, unsigned int i, const struct ec_slave *s)
 {
 	return s && !sc->claims[s->station] && is_usable(s) &&
-	       READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s);
+	       READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s) &&
+	       !replies_itself(sc, s);
 }
 
 /* The slave at @i is @s; returns whether it has accepted its address. */
@@ -264,35 +274,59 @@ out:
 	kvfree(used);
 }
 
-/*
- * A known slave has got the address of another one in a scan that was thrown away. It gets its own
- * back if it is in its place, seen from @end, and in a state that no new slave has.
- */
-static bool restore(struct scan *sc, unsigned int i, struct ec_slave *end, struct ec_slave *other)
+/* The known slave that follows in the list on the one at @i - 1, if that is certain. */
+static struct ec_slave *next_of_before(const struct scan *sc, unsigned int i)
 {
-	return has_tried(sc, i) && may_be(sc, i, end) &&
-	       !(other && other != end && may_be(sc, i, other)) && restore_station(sc, i, end);
+	const struct ec_slave *s = i ? sc->known[ec_scan_address(sc, i - 1)] : NULL;
+
+	if (i && (!s || !is_at(sc, i - 1, s) || sc->claims[s->station] != 1))
+		return NULL;
+	return from_front(sc, s ? s->position + 1 : 0);
 }
 
-/* From both ends up to the first slave that is not where it was. */
-static struct rows restore_rows(struct scan *sc)
+/* Likewise the one before that at @i + 1. */
+static struct ec_slave *last_before_next(const struct scan *sc, unsigned int i)
 {
-	struct rows r = find_rows(sc);
+	const struct ec_slave *s;
+
+	if (i + 1 == sc->n)
+		return from_back(sc, i);
+	s = sc->known[ec_scan_address(sc, i + 1)];
+	if (!s || !is_at(sc, i + 1, s) || sc->claims[s->station] != 1 || !s->position)
+		return NULL;
+	return from_front(sc, s->position - 1);
+}
+
+/*
+ * A known slave has got the address of another one in a scan that was thrown away. It gets its own
+ * back if it is beside a slave that was its neighbor in the ring, and in a state that no new slave
+ * has. Returns whether it has it.
+ */
+static bool restore(struct scan *sc, unsigned int i)
+{
+	struct ec_slave *a, *b;
+
+	if (!has_tried(sc, i))
+		return false;
+	a = next_of_before(sc, i);
+	b = last_before_next(sc, i);
+	a = may_be(sc, i, a) ? a : NULL;
+	b = b != a && may_be(sc, i, b) ? b : NULL;
+	/* one of two */
+	if (a && b)
+		return false;
+	return (a || b) && restore_station(sc, i, a ?: b);
+}
+
+/* One that has its own back says what is beside it. */
+static void restore_neighbors(struct scan *sc)
+{
+	bool more = true;
 	unsigned int i;
 
-	for (i = r.front; i < sc->n; i = r.front) {
-		if (!restore(sc, i, from_front(sc, i),
-			     r.back + i + 1 == sc->n ? from_back(sc, i) : NULL))
-			break;
-		r = find_rows(sc);
-	}
-	while (r.front + r.back < sc->n) {
-		i = sc->n - 1 - r.back;
-		if (!restore(sc, i, from_back(sc, i), r.front == i ? from_front(sc, i) : NULL))
-			break;
-		r = find_rows(sc);
-	}
-	return r;
+	while (more)
+		for (more = false, i = 0; i < sc->n; i++)
+			more |= restore(sc, i);
 }
 
 /* The slave at @i has an address of its own, at which it could be read up to now. */
@@ -359,11 +393,13 @@ static bool is_same(const struct scan *sc, unsigned int i, const struct ec_slave
 /* Which slave of the scan is which known one; returns how many need an address, @at, or -errno. */
 static int assign(struct scan *sc, u16 *at)
 {
-	struct rows r = restore_rows(sc);
+	struct rows r;
 	bool same_before = true, write;
 	unsigned int i, n = 0;
 	int ret;
 
+	restore_neighbors(sc);
+	r = find_rows(sc);
 	for (i = 0; i < sc->n; i++) {
 		struct ec_slave *s = fell_silent(sc, i, same_before);
 

@@ -268,29 +268,51 @@ static void address_reply_lost_and_another_one_not(struct kunit *test)
 
 /*
  * B2 has got an address by mistake, and nothing that the master has received says so. It has its
- * own back in the next scan, although slaves before it and after it have left.
+ * own back in the next scan, although slaves before it and after it have left: all of A, B4 on.
  */
-static void address_unknown_given_back_by_scan(struct kunit *test)
+static void expect_given_back_by_scan(struct kunit *test, const struct hit *h)
 {
-	static const struct hit h = { .text = WIDE, .n = WIDE_N, .n_b = 9 };
-	struct cyc *c = run(test, &h);
+	struct cyc *c = run(test, h);
 	struct bus *b = c->b;
-	struct ec_slave *s = ec_slave_ref(bus_slave(b, h.n - 8));
+	struct ec_slave *s = ec_slave_ref(bus_slave(b, h->n - h->n_b + 1));
 	u32 ms, other = 0;
 
 	put_unaligned_le16(++bus_table(b)->next_station,
-			   bus_esc(b, WIDE_B + 1)->mem + EC_REG_STATION);
-	ec_sim_rehash(bus_esc(b, WIDE_B + 1));
+			   bus_esc(b, h->b + 1)->mem + EC_REG_STATION);
+	ec_sim_rehash(bus_esc(b, h->b + 1));
 	bus_command(b, "off a1");
 	bus_command(b, "off b4");
 	for (ms = 0; ms < 2000; ms++) {
 		cyc_run(c, 1);
 		other += READ_ONCE(s->stop.gone) || READ_ONCE(s->al.status) != EC_AL_OP;
 	}
-	KUNIT_EXPECT_TRUE(test, has_address(b, s, WIDE_B + 1));
+	KUNIT_EXPECT_TRUE(test, has_address(b, s, h->b + 1));
 	KUNIT_EXPECT_EQ(test, other, 0u);
-	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), h.n - 8 - 6);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), h->n - 8 - (h->n_b - 3));
 	ec_slave_unref(s);
+}
+
+static void address_unknown_given_back_by_scan(struct kunit *test)
+{
+	static const struct hit h = { .text = WIDE, .n = WIDE_N, .b = WIDE_B, .n_b = 9 };
+
+	expect_given_back_by_scan(test, &h);
+}
+
+/* Its place is beside its neighbors, not so far from one end of the ring. */
+static void address_unknown_given_back_beside_neighbors(struct kunit *test)
+{
+	static const struct hit h = {
+		.text = "segment seed=3 response=100us transition=1ms\n"
+			"slave hub EK1100\nrepeat 8 slave a drive in=8 out=8\n"
+			"branch hub 2\nslave fork EK1122\n"
+			"slave b1 drive in=8 out=8\nslave b2 EK1100\n"
+			"slave b3 drive in=8 out=8\nslave b4 drive in=8 out=8\n"
+			"branch fork 3\nslave x1 drive in=8 out=8\n",
+		.n = 15, .b = WIDE_B, .n_b = 4,
+	};
+
+	expect_given_back_by_scan(test, &h);
 }
 
 /*
@@ -337,6 +359,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(address_reply_lost_given_back_without_process_data),
 	KUNIT_CASE(address_reply_lost_and_another_one_not),
 	KUNIT_CASE(address_unknown_given_back_by_scan),
+	KUNIT_CASE(address_unknown_given_back_beside_neighbors),
 	KUNIT_CASE(address_read_while_slaves_come),
 	{}
 };
