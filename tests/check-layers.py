@@ -25,7 +25,7 @@ MOST_OPS = 12
 MOST_IN_CIRCLE = 4
 # Rooms of the largest circle of each layer: they only go down. None: printed only.
 MOST_ROOMS = {"kernel": 0, "wire": 2, "base": 2, "link": 5, "carry": 5, "mailbox": 0, "bus": 6,
-              "clock": 0, "config": 4, "cycle": 0, "session": 0, "eoe": 2, "boundary": None, "top": 2}
+              "clock": 0, "config": 4, "cycle": 0, "session": 0, "eoe": 3, "boundary": None, "top": 2}
 MOST_ROOMS_OF_NEW = 6
 
 top = os.path.abspath(os.path.join(os.path.dirname(__file__), ".."))

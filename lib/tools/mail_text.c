@@ -286,7 +286,7 @@ void mail_decode(struct ect_mail *m)
 	m->type = ret == -EMSGSIZE ? 0 : h.type;
 	m->counter = ret == -EMSGSIZE ? 0 : h.counter;
 	if (ret == -EMSGSIZE || m->flags & ECT_MAIL_MALFORMED ||
-	    h.len + (size_t)EC_MBOX_HDR > m->size) {
+	    m->size < h.len + (size_t)EC_MBOX_HDR) {
 		m->flags |= ECT_MAIL_MALFORMED;
 		snprintf(m->protocol, sizeof(m->protocol), "none");
 		MAIL_SERVICE(m, "malformed mailbox header");

@@ -122,6 +122,7 @@ int ec_ioc_mail(struct ec_call *call)
 	if (!capable(CAP_NET_RAW))
 		return ec_refuse(call, -EPERM,
 				 "mailbox messages may contain passwords; run the command as root or with CAP_NET_RAW, as for tcpdump");
+	/* pairs with the store of a reader that is complete */
 	ret = smp_load_acquire(&f->reader) ? -EBUSY : mail_readers_add(f, &arg->next);
 	if (ret == -EBUSY)
 		return ec_refuse(call, ret,

@@ -72,12 +72,25 @@ static netdev_tx_t eoe_xmit(struct sk_buff *skb, struct net_device *nd)
 	return NETDEV_TX_OK;
 }
 
-static void eoe_room(struct ec_eoe_port *p)
+/**
+ * ec_eoe_netdev_room() - frames have left a port, so others may be given
+ * @p: port of a device
+ *
+ * Context: The work of the port.
+ */
+void ec_eoe_netdev_room(struct ec_eoe_port *p)
 {
 	netif_wake_queue(of_port(p)->nd);
 }
 
-static void eoe_deliver(struct ec_eoe_port *p, struct sk_buff *skb)
+/**
+ * ec_eoe_netdev_deliver() - the slave has sent a frame
+ * @p: port of a device
+ * @skb: frame; this function frees it
+ *
+ * Context: The work of the port.
+ */
+void ec_eoe_netdev_deliver(struct ec_eoe_port *p, struct sk_buff *skb)
 {
 	struct ec_eoe_netdev *d = of_port(p);
 	const struct ethhdr *eth = (const struct ethhdr *)skb->data;
@@ -85,13 +98,13 @@ static void eoe_deliver(struct ec_eoe_port *p, struct sk_buff *skb)
 	/* nobody else has the address of this device */
 	if (is_ethercat(skb) || !is_valid_ether_addr(eth->h_source) ||
 	    ether_addr_equal(eth->h_source, d->nd->dev_addr)) {
-		d->rx_dropped++;
+		d->rx_refused++;
 		kfree_skb(skb);
 		return;
 	}
 	/* it frees the frame if there is no memory */
 	if (eth_skb_pad(skb)) {
-		d->rx_dropped++;
+		d->rx_refused++;
 		return;
 	}
 	d->rx_packets++;
@@ -145,19 +158,16 @@ void ec_eoe_netdev_follow(struct ec_eoe_netdev *d, struct ec_slave *s)
 	mutex_unlock(&d->lock);
 }
 
-static void eoe_failed(struct ec_eoe_port *p, int err)
+/**
+ * ec_eoe_netdev_failed() - the mailbox of the slave does not run
+ * @p: port of a device; ec_eoe_netdev_follow() attaches it again
+ *
+ * Context: The work of the port.
+ */
+void ec_eoe_netdev_failed(struct ec_eoe_port *p)
 {
-	struct ec_eoe_netdev *d = of_port(p);
-
-	netif_carrier_off(d->nd);
-	ec_eoe_kick(d->eoe);
+	netif_carrier_off(of_port(p)->nd);
 }
-
-static const struct ec_eoe_port_ops port_ops = {
-	.deliver = eoe_deliver,
-	.room = eoe_room,
-	.failed = eoe_failed,
-};
 
 /* network device ------------------------------------------------------------*/
 
@@ -193,7 +203,7 @@ static void eoe_stats(struct net_device *nd, struct rtnl_link_stats64 *st)
 	st->rx_packets = READ_ONCE(d->rx_packets);
 	st->rx_bytes = READ_ONCE(d->rx_bytes);
 	st->rx_errors = c.rx_errors;
-	st->rx_dropped = READ_ONCE(d->rx_dropped) + c.rx_dropped;
+	st->rx_dropped = READ_ONCE(d->rx_refused) + c.rx_dropped;
 	st->rx_missed_errors = c.rx_missed;
 	st->tx_packets = c.tx_frames;
 	st->tx_bytes = c.tx_bytes;
@@ -247,7 +257,7 @@ void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info)
 		.waiting = ec_eoe_port_waiting(&d->port), .room = EC_EOE_FRAMES,
 		.rx_rate = up ? d->rx_rate : 0, .tx_rate = up ? d->tx_rate : 0,
 		.rx_frames = d->rx_packets, .rx_bytes = d->rx_bytes, .rx_errors = c.rx_errors,
-		.rx_missed = c.rx_missed, .rx_dropped = d->rx_dropped + c.rx_dropped,
+		.rx_missed = c.rx_missed, .rx_dropped = d->rx_refused + c.rx_dropped,
 		.tx_frames = c.tx_frames, .tx_bytes = c.tx_bytes, .tx_lost = c.tx_lost,
 		.tx_dropped = d->tx_dropped,
 	};
@@ -350,7 +360,7 @@ struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_e
 	d->eoe = eoe;
 	d->id = *id;
 	mutex_init(&d->lock);
-	ec_eoe_port_init(&d->port, &port_ops);
+	ec_eoe_port_init(&d->port);
 	make_address(nd, eoe->main, id, name);
 	/* a udev rule makes it another name */
 	snprintf(alias, sizeof(alias), "eoe%us%u", eoe->bus->base->index, id->position);

@@ -41,7 +41,7 @@ struct ec_eoe_id {
  * @port: way of the frames
  * @rx_packets: frames of the slave that were delivered; by the work of @port
  * @rx_bytes: bytes of them
- * @rx_dropped: that were not
+ * @rx_refused: those that were not
  * @tx_dropped: frames that are not allowed to go to a slave, or came without one
  * @rx_rate: bytes/s before @measured_ns; these four by the work of the master
  * @tx_rate: the same of those to the slave
@@ -58,7 +58,7 @@ struct ec_eoe_netdev {
 	struct ec_eoe_port port;
 	unsigned long rx_packets;
 	unsigned long rx_bytes;
-	unsigned long rx_dropped;
+	unsigned long rx_refused;
 	unsigned long tx_dropped;
 	u32 rx_rate;
 	u32 tx_rate;
@@ -68,6 +68,9 @@ struct ec_eoe_netdev {
 
 struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id);
 void ec_eoe_netdev_destroy(struct ec_eoe_netdev *d);
+void ec_eoe_netdev_room(struct ec_eoe_port *p);
+void ec_eoe_netdev_deliver(struct ec_eoe_port *p, struct sk_buff *skb);
+void ec_eoe_netdev_failed(struct ec_eoe_port *p);
 void ec_eoe_netdev_measure(struct ec_eoe_netdev *d);
 void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info);
 void ec_eoe_netdev_follow(struct ec_eoe_netdev *d, struct ec_slave *s);

@@ -8,6 +8,7 @@
 #include <linux/slab.h>
 #include "../mailbox/mailbox.h"
 #include "../wire/eoe.h"
+#include "netdev.h"
 #include "port.h"
 
 #define STALE_NS	NSEC_PER_SEC	/* then an incomplete frame is dropped */
@@ -181,7 +182,7 @@ static void free_sent(struct ec_eoe_port *p)
 	raw_spin_lock_irq(&p->lock);
 	p->freed = sent;
 	raw_spin_unlock_irq(&p->lock);
-	p->ops->room(p);
+	ec_eoe_netdev_room(p);
 }
 
 /* of the slave --------------------------------------------------------------*/
@@ -270,7 +271,7 @@ static void rx_fragment(struct ec_eoe_port *p, const struct ec_eoe_fragment *f)
 
 		o->skb = NULL;
 		skb_put(skb, ret);
-		p->ops->deliver(p, skb);
+		ec_eoe_netdev_deliver(p, skb);
 	}
 }
 
@@ -318,7 +319,7 @@ static void port_work(struct work_struct *work)
 	err = p->err;
 	raw_spin_unlock_irq(&p->lock);
 	if (err)
-		p->ops->failed(p, err);
+		ec_eoe_netdev_failed(p);
 	else if (again)
 		tx_enter(p);
 }
@@ -326,13 +327,11 @@ static void port_work(struct work_struct *work)
 /**
  * ec_eoe_port_init() - prepare a port
  * @p: zeroed structure
- * @ops: calls
  *
  * Context: Any.
  */
-void ec_eoe_port_init(struct ec_eoe_port *p, const struct ec_eoe_port_ops *ops)
+void ec_eoe_port_init(struct ec_eoe_port *p)
 {
-	p->ops = ops;
 	raw_spin_lock_init(&p->lock);
 	INIT_WORK(&p->work, port_work);
 	p->tx = (struct ec_mbox_user){ .done = tx_done, .type = EC_MBOX_EOE };
@@ -401,7 +400,7 @@ void ec_eoe_port_close(struct ec_eoe_port *p)
  *
  * Frames that wait are dropped.
  *
- * Context: Process, but no call of struct ec_eoe_port_ops. Waits for the work of the port.
+ * Context: Process, but not the work of the port, for which it waits.
  */
 void ec_eoe_port_detach(struct ec_eoe_port *p)
 {

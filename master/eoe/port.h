@@ -14,18 +14,6 @@
 #define EC_EOE_MESSAGES	16	/* messages of the slave that wait for @work; a power of 2 */
 #define EC_EOE_OPEN	16	/* frames of the slave at most that are not complete */
 
-struct ec_eoe_port;
-
-/** struct ec_eoe_port_ops - calls of a port; process context, they may sleep */
-struct ec_eoe_port_ops {
-	/** @deliver: a whole frame of the slave; the callee frees it */
-	void (*deliver)(struct ec_eoe_port *p, struct sk_buff *skb);
-	/** @room: frames have left, so others may be given */
-	void (*room)(struct ec_eoe_port *p);
-	/** @failed: the mailbox of the slave does not run: ec_eoe_port_detach() has to follow */
-	void (*failed)(struct ec_eoe_port *p, int err);
-};
-
 /**
  * struct ec_eoe_counts - statistics of a port, since it was made
  * @tx_frames: frames whose last fragment is in the mailbox of the slave
@@ -91,8 +79,6 @@ struct ec_eoe_ways {
  * a message is only copied, and the next fragment is cut. All else is done by @work.
  */
 struct ec_eoe_port {
-	/** @ops: calls, immutable */
-	const struct ec_eoe_port_ops *ops;
 	/** @lock: protects what follows; inside the lock of the mailbox transport */
 	raw_spinlock_t lock;
 	/** @counts: statistics */
@@ -136,7 +122,7 @@ struct ec_eoe_port {
 	struct work_struct work;
 };
 
-void ec_eoe_port_init(struct ec_eoe_port *p, const struct ec_eoe_port_ops *ops);
+void ec_eoe_port_init(struct ec_eoe_port *p);
 int ec_eoe_port_attach(struct ec_eoe_port *p, struct ec_mbox *mb);
 void ec_eoe_port_close(struct ec_eoe_port *p);
 void ec_eoe_port_detach(struct ec_eoe_port *p);

@@ -52,7 +52,7 @@ assert eval(sys.argv[1]), d
 	out mailbox --follow -j | lines '[m["missed"] for m in d if m["missed"]] == [3]'
 }
 
-@test "mailbox: without the right or the option it says what is needed" {
+@test "mailbox: without the right or the option it names the remedy" {
 	run ethercat mailbox
 	[ "$status" = 1 ]
 	[[ $output == "ethercat mailbox: the command shows messages from now on: give --follow"* ]]

@@ -18,7 +18,9 @@ static ec_request_state_t sdo_done(ec_sdo_request_t *req)
 /* as an application of the patches to the IgH master does it */
 static ec_request_state_t reg_done(void)
 {
-	for (int i = 0; i < WAIT_CYCLES && CALL(ecrt_reg_request_state)(reg) == EC_REQUEST_BUSY; i++) {
+	for (int i = 0; i < WAIT_CYCLES; i++) {
+		if (CALL(ecrt_reg_request_state)(reg) != EC_REQUEST_BUSY)
+			break;
 		CALL(ecrt_master_exec_slave_requests)(b.m);
 		bench_cycle(&b, 1);
 	}
