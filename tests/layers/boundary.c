@@ -78,7 +78,7 @@ static int compose(struct ec_master *m)
 		return ret;
 	ec_cdev_add(m);
 	ec_device_register(&m->links);
-	return ec_cdev_publish();
+	return ec_cdev_publish(false);
 }
 
 static void bench_free(struct bench *b)

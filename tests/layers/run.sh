@@ -12,7 +12,7 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 . tests/vm/places.sh
 # from the bottom
-layers="wire base link carry mailbox bus clock config cycle session boundary"
+layers="wire base link carry mailbox bus clock config cycle session eoe boundary"
 kernel=6.1-rt
 modules=$PWD/build/system-$kernel/modules
 out=$PWD/build/layers
