@@ -424,10 +424,16 @@ static bool is_free(struct net_device *nd)
 	return !netdev_master_upper_dev_get(nd) && !(in && rtnl_dereference(in->ifa_list));
 }
 
+/* EtherCAT frames do not pass such a device. */
+static bool is_eoe(const struct net_device *nd)
+{
+	return nd->dev.type && !strcmp(nd->dev.type->name, "ethercat_eoe");
+}
+
 /* Other namespaces have names and addresses of their own. */
 static bool wanted(struct net_device *nd)
 {
-	return nd->type == ARPHRD_ETHER && nd->reg_state == NETREG_REGISTERED &&
+	return nd->type == ARPHRD_ETHER && nd->reg_state == NETREG_REGISTERED && !is_eoe(nd) &&
 	       net_eq(dev_net(nd), &init_net) &&
 	       ecdev_wanted(nd->name, nd->dev_addr, is_free(nd));
 }

@@ -105,6 +105,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		return ERR_PTR(-ENOMEM);
 	ec_base_init(m->base, index, debug);
 	ec_event_readers_init(m);
+	ec_eoe_init(&m->eoe);
 	ec_mail_readers_init(m);
 	m->sessions.base = m->base;
 	m->sessions.links = &m->links;

@@ -30,8 +30,8 @@ static int ip(const char *const argv[])
 
 int bridge_make(const char *name)
 {
-	const char *const add[] = { "ip", "link", "add", name, "type", "bridge", NULL };
-	const char *const up[] = { "ip", "link", "set", name, "up", NULL };
+	const char *const add[] = { "ip", "link", "add", "name", name, "type", "bridge", NULL };
+	const char *const up[] = { "ip", "link", "set", "dev", name, "up", NULL };
 
 	if (!*name || *name == '-' || strlen(name) >= IFNAMSIZ || strpbrk(name, "/ "))
 		return fail("'%s' is no name of a network device: 1 to %d characters, no slash, no space",
@@ -43,7 +43,7 @@ int bridge_make(const char *name)
 
 int bridge_add(const char *name, const char *port)
 {
-	const char *const set[] = { "ip", "link", "set", port, "master", name, "up", NULL };
+	const char *const set[] = { "ip", "link", "set", "dev", port, "master", name, "up", NULL };
 
 	return ip(set);
 }

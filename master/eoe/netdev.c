@@ -7,12 +7,17 @@
 #include <linux/ethtool.h>
 #include <linux/if_vlan.h>
 #include <linux/jhash.h>
+#include <linux/skbuff.h>
+#include "../base/once64.h"
 #include "../bus/slave.h"
 #include "../kernel/compat.h"
-#include "netdevs.h"
 #include "netdev.h"
+#include "netdevs.h"
 
 #define DRIVER	"ec_eoe"
+#define AGAIN_MIN_MS	200u	/* after a failure of the mailbox */
+#define AGAIN_MAX_MS	10000u
+#define STANDS	20	/* looks without a frame that leaves, then the mailbox has failed: 2 s */
 
 static struct ec_eoe_netdev *of_port(struct ec_eoe_port *p)
 {
@@ -36,39 +41,47 @@ static bool is_ethercat(const struct sk_buff *skb)
 
 /* frames --------------------------------------------------------------------*/
 
+static netdev_tx_t drop(struct ec_eoe_netdev *d, struct sk_buff *skb)
+{
+	ec_write64(&d->tx_unsent, d->tx_unsent + 1);
+	dev_kfree_skb_any(skb);
+	return NETDEV_TX_OK;
+}
+
+/* Also after a race: some may have left in between, and nothing would wake the queue. */
+static bool stop_queue(struct ec_eoe_netdev *d)
+{
+	netif_stop_queue(d->nd);
+	/* the queue before the room, as the work has the room before the queue */
+	smp_mb();
+	if (!ec_eoe_port_has_room(&d->port))
+		return true;
+	netif_start_queue(d->nd);
+	return false;
+}
+
 static netdev_tx_t eoe_xmit(struct sk_buff *skb, struct net_device *nd)
 {
 	struct ec_eoe_netdev *d = netdev_priv(nd);
-	int ret;
 
-	if (is_ethercat(skb)) {
-		d->tx_dropped++;
-		dev_kfree_skb_any(skb);
-		return NETDEV_TX_OK;
-	}
+	/* a redirected frame may have any length */
+	if (skb->len > EC_EOE_FRAME_MAX || skb_linearize(skb) || is_ethercat(skb))
+		return drop(d, skb);
 	/* it frees the frame if there is no memory */
-	if (skb_linearize(skb) || eth_skb_pad(skb)) {
-		d->tx_dropped++;
+	if (eth_skb_pad(skb)) {
+		ec_write64(&d->tx_unsent, d->tx_unsent + 1);
 		return NETDEV_TX_OK;
 	}
-	skb_tx_timestamp(skb);
-	ret = ec_eoe_port_send(&d->port, skb);
-	if (ret == -EBUSY) {
-		netif_stop_queue(nd);
+	if (!ec_eoe_port_has_room(&d->port) && stop_queue(d))
 		return NETDEV_TX_BUSY;
-	}
-	if (ret) {
-		d->tx_dropped++;
-		dev_kfree_skb_any(skb);
-		return NETDEV_TX_OK;
-	}
-	if (ec_eoe_port_has_room(&d->port))
-		return NETDEV_TX_OK;
-	netif_stop_queue(nd);
-	/* some may have left in between */
-	smp_mb();
-	if (ec_eoe_port_has_room(&d->port))
-		netif_start_queue(nd);
+	skb_tx_timestamp(skb);
+	/* a slave may keep a frame waiting for long */
+	skb_orphan(skb);
+	nf_reset_ct(skb);
+	if (ec_eoe_port_send(&d->port, skb))
+		return drop(d, skb);
+	if (!ec_eoe_port_has_room(&d->port))
+		stop_queue(d);
 	return NETDEV_TX_OK;
 }
 
@@ -98,22 +111,37 @@ void ec_eoe_netdev_deliver(struct ec_eoe_port *p, struct sk_buff *skb)
 	/* nobody else has the address of this device */
 	if (is_ethercat(skb) || !is_valid_ether_addr(eth->h_source) ||
 	    ether_addr_equal(eth->h_source, d->nd->dev_addr)) {
-		d->rx_refused++;
+		ec_write64(&d->rx_refused, d->rx_refused + 1);
 		kfree_skb(skb);
 		return;
 	}
 	/* it frees the frame if there is no memory */
 	if (eth_skb_pad(skb)) {
-		d->rx_refused++;
+		ec_write64(&d->rx_refused, d->rx_refused + 1);
 		return;
 	}
-	d->rx_packets++;
-	d->rx_bytes += skb->len;
+	ec_write64(&d->rx_packets, d->rx_packets + 1);
+	ec_write64(&d->rx_bytes, d->rx_bytes + skb->len);
 	skb->protocol = eth_type_trans(skb, d->nd);
 	netif_rx(skb);
 }
 
 /* slave ---------------------------------------------------------------------*/
+
+static u64 fragments(const struct ec_eoe_netdev *d)
+{
+	return ec_read64(&d->port.counts.rx_fragments) + ec_read64(&d->port.counts.tx_fragments);
+}
+
+/* Try again later, at first soon. */
+static void put_off(struct ec_eoe_netdev *d, const struct ec_slave *s, int err)
+{
+	lockdep_assert_held(&d->lock);
+	if (!d->again_ms)
+		ec_slave_warn(s, "no Ethernet frames (EoE) pass: %pe; retrying\n", ERR_PTR(err));
+	d->again_ms = clamp(2 * d->again_ms, AGAIN_MIN_MS, AGAIN_MAX_MS);
+	d->again_ns = ktime_get_ns() + (u64)d->again_ms * NSEC_PER_MSEC;
+}
 
 static void leave(struct ec_eoe_netdev *d)
 {
@@ -131,12 +159,32 @@ static void leave(struct ec_eoe_netdev *d)
 
 static void join(struct ec_eoe_netdev *d, struct ec_slave *s)
 {
+	int ret;
+
 	lockdep_assert_held(&d->lock);
-	if (ec_eoe_port_attach(&d->port, &s->mbox))
+	ret = ec_eoe_port_attach(&d->port, &s->mbox);
+	if (ret) {
+		put_off(d, s, ret);
 		return;
+	}
 	d->slave = ec_slave_ref(s);
-	netif_start_queue(d->nd);
+	d->stands = 0;
+	d->seen = fragments(d);
+	netif_wake_queue(d->nd);
 	netif_carrier_on(d->nd);
+}
+
+/* Has the port to be left? -errno of its mailbox, or 0. */
+static int judge(struct ec_eoe_netdev *d)
+{
+	u64 seen = fragments(d);
+
+	lockdep_assert_held(&d->lock);
+	d->stands = ec_eoe_port_stands(&d->port) ? d->stands + 1 : 0;
+	if (seen != d->seen)
+		d->again_ms = 0;
+	d->seen = seen;
+	return READ_ONCE(d->port.err) ?: (d->stands > STANDS ? -ETIMEDOUT : 0);
 }
 
 /**
@@ -144,16 +192,20 @@ static void join(struct ec_eoe_netdev *d, struct ec_slave *s)
  * @d: device
  * @s: its slave; NULL: it is not connected
  *
- * Context: Process. May sleep.
+ * Context: The work of the master. May sleep.
  */
 void ec_eoe_netdev_follow(struct ec_eoe_netdev *d, struct ec_slave *s)
 {
-	bool runs = s && !ec_box_is_off(&s->mbox.box) && !READ_ONCE(d->port.err);
+	bool runs = s && ec_eoe_runs(&s->mbox) && !READ_ONCE(s->reply.silent);
+	int ret;
 
 	mutex_lock(&d->lock);
-	if (d->slave && (d->slave != s || !runs))
+	ret = d->slave ? judge(d) : 0;
+	if (d->slave && (d->slave != s || !runs || ret))
 		leave(d);
-	if (d->open && s && !d->slave && !ec_box_is_off(&s->mbox.box))
+	if (ret && runs)
+		put_off(d, s, ret);
+	if (d->open && runs && !d->slave && ktime_get_ns() >= d->again_ns)
 		join(d, s);
 	mutex_unlock(&d->lock);
 }
@@ -200,15 +252,15 @@ static void eoe_stats(struct net_device *nd, struct rtnl_link_stats64 *st)
 	struct ec_eoe_counts c;
 
 	ec_eoe_port_counts(&d->port, &c);
-	st->rx_packets = READ_ONCE(d->rx_packets);
-	st->rx_bytes = READ_ONCE(d->rx_bytes);
+	st->rx_packets = ec_read64(&d->rx_packets);
+	st->rx_bytes = ec_read64(&d->rx_bytes);
 	st->rx_errors = c.rx_errors;
-	st->rx_dropped = READ_ONCE(d->rx_refused) + c.rx_dropped;
+	st->rx_dropped = ec_read64(&d->rx_refused) + c.rx_dropped;
 	st->rx_missed_errors = c.rx_missed;
 	st->tx_packets = c.tx_frames;
 	st->tx_bytes = c.tx_bytes;
-	st->tx_errors = c.tx_lost;
-	st->tx_dropped = READ_ONCE(d->tx_dropped);
+	st->tx_errors = c.tx_lost + c.refused;
+	st->tx_dropped = ec_read64(&d->tx_unsent) + c.tx_dropped;
 }
 
 /**
@@ -220,7 +272,7 @@ static void eoe_stats(struct net_device *nd, struct rtnl_link_stats64 *st)
 void ec_eoe_netdev_measure(struct ec_eoe_netdev *d)
 {
 	u64 now = ktime_get_ns(), took = now - d->measured_ns;
-	u64 rx = READ_ONCE(d->rx_bytes), tx;
+	u64 rx = ec_read64(&d->rx_bytes), tx;
 	struct ec_eoe_counts c;
 
 	if (took < NSEC_PER_SEC)
@@ -240,9 +292,9 @@ void ec_eoe_netdev_measure(struct ec_eoe_netdev *d)
 /**
  * ec_eoe_netdev_show() - a device and its statistics
  * @d: device
- * @info: result, but for @index and EC_EOE_CONNECTED
+ * @info: @index; result
  *
- * Context: Process.
+ * Context: Any. RT-safe: no lock.
  */
 void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info)
 {
@@ -253,13 +305,16 @@ void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info)
 	*info = (struct ec_ioc_eoe){
 		.index = info->index, .device = d->id.device, .position = d->id.position,
 		.state = (up ? EC_EOE_UP : 0) |
+			 (READ_ONCE(d->connected) ? EC_EOE_CONNECTED : 0) |
 			 (up && netif_carrier_ok(d->nd) ? EC_EOE_RUNNING : 0),
 		.waiting = ec_eoe_port_waiting(&d->port), .room = EC_EOE_FRAMES,
 		.rx_rate = up ? d->rx_rate : 0, .tx_rate = up ? d->tx_rate : 0,
-		.rx_frames = d->rx_packets, .rx_bytes = d->rx_bytes, .rx_errors = c.rx_errors,
-		.rx_missed = c.rx_missed, .rx_dropped = d->rx_refused + c.rx_dropped,
-		.tx_frames = c.tx_frames, .tx_bytes = c.tx_bytes, .tx_lost = c.tx_lost,
-		.tx_dropped = d->tx_dropped,
+		.rx_frames = ec_read64(&d->rx_packets), .rx_bytes = ec_read64(&d->rx_bytes),
+		.rx_errors = c.rx_errors, .rx_missed = c.rx_missed,
+		.rx_dropped = ec_read64(&d->rx_refused) + c.rx_dropped,
+		.tx_frames = c.tx_frames, .tx_bytes = c.tx_bytes,
+		.tx_lost = c.tx_lost + c.refused,
+		.tx_dropped = ec_read64(&d->tx_unsent) + c.tx_dropped,
 	};
 	/* it may be renamed at this moment */
 	memcpy(info->name, d->nd->name, sizeof(info->name) - 1);
@@ -306,13 +361,16 @@ static void eoe_setup(struct net_device *nd)
 
 /*
  * The name is that of the incumbent where the slave has an alias, else by the serial number, which
- * also moves with the slave; only one without both is called by its position.
+ * also moves with the slave; else by its position. @choice: others have the first names.
  */
-static void make_name(char *name, unsigned int master, const struct ec_eoe_id *id)
+static void make_name(char *name, unsigned int master, const struct ec_eoe_id *id,
+		      unsigned int choice)
 {
-	if (id->alias)
+	if (choice > 1)
+		snprintf(name, IFNAMSIZ, "eoe%ud%llu", master, id->device);
+	else if (!choice && id->alias && !id->alias_shared)
 		snprintf(name, IFNAMSIZ, "eoe%ua%u", master, id->alias);
-	else if (id->serial)
+	else if (!choice && id->serial && !id->serial_shared)
 		snprintf(name, IFNAMSIZ, "eoe%un%x", master, id->serial);
 	else
 		snprintf(name, IFNAMSIZ, "eoe%us%u", master, id->position);
@@ -340,18 +398,20 @@ static void make_address(struct net_device *nd, const u8 *main, const struct ec_
  * ec_eoe_netdev_create() - make the network device of a slave; it is down
  * @eoe: of the master
  * @id: slave
+ * @choice: of the names: 0 by alias or serial number, 1 by position, 2 by device number
  *
  * Context: Process. Takes rtnl.
  * Return: device; ERR_PTR(): -EEXIST: another device has the name, or -errno.
  */
-struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id)
+struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id,
+					   unsigned int choice)
 {
 	struct ec_eoe_netdev *d;
 	struct net_device *nd;
 	char name[IFNAMSIZ], alias[IFNAMSIZ];
 	int ret;
 
-	make_name(name, eoe->bus->base->index, id);
+	make_name(name, eoe->bus->base->index, id, choice);
 	nd = alloc_netdev(sizeof(*d), name, NET_NAME_PREDICTABLE, eoe_setup);
 	if (!nd)
 		return ERR_PTR(-ENOMEM);

@@ -15,11 +15,13 @@ struct ec_slave;
 /**
  * struct ec_eoe_id - what a slave is called as a network device
  * @device: device number
- * @alias: alias, 0: none, or another slave has it too
- * @serial: serial number, 0: as @alias
- * @position: ring position when it was found
+ * @alias: alias, 0: none
+ * @serial: serial number, 0: none
+ * @position: ring position
  * @vendor: vendor ID
  * @product: product code
+ * @alias_shared: another slave with EoE has this alias too
+ * @serial_shared: the same for the serial number
  */
 struct ec_eoe_id {
 	u64 device;
@@ -28,6 +30,8 @@ struct ec_eoe_id {
 	u16 position;
 	u32 vendor;
 	u32 product;
+	bool alias_shared;
+	bool serial_shared;
 };
 
 /**
@@ -38,11 +42,16 @@ struct ec_eoe_id {
  * @lock: protects @slave and @open, and attaching; inside rtnl
  * @slave: slave that @port is attached to, with a reference; NULL: none
  * @open: the device is up
+ * @again_ns: not attached again before that time (ktime); of the work of the master, as what follows
+ * @again_ms: distance of the last two tries, 0: the port works
+ * @seen: fragments of @port both ways when it was looked at last
+ * @stands: looks in a row at which the slave had taken no frame
+ * @connected: the list has the slave
  * @port: way of the frames
- * @rx_packets: frames of the slave that were delivered; by the work of @port
+ * @rx_packets: frames of the slave that were delivered; by the work of @port, as the next two
  * @rx_bytes: bytes of them
  * @rx_refused: those that were not
- * @tx_dropped: frames that are not allowed to go to a slave, or came without one
+ * @tx_unsent: frames that are not allowed to go to a slave, or came without one; by eoe_xmit()
  * @rx_rate: bytes/s before @measured_ns; these four by the work of the master
  * @tx_rate: the same of those to the slave
  * @measured_ns: when they were measured last (ktime)
@@ -55,18 +64,26 @@ struct ec_eoe_netdev {
 	struct mutex lock;
 	struct ec_slave *slave;
 	bool open;
+	u64 again_ns;
+	u32 again_ms;
+	u64 seen;
+	u8 stands;
+	bool connected;
 	struct ec_eoe_port port;
-	unsigned long rx_packets;
-	unsigned long rx_bytes;
-	unsigned long rx_refused;
-	unsigned long tx_dropped;
+	aligned_u64 rx_packets;
+	aligned_u64 rx_bytes;
+	aligned_u64 rx_refused;
+	aligned_u64 tx_unsent;
 	u32 rx_rate;
 	u32 tx_rate;
 	u64 measured_ns;
 	u64 measured[2];
 };
 
-struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id);
+#define EC_EOE_CHOICES	3	/* of names */
+
+struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id,
+					   unsigned int choice);
 void ec_eoe_netdev_destroy(struct ec_eoe_netdev *d);
 void ec_eoe_netdev_room(struct ec_eoe_port *p);
 void ec_eoe_netdev_deliver(struct ec_eoe_port *p, struct sk_buff *skb);

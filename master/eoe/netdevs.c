@@ -64,28 +64,17 @@ static struct ec_eoe_id *read_ids(struct ec_bus *bus, u32 lists, unsigned int *n
 }
 
 /* A name that two slaves would have is none. */
-static void drop_shared(struct ec_eoe_id *ids, unsigned int n)
+static void mark_shared(struct ec_eoe_id *ids, unsigned int n)
 {
 	unsigned int i, k;
-	bool alias, serial;
 
 	for (i = 0; i < n; i++) {
-		alias = false;
-		serial = false;
 		for (k = i + 1; k < n; k++) {
-			if (ids[i].alias && ids[k].alias == ids[i].alias) {
-				ids[k].alias = 0;
-				alias = true;
-			}
-			if (ids[i].serial && ids[k].serial == ids[i].serial) {
-				ids[k].serial = 0;
-				serial = true;
-			}
+			if (ids[i].alias && ids[k].alias == ids[i].alias)
+				ids[i].alias_shared = ids[k].alias_shared = true;
+			if (ids[i].serial && ids[k].serial == ids[i].serial)
+				ids[i].serial_shared = ids[k].serial_shared = true;
 		}
-		if (alias)
-			ids[i].alias = 0;
-		if (serial)
-			ids[i].serial = 0;
 	}
 }
 
@@ -109,8 +98,8 @@ static const struct ec_eoe_id *find_id(const struct ec_eoe_id *ids, unsigned int
 }
 
 /*
- * Would they have the same name? A slave that was without power may come with a new device number,
- * but has its alias or serial number; one without both is known by its place alone.
+ * Is it the same slave? One that was without power may come with a new device number, but has its
+ * alias or serial number; one without both is known by its place alone.
  */
 static bool is_same(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
 {
@@ -118,21 +107,46 @@ static bool is_same(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
 	       a->serial == b->serial && (a->alias || a->serial || a->position == b->position);
 }
 
-/* The slave of a device that is up has come back under another device number. */
+static bool has_same_name(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
+{
+	return is_same(a, b) && a->alias_shared == b->alias_shared &&
+	       a->serial_shared == b->serial_shared;
+}
+
+/* The only slave without a device that is the same; NULL: none, or there are several. */
+static const struct ec_eoe_id *find_same(struct ec_eoe *eoe, const struct ec_eoe_id *lost,
+					 const struct ec_eoe_id *ids, unsigned int n)
+{
+	const struct ec_eoe_id *found = NULL;
+	unsigned int i;
+
+	for (i = 0; i < n; i++) {
+		if (xa_load(&eoe->table, ids[i].device) || !is_same(&ids[i], lost))
+			continue;
+		if (found)
+			return NULL;
+		found = &ids[i];
+	}
+	/* an index may have 32 bits */
+	return found && found->device == (unsigned long)found->device ? found : NULL;
+}
+
+/* The slave of a device has come back under another device number; so has the wish for it. */
 static void adopt_one(struct ec_eoe *eoe, struct ec_eoe_netdev *d, const struct ec_eoe_id *ids,
 		      unsigned int n)
 {
+	const struct ec_eoe_id *id = find_same(eoe, &d->id, ids, n);
 	unsigned long old = d->id.device;
-	unsigned int i;
+	void *wish;
 
 	lockdep_assert_held(&eoe->lock);
-	for (i = 0; i < n; i++)
-		if (!xa_load(&eoe->table, ids[i].device) && is_same(&ids[i], &d->id))
-			break;
-	if (i == n || xa_err(xa_store(&eoe->table, ids[i].device, d, GFP_KERNEL)))
+	if (!id || xa_err(xa_store(&eoe->table, id->device, d, GFP_KERNEL)))
 		return;
 	xa_erase(&eoe->table, old);
-	d->id.device = ids[i].device;
+	d->id.device = id->device;
+	wish = xa_erase(&eoe->wishes, old);
+	if (wish)
+		xa_store(&eoe->wishes, id->device, wish, GFP_KERNEL);
 }
 
 static void adopt(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
@@ -161,15 +175,15 @@ static void remove_old(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned
 		id = find_id(ids, n, device);
 		if (wanted(eoe, device) &&
 		    (READ_ONCE(d->nd->flags) & IFF_UP ||
-		     (id && is_same(id, &d->id))))
+		     (id && has_same_name(id, &d->id))))
 			continue;
 		xa_erase(&eoe->table, device);
 		ec_eoe_netdev_destroy(d);
 	}
 }
 
-/* Where the slaves are now. */
-static void note_positions(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+/* Which slaves are connected, and what they are called now. */
+static void note_slaves(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
 {
 	const struct ec_eoe_id *id;
 	struct ec_eoe_netdev *d;
@@ -178,65 +192,64 @@ static void note_positions(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsi
 	lockdep_assert_held(&eoe->lock);
 	xa_for_each(&eoe->table, device, d) {
 		id = find_id(ids, n, device);
+		WRITE_ONCE(d->connected, id);
 		if (id)
-			d->id.position = id->position;
+			d->id = *id;
 	}
 }
 
 static int create_one(struct ec_eoe *eoe, const struct ec_eoe_id *id)
 {
-	struct ec_eoe_id other = *id;
 	struct ec_eoe_netdev *d;
+	unsigned int choice = 0;
 	int ret;
 
 	lockdep_assert_held(&eoe->lock);
 	/* an index may have 32 bits */
 	if (id->device != (unsigned long)id->device)
 		return -ENOSPC;
-	d = ec_eoe_netdev_create(eoe, id);
-	if (PTR_ERR_OR_ZERO(d) == -EEXIST) {
-		other.alias = 0;
-		other.serial = 0;
-		d = ec_eoe_netdev_create(eoe, &other);
-	}
+	do {
+		d = ec_eoe_netdev_create(eoe, id, choice);
+	} while (PTR_ERR_OR_ZERO(d) == -EEXIST && ++choice < EC_EOE_CHOICES);
 	if (IS_ERR(d))
 		return PTR_ERR(d);
-	d->id = *id;
 	ret = xa_err(xa_store(&eoe->table, id->device, d, GFP_KERNEL));
 	if (ret)
 		ec_eoe_netdev_destroy(d);
 	return ret;
 }
 
-static void note_main(struct ec_eoe *eoe)
+/* The addresses of the devices depend on it. Return: whether it is known. */
+static bool note_main(struct ec_eoe *eoe, struct ec_bus *bus)
 {
 	const struct ecdev *dev;
 
 	if (!is_zero_ether_addr(eoe->main))
-		return;
+		return true;
 	rcu_read_lock();
-	dev = READ_ONCE(ec_links_at(eoe->bus->links, 0)->dev);
+	dev = READ_ONCE(ec_links_at(bus->links, 0)->dev);
 	if (dev)
 		ether_addr_copy(eoe->main, dev->mac);
 	rcu_read_unlock();
+	return !is_zero_ether_addr(eoe->main);
 }
 
 /* Return: whether all are devices now. */
-static bool create_new(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+static bool create_new(struct ec_eoe *eoe, struct ec_bus *bus, const struct ec_eoe_id *ids,
+		       unsigned int n)
 {
-	bool all = true;
+	bool all = note_main(eoe, bus);
 	unsigned int i;
 	int ret;
 
 	lockdep_assert_held(&eoe->lock);
-	note_main(eoe);
-	for (i = 0; i < n && READ_ONCE(eoe->bus); i++) {
+	for (i = 0; i < n && all && READ_ONCE(eoe->bus); i++) {
 		if (!wanted(eoe, ids[i].device) || xa_load(&eoe->table, ids[i].device))
 			continue;
 		ret = create_one(eoe, &ids[i]);
-		all &= !ret;
+		all = !ret;
 		if (ret)
-			ec_log_event(eoe->bus->base, ids[i].position, 0, KERN_WARNING,
+			ec_log_event(bus->base, ids[i].position, 0, KERN_WARNING,
 				     "no network device for its EoE (%pe); retrying\n",
 				     ERR_PTR(ret));
 	}
@@ -257,11 +270,11 @@ static bool compare(struct ec_eoe *eoe, struct ec_bus *bus)
 	WRITE_ONCE(eoe->stale, false);
 	ids = read_ids(bus, lists, &n);
 	if (ids) {
-		drop_shared(ids, n);
+		mark_shared(ids, n);
 		adopt(eoe, ids, n);
 		remove_old(eoe, ids, n);
-		all = create_new(eoe, ids, n);
-		note_positions(eoe, ids, n);
+		all = create_new(eoe, bus, ids, n);
+		note_slaves(eoe, ids, n);
 		kvfree(ids);
 		eoe->synced = lists;
 		if (all)
@@ -314,8 +327,23 @@ static void follow(struct work_struct *work)
 }
 
 /**
- * ec_eoe_start() - slaves with EoE are network devices from now on
+ * ec_eoe_init() - prepare the network devices of a master
  * @eoe: zeroed structure
+ *
+ * Context: Any.
+ */
+void ec_eoe_init(struct ec_eoe *eoe)
+{
+	mutex_init(&eoe->lock);
+	xa_init(&eoe->table);
+	xa_init(&eoe->wishes);
+	INIT_DELAYED_WORK(&eoe->work, follow);
+	eoe->stale = true;
+}
+
+/**
+ * ec_eoe_start() - slaves with EoE are network devices from now on
+ * @eoe: after ec_eoe_init()
  * @bus: slaves
  * @parent: device of the master, until ec_eoe_stop(); or NULL
  * @automatic: all of them, unless ec_eoe_wish() says otherwise; false: none unless it does
@@ -324,20 +352,15 @@ static void follow(struct work_struct *work)
  */
 void ec_eoe_start(struct ec_eoe *eoe, struct ec_bus *bus, struct device *parent, bool automatic)
 {
-	mutex_init(&eoe->lock);
-	xa_init(&eoe->table);
-	xa_init(&eoe->wishes);
-	INIT_DELAYED_WORK(&eoe->work, follow);
 	eoe->parent = parent;
 	eoe->automatic = automatic;
-	eoe->stale = true;
 	/* all of it before the monitor sees that it has begun */
 	smp_store_release(&eoe->bus, bus);
 }
 
 /**
  * ec_eoe_stop() - remove all network devices
- * @eoe: of a master, or zeroed
+ * @eoe: of a master
  *
  * While the monitor runs it may queue the work once more, without effect: the call is repeated when
  * the monitor has ended.
@@ -349,8 +372,6 @@ void ec_eoe_stop(struct ec_eoe *eoe)
 	struct ec_eoe_netdev *d;
 	unsigned long device;
 
-	if (!eoe->work.work.func)
-		return;
 	WRITE_ONCE(eoe->bus, NULL);
 	cancel_delayed_work_sync(&eoe->work);
 	mutex_lock(&eoe->lock);
@@ -400,15 +421,19 @@ void ec_eoe_look(struct ec_eoe *eoe)
  * @wish: EC_EOE_WISH_ON; EC_EOE_WISH_OFF: also if it is up; EC_EOE_WISH_AUTO: as all others
  *
  * Context: Process. May sleep.
- * Return: 0; -ENOSPC; -ENOMEM.
+ * Return: 0; -ENODEV: not at present; -ENOSPC; -ENOMEM; -EINTR.
  */
 int ec_eoe_wish(struct ec_eoe *eoe, u64 device, unsigned int wish)
 {
 	int ret;
 
+	if (!smp_load_acquire(&eoe->bus))	/* pairs with ec_eoe_start() */
+		return -ENODEV;
 	if (device != (unsigned long)device)
 		return -ENOSPC;
-	mutex_lock(&eoe->lock);
+	/* the removal of a device waits for its users */
+	if (mutex_lock_interruptible(&eoe->lock))
+		return -EINTR;
 	ret = xa_err(xa_store(&eoe->wishes, device,
 			      wish == EC_EOE_WISH_AUTO ? NULL : xa_mk_value(wish), GFP_KERNEL));
 	mutex_unlock(&eoe->lock);
@@ -419,34 +444,25 @@ int ec_eoe_wish(struct ec_eoe *eoe, u64 device, unsigned int wish)
 
 /**
  * ec_eoe_show() - a network device and its statistics
- * @eoe: of a master, or zeroed
+ * @eoe: of a master
  * @info: @index is that of the device, in the order of device numbers; result
  *
- * Context: Process. May sleep.
+ * Context: Process. It takes no lock: any user may call it.
  * Return: 0; -ENOENT: there are fewer.
  */
 int ec_eoe_show(struct ec_eoe *eoe, struct ec_ioc_eoe *info)
 {
-	struct ec_bus *bus = READ_ONCE(eoe->bus);
 	struct ec_eoe_netdev *d;
 	unsigned long device;
-	struct ec_slave *s;
 	u32 i = 0;
 
-	if (!bus)
-		return -ENOENT;
-	mutex_lock(&eoe->lock);
+	/* a device is freed a grace period after it has left the table */
+	rcu_read_lock();
 	xa_for_each(&eoe->table, device, d)
 		if (i++ == info->index)
 			break;
-	if (d) {
+	if (d)
 		ec_eoe_netdev_show(d, info);
-		s = get_slave(bus, device);
-		if (s) {
-			info->state |= EC_EOE_CONNECTED;
-			ec_slave_unref(s);
-		}
-	}
-	mutex_unlock(&eoe->lock);
+	rcu_read_unlock();
 	return d ? 0 : -ENOENT;
 }

@@ -16,7 +16,7 @@ struct ec_ioc_eoe;
 /**
  * struct ec_eoe - network devices of the slaves of a master
  *
- * Zeroed until ec_eoe_start().
+ * A reader of @table takes no lock: a device is freed by unregister_netdev(), after a grace period.
  */
 struct ec_eoe {
 	/** @bus: slaves; NULL: nothing is to be done (any more) */
@@ -41,6 +41,7 @@ struct ec_eoe {
 	struct delayed_work work;
 };
 
+void ec_eoe_init(struct ec_eoe *eoe);
 void ec_eoe_start(struct ec_eoe *eoe, struct ec_bus *bus, struct device *parent, bool automatic);
 void ec_eoe_stop(struct ec_eoe *eoe);
 void ec_eoe_look(struct ec_eoe *eoe);

@@ -6,12 +6,19 @@
 #include <linux/etherdevice.h>
 #include <linux/ktime.h>
 #include <linux/slab.h>
+#include "../base/once64.h"
 #include "../mailbox/mailbox.h"
 #include "../wire/eoe.h"
 #include "netdev.h"
 #include "port.h"
 
 #define STALE_NS	NSEC_PER_SEC	/* then an incomplete frame is dropped */
+
+static void add(struct ec_eoe_port *p, u64 *count, u64 n)
+{
+	lockdep_assert_held(&p->lock);
+	ec_write64(count, *count + n);
+}
 
 static void port_kick(struct ec_eoe_port *p)
 {
@@ -53,16 +60,16 @@ static bool tx_advance(struct ec_eoe_port *p)
 	const struct sk_buff *skb = p->ways->frames[p->sent % EC_EOE_FRAMES];
 
 	lockdep_assert_held(&p->lock);
-	p->counts.tx_fragments++;
+	add(p, &p->counts.tx_fragments, 1);
 	p->at += p->cut;
 	p->number++;
 	if (p->at >= skb->len) {
-		p->counts.tx_frames++;
-		p->counts.tx_bytes += skb->len;
+		add(p, &p->counts.tx_frames, 1);
+		add(p, &p->counts.tx_bytes, skb->len);
 		p->at = 0;
 		p->number = 0;
 		p->frame++;
-		p->sent++;
+		WRITE_ONCE(p->sent, p->sent + 1);
 		port_kick(p);
 	}
 	p->busy = p->attached && p->sent != p->given;
@@ -82,7 +89,7 @@ static void tx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 		p->busy = false;
 		port_fail(p, u->err);
 	} else {
-		p->counts.tx_lost += !!u->err;
+		add(p, &p->counts.tx_lost, !!u->err);
 		next = tx_advance(p);
 		/* it has to leave first */
 		if (next && u->err) {
@@ -125,7 +132,8 @@ int ec_eoe_port_send(struct ec_eoe_port *p, struct sk_buff *skb)
 	} else if (p->given - p->freed == EC_EOE_FRAMES) {
 		ret = -EBUSY;
 	} else {
-		p->ways->frames[p->given++ % EC_EOE_FRAMES] = skb;
+		p->ways->frames[p->given % EC_EOE_FRAMES] = skb;
+		WRITE_ONCE(p->given, p->given + 1);
 		begin = !p->busy;
 		p->busy = true;
 		if (begin)
@@ -144,15 +152,11 @@ int ec_eoe_port_send(struct ec_eoe_port *p, struct sk_buff *skb)
  * Context: Any. RT-safe.
  * Return: frames, those that are sent but not freed among them.
  */
-u32 ec_eoe_port_waiting(struct ec_eoe_port *p)
+u32 ec_eoe_port_waiting(const struct ec_eoe_port *p)
 {
-	unsigned long flags;
-	u32 n;
+	u32 freed = READ_ONCE(p->freed);
 
-	raw_spin_lock_irqsave(&p->lock, flags);
-	n = p->given - p->freed;
-	raw_spin_unlock_irqrestore(&p->lock, flags);
-	return n;
+	return READ_ONCE(p->given) - freed;
 }
 
 /**
@@ -162,7 +166,7 @@ u32 ec_eoe_port_waiting(struct ec_eoe_port *p)
  * Context: Any. RT-safe.
  * Return: whether ec_eoe_port_send() would have room for it.
  */
-bool ec_eoe_port_has_room(struct ec_eoe_port *p)
+bool ec_eoe_port_has_room(const struct ec_eoe_port *p)
 {
 	return ec_eoe_port_waiting(p) < EC_EOE_FRAMES;
 }
@@ -180,7 +184,7 @@ static void free_sent(struct ec_eoe_port *p)
 	for (; freed != sent; freed++)
 		consume_skb(p->ways->frames[freed % EC_EOE_FRAMES]);
 	raw_spin_lock_irq(&p->lock);
-	p->freed = sent;
+	WRITE_ONCE(p->freed, sent);
 	raw_spin_unlock_irq(&p->lock);
 	ec_eoe_netdev_room(p);
 }
@@ -194,10 +198,13 @@ static void rx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 	raw_spin_lock(&p->lock);
 	if (u->err) {
 		port_fail(p, u->err);
+	} else if (u->got_type == EC_MBOX_ERR) {
+		add(p, &p->counts.refused, 1);
+		port_fail(p, -EPROTO);
 	} else if (u->got_type == EC_MBOX_EOE) {
 		/* one entry is where the next message is written */
 		if (p->got + 1 - p->taken == EC_EOE_MESSAGES) {
-			p->counts.rx_missed++;
+			add(p, &p->counts.rx_missed, 1);
 		} else {
 			p->ways->messages[p->got++ % EC_EOE_MESSAGES].len = u->got;
 			u->rx = p->ways->messages[p->got % EC_EOE_MESSAGES].data;
@@ -214,7 +221,7 @@ static void port_count(struct ec_eoe_port *p, u64 *count)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&p->lock, flags);
-	(*count)++;
+	add(p, count, 1);
 	raw_spin_unlock_irqrestore(&p->lock, flags);
 }
 
@@ -298,7 +305,7 @@ static void take_messages(struct ec_eoe_port *p)
 		rx_message(p, &p->ways->messages[p->taken % EC_EOE_MESSAGES]);
 		raw_spin_lock_irq(&p->lock);
 		p->taken++;
-		p->counts.rx_fragments++;
+		add(p, &p->counts.rx_fragments, 1);
 		raw_spin_unlock_irq(&p->lock);
 	}
 }
@@ -322,6 +329,33 @@ static void port_work(struct work_struct *work)
 		ec_eoe_netdev_failed(p);
 	else if (again)
 		tx_enter(p);
+}
+
+/**
+ * ec_eoe_port_stands() - has a frame waited since the last call, and none left?
+ * @p: port; one caller
+ *
+ * Context: Process.
+ * Return: whether the slave has not taken any.
+ */
+bool ec_eoe_port_stands(struct ec_eoe_port *p)
+{
+	u32 sent = READ_ONCE(p->sent), stood = p->stood;
+
+	p->stood = sent;
+	return sent == stood && READ_ONCE(p->given) != sent;
+}
+
+/**
+ * ec_eoe_runs() - can a slave exchange frames in its state?
+ * @mb: its mailbox
+ *
+ * Context: Any. RT-safe.
+ * Return: whether it is in PREOP, SAFEOP or OP.
+ */
+bool ec_eoe_runs(const struct ec_mbox *mb)
+{
+	return !ec_box_is_off(&mb->box) && ec_mbox_area(mb) == &mb->box.sii->std;
 }
 
 /**
@@ -351,7 +385,7 @@ int ec_eoe_port_attach(struct ec_eoe_port *p, struct ec_mbox *mb)
 {
 	int ret = ec_mbox_check(mb, EC_SII_PROTO_EOE, EC_EOE_HDR + EC_EOE_UNIT);
 
-	if (!ret && ec_box_is_off(&mb->box))
+	if (!ret && !ec_eoe_runs(mb))
 		ret = -EAGAIN;
 	ret = ret ?: ec_box_get_memory(&mb->box);
 	if (ret)
@@ -405,6 +439,7 @@ void ec_eoe_port_close(struct ec_eoe_port *p)
 void ec_eoe_port_detach(struct ec_eoe_port *p)
 {
 	unsigned int i;
+	u32 n;
 
 	if (!p->mb)
 		return;
@@ -412,8 +447,12 @@ void ec_eoe_port_detach(struct ec_eoe_port *p)
 	if (p->tx.phase != EC_MBOX_USER_IDLE)
 		ec_desk_leave(p->mb, &p->tx, false);
 	ec_desk_leave(p->mb, &p->rx, false);
-	for (; p->freed != p->given; p->freed++)
-		kfree_skb(p->ways->frames[p->freed % EC_EOE_FRAMES]);
+	raw_spin_lock_irq(&p->lock);
+	add(p, &p->counts.tx_dropped, p->given - p->sent);
+	raw_spin_unlock_irq(&p->lock);
+	for (n = p->freed; n != p->given; n++)
+		kfree_skb(p->ways->frames[n % EC_EOE_FRAMES]);
+	WRITE_ONCE(p->freed, n);
 	for (i = 0; i < EC_EOE_OPEN; i++)
 		kfree_skb(p->ways->open[i].skb);
 	p->mb = NULL;
@@ -428,11 +467,12 @@ void ec_eoe_port_detach(struct ec_eoe_port *p)
  *
  * Context: Any. RT-safe.
  */
-void ec_eoe_port_counts(struct ec_eoe_port *p, struct ec_eoe_counts *counts)
+void ec_eoe_port_counts(const struct ec_eoe_port *p, struct ec_eoe_counts *counts)
 {
-	unsigned long flags;
+	const u64 *from = (const u64 *)&p->counts;
+	u64 *to = (u64 *)counts;
+	unsigned int i;
 
-	raw_spin_lock_irqsave(&p->lock, flags);
-	*counts = p->counts;
-	raw_spin_unlock_irqrestore(&p->lock, flags);
+	for (i = 0; i < sizeof(*counts) / sizeof(u64); i++)
+		to[i] = ec_read64(&from[i]);
 }

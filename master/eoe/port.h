@@ -15,7 +15,7 @@
 #define EC_EOE_OPEN	16	/* frames of the slave at most that are not complete */
 
 /**
- * struct ec_eoe_counts - statistics of a port, since it was made
+ * struct ec_eoe_counts - statistics of a port, since it was made; readers take no lock
  * @tx_frames: frames whose last fragment is in the mailbox of the slave
  * @tx_bytes: bytes of them
  * @rx_fragments: fragments of the slave
@@ -24,16 +24,20 @@
  * @rx_missed: messages of the slave that came while too many waited
  * @rx_dropped: frames that were not taken, for lack of memory
  * @tx_lost: fragments that were lost, perhaps, as their frame on the fieldbus was
+ * @tx_dropped: frames that waited when the slave was left
+ * @refused: mailbox error replies of the slave to fragments
  */
 struct ec_eoe_counts {
-	u64 tx_frames;
-	u64 tx_bytes;
-	u64 rx_fragments;
-	u64 tx_fragments;
-	u64 rx_errors;
-	u64 rx_missed;
-	u64 rx_dropped;
-	u64 tx_lost;
+	aligned_u64 tx_frames;
+	aligned_u64 tx_bytes;
+	aligned_u64 rx_fragments;
+	aligned_u64 tx_fragments;
+	aligned_u64 rx_errors;
+	aligned_u64 rx_missed;
+	aligned_u64 rx_dropped;
+	aligned_u64 tx_lost;
+	aligned_u64 tx_dropped;
+	aligned_u64 refused;
 };
 
 /**
@@ -105,6 +109,8 @@ struct ec_eoe_port {
 	u8 number;
 	/** @frame: number of the present frame, modulo 16 */
 	u8 frame;
+	/** @stood: @sent when ec_eoe_port_stands() was called last; of its caller */
+	u32 stood;
 	/** @got: messages of the slave so far */
 	u32 got;
 	/** @taken: those of them that @work has taken */
@@ -127,8 +133,10 @@ int ec_eoe_port_attach(struct ec_eoe_port *p, struct ec_mbox *mb);
 void ec_eoe_port_close(struct ec_eoe_port *p);
 void ec_eoe_port_detach(struct ec_eoe_port *p);
 int ec_eoe_port_send(struct ec_eoe_port *p, struct sk_buff *skb);
-bool ec_eoe_port_has_room(struct ec_eoe_port *p);
-u32 ec_eoe_port_waiting(struct ec_eoe_port *p);
-void ec_eoe_port_counts(struct ec_eoe_port *p, struct ec_eoe_counts *counts);
+bool ec_eoe_port_has_room(const struct ec_eoe_port *p);
+u32 ec_eoe_port_waiting(const struct ec_eoe_port *p);
+bool ec_eoe_port_stands(struct ec_eoe_port *p);
+void ec_eoe_port_counts(const struct ec_eoe_port *p, struct ec_eoe_counts *counts);
+bool ec_eoe_runs(const struct ec_mbox *mb);
 
 #endif

@@ -78,6 +78,12 @@ static void mark_heard(struct ec_mbox *mb)
 
 /* messages to the slave -----------------------------------------------------*/
 
+/* BOOT is for files: a fragment would disturb the transfer. */
+static bool is_frame_in_boot(const struct ec_mbox *mb, const struct ec_mbox_user *u)
+{
+	return u->type == EC_MBOX_EOE && ec_box_area(&mb->box) != &mb->box.sii->std;
+}
+
 /* The user whose message is the next one; NULL: none. */
 static struct ec_mbox_user *next_user(struct ec_mbox *mb)
 {
@@ -88,7 +94,7 @@ static struct ec_mbox_user *next_user(struct ec_mbox *mb)
 		list_move_tail(&u->list, &mb->desk.users);
 		u->phase = EC_MBOX_USER_SENDING;
 		/* not while a slave only passes INIT: its worker has claimed the mailbox */
-		if (ec_box_is_off(&mb->box))
+		if (ec_box_is_off(&mb->box) || is_frame_in_boot(mb, u))
 			desk_finish(mb, u, -EAGAIN);
 		else if (u->len + EC_MBOX_HDR > mb->box.tx_room && !u->discard)
 			desk_finish(mb, u, -EMSGSIZE);
@@ -107,6 +113,7 @@ static void desk_next(struct ec_box *box)
 	if (!u)
 		return;
 	mb->desk.sending = u;
+	mb->desk.frame_sent = u->type == EC_MBOX_EOE && !u->answer;
 	if (u->discard) {
 		ec_box_discard(box);
 		return;
@@ -159,6 +166,12 @@ static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
 	       (u == mb->desk.sending && ec_box_is_doubtful(&mb->box));
 }
 
+/* Does it read frames? It has their errors as well: the slave takes messages in their order. */
+static bool is_reader(const struct ec_mbox_user *u)
+{
+	return u->type == EC_MBOX_EOE && !u->answer;
+}
+
 /* Of EoE, frames of the network go to the user that reads them, never to one with a request. */
 static bool is_kind(const struct ec_mbox *mb, const struct ec_mbox_user *u, u16 len)
 {
@@ -183,7 +196,7 @@ static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type, u16 len)
 		/* it only sends */
 		if (!u->rx)
 			continue;
-		if (type == EC_MBOX_ERR ? !u->answer && u->type == EC_MBOX_EOE :
+		if (type == EC_MBOX_ERR ? is_reader(u) != mb->desk.frame_sent :
 		    u->type != type || !is_kind(mb, u, len))
 			continue;
 		if (!may_have(mb, u) && !(u->phase == EC_MBOX_USER_DONE && u->answer))

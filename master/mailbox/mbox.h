@@ -129,6 +129,8 @@ struct ec_desk {
 	bool handed_over;
 	/** @answered: no message of an earlier exchange can follow any more */
 	bool answered;
+	/** @frame_sent: the last message to the slave was a fragment of EoE, which has no answer */
+	bool frame_sent;
 
 	/* of late.c; a user that gets its answer clears @never_late, INIT clears all */
 	/** @never_late: the last late reply was not received: no wait for the next one */

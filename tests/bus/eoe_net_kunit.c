@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Network devices of slaves with EoE: frames of the host to the IP stack of a slave, and back. */
+#include <linux/etherdevice.h>
 #include <linux/if_arp.h>
 #include <linux/if_vlan.h>
 #include <linux/netdevice.h>
@@ -175,12 +176,12 @@ static u16 checksum(const u8 *p, u32 len)
 	return ~((sum & 0xffff) + (sum >> 16));
 }
 
-/* An ICMP echo request with @len bytes of data; us until its whole answer, 0: none. */
-static u64 ping(struct kunit *test, const u8 *mac, u32 len)
+/* An ICMP echo request with @len bytes of data. */
+static void send_ping(const u8 *mac, u32 len)
 {
-	u8 f[EC_EOE_FRAME_MAX] = { 0 }, *ip = f + header(f, mac, ETH_P_IP), *icmp = ip + 20;
-	u32 i, ms, before = READ_ONCE(wire.frames);
-	u64 t0 = ktime_get_ns();
+	u8 *f = kzalloc(EC_EOE_FRAME_MAX, GFP_KERNEL), *ip = f + header(f, mac, ETH_P_IP);
+	u8 *icmp = ip + 20;
+	u32 i;
 
 	ip[0] = 0x45;
 	put_unaligned_be16(28 + len, ip + 2);
@@ -194,14 +195,34 @@ static u64 ping(struct kunit *test, const u8 *mac, u32 len)
 		icmp[8 + i] = i * 7 + len;
 	put_unaligned_be16(checksum(icmp, 8 + len), icmp + 2);
 	send(f, ETH_HLEN + 28 + len);
-	for (ms = 0; READ_ONCE(wire.frames) == before && ms < 20000; ms++)
+	kfree(f);
+}
+
+static bool await_frames(u32 n)
+{
+	u32 us;
+
+	for (us = 0; READ_ONCE(wire.frames) < n && us < 1000000; us += 50)
 		usleep_range(50, 50);
-	if (wire.frames == before)
+	return wire.frames >= n;
+}
+
+/* us until the whole answer, 0: none. */
+static u64 ping(struct kunit *test, const u8 *mac, u32 len)
+{
+	u32 i, before = READ_ONCE(wire.frames);
+	u64 t0 = ktime_get_ns();
+
+	send_ping(mac, len);
+	if (!await_frames(before + 1))
 		return 0;
 	t0 = ktime_get_ns() - t0;
 	KUNIT_EXPECT_EQ(test, wire.len, max_t(u32, ETH_ZLEN, ETH_HLEN + 28 + len));
 	KUNIT_EXPECT_EQ(test, wire.last[ETH_HLEN + 20], 0);	/* echo reply */
-	KUNIT_EXPECT_MEMEQ(test, wire.last + ETH_HLEN + 28, icmp + 8, len);
+	for (i = 0; i < len; i++)
+		if (wire.last[ETH_HLEN + 28 + i] != (u8)(i * 7 + len))
+			break;
+	KUNIT_EXPECT_EQ(test, i, len);
 	return div_u64(t0, NSEC_PER_USEC);
 }
 
@@ -218,25 +239,122 @@ static void net_ping(struct kunit *test)
 	net_exit(b);
 }
 
-/* Requests of other protocols come between fragments. */
-static void net_beside_sdos(struct kunit *test)
+/*
+ * Requests while fragments wait: no answer is taken for a frame, no frame for an answer, none is
+ * lost.
+ */
+static void net_beside_requests(struct kunit *test)
 {
 	struct bus *b = net_up(test, SEGMENT, 2, "eoe0a5");
+	struct ec_eoe_netdev *d = netdev_priv(wire.nd);
 	struct ec_slave *s = bus_slave(b, 1);
-	u8 mac[ETH_ALEN], data[8];
+	u32 i, k, before, between = 0;
+	struct ec_eoe_counts c, c2;
+	u8 mac[ETH_ALEN];
 	struct ec_eoe_ip ip;
 	u16 result;
+
+	KUNIT_ASSERT_TRUE(test, ask_address(mac));
+	before = wire.frames;
+	for (i = 0; i < 20; i++) {
+		for (k = 0; k < 8; k++)
+			send_ping(mac, 1400);
+		ec_eoe_port_counts(&d->port, &c);
+		KUNIT_EXPECT_EQ(test, ec_eoe_get_ip(&s->mbox, &ip, &result), 0);
+		KUNIT_EXPECT_MEMEQ(test, ip.ip, slave_ip, 4);
+		ec_eoe_port_counts(&d->port, &c2);
+		between += c2.tx_fragments + c2.rx_fragments - c.tx_fragments - c.rx_fragments;
+		KUNIT_EXPECT_TRUE(test, await_frames(before + 8 * (i + 1)));
+	}
+	KUNIT_EXPECT_GT(test, between, 20u);
+	ec_eoe_port_counts(&d->port, &c);
+	KUNIT_EXPECT_EQ(test, c.rx_errors + c.rx_missed, 0ull);
+	net_exit(b);
+}
+
+/* More frames than may wait: the queue stops, and wakes when frames have left. */
+static void net_queue_stops(struct kunit *test)
+{
+	struct bus *b = net_up(test, SEGMENT, 2, "eoe0a5");
+	struct ec_eoe_netdev *d = netdev_priv(wire.nd);
+	struct ec_eoe_counts c;
+	u8 mac[ETH_ALEN];
 	u32 i;
 
 	KUNIT_ASSERT_TRUE(test, ask_address(mac));
-	for (i = 0; i < 20; i++) {
-		KUNIT_EXPECT_NE(test, ping(test, mac, 1000), 0ull);
-		/* its answer is not taken for a frame, nor a frame for it */
-		KUNIT_EXPECT_EQ(test, ec_eoe_get_ip(&s->mbox, &ip, &result), 0);
-		KUNIT_EXPECT_MEMEQ(test, ip.ip, slave_ip, 4);
-	}
-	(void)data;
+	for (i = 0; i < 3 * EC_EOE_FRAMES; i++)
+		send_ping(mac, 10);
+	KUNIT_EXPECT_TRUE(test, netif_queue_stopped(wire.nd));
+	msleep(500);
+	KUNIT_EXPECT_FALSE(test, netif_queue_stopped(wire.nd));
+	/* the slave has less room for answers than the device for frames, but none is lost there */
+	ec_eoe_port_counts(&d->port, &c);
+	KUNIT_EXPECT_EQ(test, c.tx_frames, 1ull + 3 * EC_EOE_FRAMES);
+	KUNIT_EXPECT_EQ(test, c.tx_dropped + d->tx_unsent, 0ull);
+	KUNIT_EXPECT_NE(test, ping(test, mac, 10), 0ull);
 	net_exit(b);
+}
+
+/* A frame that is redirected to the device may have any length. */
+static void net_long_frames_are_dropped(struct kunit *test)
+{
+	struct bus *b = net_up(test, SEGMENT, 2, "eoe0a5");
+	struct ec_eoe_netdev *d = netdev_priv(wire.nd);
+	u8 *f = kunit_kzalloc(test, 3000, GFP_KERNEL), mac[ETH_ALEN];
+
+	KUNIT_ASSERT_TRUE(test, ask_address(mac));
+	header(f, mac, ETH_P_IP);
+	send(f, EC_EOE_FRAME_MAX + 1);
+	send(f, 2100);
+	KUNIT_EXPECT_EQ(test, d->tx_unsent, 2ull);
+	KUNIT_EXPECT_NE(test, ping(test, mac, 1472), 0ull);
+	net_exit(b);
+}
+
+/* The wish moves with a slave that has a new device number after a power cycle. */
+static void net_wish_stays(struct kunit *test)
+{
+	struct bus *b = bus_up(test, SEGMENT, 2);
+	struct net_device *nd;
+
+	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, false);
+	msleep(200);
+	KUNIT_EXPECT_NULL(test, find("eoe0a5"));
+	KUNIT_EXPECT_EQ(test, ec_eoe_wish(&b->m->eoe, bus_slave(b, 1)->device, EC_EOE_WISH_ON), 0);
+	nd = await(test, "eoe0a5", true);
+	KUNIT_ASSERT_NOT_NULL(test, nd);
+	set_up(nd, true);
+	KUNIT_EXPECT_TRUE(test, await_carrier(nd, true));
+	bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+	KUNIT_EXPECT_TRUE(test, await_carrier(nd, false));
+	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
+	KUNIT_EXPECT_TRUE(test, await_carrier(nd, true));
+	KUNIT_EXPECT_PTR_EQ(test, find("eoe0a5"), nd);
+	KUNIT_EXPECT_EQ(test, ec_eoe_wish(&b->m->eoe, bus_slave(b, 1)->device, EC_EOE_WISH_OFF), 0);
+	await(test, "eoe0a5", false);
+	ec_eoe_stop(&b->m->eoe);
+}
+
+/* Twins have names by position; a name that is taken is no reason to have none. */
+static void net_names(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=5\nslave a EL6614 alias=5\n"
+			       "slave b EL6614 alias=5\nslave c EL6614\n", 3);
+	struct net_device *taken = alloc_netdev(0, "eoe0s2", NET_NAME_USER, ether_setup);
+	static const struct net_device_ops none;
+	char last[IFNAMSIZ];
+
+	KUNIT_ASSERT_NOT_NULL(test, taken);
+	taken->netdev_ops = &none;
+	KUNIT_ASSERT_EQ(test, register_netdev(taken), 0);
+	snprintf(last, sizeof(last), "eoe0d%llu", bus_slave(b, 2)->device);
+	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	await(test, last, true);
+	await(test, "eoe0s0", true);
+	await(test, "eoe0s1", true);
+	ec_eoe_stop(&b->m->eoe);
+	unregister_netdev(taken);
+	free_netdev(taken);
 }
 
 /* The device stays while it is up, without a carrier; the slave finds it again. */
@@ -302,11 +420,11 @@ static void net_no_ethercat(struct kunit *test)
 	put_unaligned_be16(EC_ETHERTYPE, f + ETH_HLEN + 2);
 	send(f, sizeof(f));
 	msleep(50);
-	KUNIT_EXPECT_EQ(test, d->tx_dropped, 2ul);
+	KUNIT_EXPECT_EQ(test, d->tx_unsent, 2ull);
 	bus_command(b, "fault eoe web ethercat");
 	KUNIT_EXPECT_TRUE(test, ask_address(mac));
 	msleep(50);
-	KUNIT_EXPECT_GE(test, d->rx_refused, 1ul);
+	KUNIT_EXPECT_GE(test, d->rx_refused, 1ull);
 	KUNIT_EXPECT_EQ(test, wire.ethercat, 0u);
 	net_exit(b);
 }
@@ -354,13 +472,17 @@ static void net_spoof(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, ask_address(mac));
 	bus_command(b, "fault eoe web spoof");
 	KUNIT_EXPECT_FALSE(test, ask_address(mac));
-	KUNIT_EXPECT_GE(test, d->rx_refused, 1ul);
+	KUNIT_EXPECT_GE(test, d->rx_refused, 1ull);
 	net_exit(b);
 }
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(net_ping),
-	KUNIT_CASE(net_beside_sdos),
+	KUNIT_CASE(net_beside_requests),
+	KUNIT_CASE(net_queue_stops),
+	KUNIT_CASE(net_long_frames_are_dropped),
+	KUNIT_CASE(net_wish_stays),
+	KUNIT_CASE(net_names),
 	KUNIT_CASE(net_lost),
 	KUNIT_CASE(net_lost_and_down),
 	KUNIT_CASE(net_init_and_back),

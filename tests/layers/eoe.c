@@ -39,6 +39,7 @@ static struct bench *bench_new(bool automatic)
 		kvfree(b);
 		return NULL;
 	}
+	ec_eoe_init(&b->eoe);
 	ec_eoe_start(&b->eoe, &b->s.bus, NULL, automatic);
 	ec_eoe_look(&b->eoe);
 	return b;

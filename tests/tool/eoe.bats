@@ -36,11 +36,11 @@ load common
 	[ "$status" -eq 0 ]
 	[ "$output" = "eoe0a1001, eoe0n1f3c, eoe0s7" ]
 	diff - "$BATS_TEST_TMPDIR/calls" <<-END
-	ip link add brx type bridge
-	ip link set brx up
-	ip link set eoe0a1001 master brx up
-	ip link set eoe0n1f3c master brx up
-	ip link set eoe0s7 master brx up
+	ip link add name brx type bridge
+	ip link set dev brx up
+	ip link set dev eoe0a1001 master brx up
+	ip link set dev eoe0n1f3c master brx up
+	ip link set dev eoe0s7 master brx up
 	END
 	printf '#!/bin/sh\nexit 2\n' >"$BATS_TEST_TMPDIR/bin/ip"
 	PATH=$BATS_TEST_TMPDIR/bin:$PATH run ethercat eoe bridge brx
