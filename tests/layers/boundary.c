@@ -58,6 +58,7 @@ static int compose(struct ec_master *m)
 	int ret;
 
 	ec_base_init(m->base, 0, 0);
+	ec_eoe_init(&m->eoe);
 	m->sessions.base = m->base;
 	m->sessions.links = &m->links;
 	m->sessions.bus = &m->bus;
