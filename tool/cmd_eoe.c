@@ -19,7 +19,10 @@ static const char *state_of(const struct ect_eoe *e)
 static void show(const struct ect_eoe *e)
 {
 	out_object(NULL);
-	out_str("interface", e->name, "  %9s", e->name);
+	if (*e->name)
+		out_str("interface", e->name, "  %9s", e->name);
+	else
+		out_null("interface", "  %9s", "-");
 	out_u("position", e->position, "  %5u", e->position);
 	out_u("device", e->device, NULL);
 	out_str("state", state_of(e), "  %5s", state_of(e));
@@ -109,6 +112,9 @@ static int add_port(const struct ect_eoe *e, void *ctx)
 {
 	struct ports *p = ctx;
 
+	/* in another network namespace */
+	if (!*e->name)
+		return 0;
 	if (bridge_add(p->bridge, e->name))
 		return 1;
 	out_str(NULL, e->name, "%s%s", p->n++ ? ", " : "", e->name);
@@ -173,10 +179,10 @@ const struct cmd cmd_eoe = {
 		"\n"
 		"'bridge' makes a bridge of Linux, if there is none of that name, with the network devices\n"
 		"of all slaves as its ports, and sets all of them up.\n",
-	.json = "masters[]: master, interfaces[]: interface, position, device, state, rx_bytes,\n"
-		"rx_bytes_per_s, tx_bytes, tx_bytes_per_s, tx_waiting, tx_room, rx_frames, rx_errors,\n"
-		"rx_missed, rx_dropped, tx_frames, tx_lost, tx_dropped; with 'bridge': interfaces[] has\n"
-		"the names of the ports",
+	.json = "masters[]: master, interfaces[]: interface (null: in another network\n"
+		"namespace), position, device, state, rx_bytes, rx_bytes_per_s, tx_bytes,\n"
+		"tx_bytes_per_s, tx_waiting, tx_room, rx_frames, rx_errors, rx_missed, rx_dropped,\n"
+		"tx_frames, tx_lost, tx_dropped; with 'bridge': interfaces[] has the names of the ports",
 	.flags = CMD_HISTORIC,
 	.max_args = 2,
 };

@@ -33,7 +33,7 @@ struct ect_eoe {
 	uint64_t tx_bytes;
 	uint64_t tx_lost;	/* fragments that were lost, perhaps */
 	uint64_t tx_dropped;	/* frames that are not allowed, or came without a carrier */
-	char name[ECT_STRING];
+	char name[ECT_STRING];	/* empty: in another network namespace */
 };
 
 /**

@@ -18,7 +18,7 @@ struct ec_ioc_eoe {
 	__u32 flags;
 	__u32 index;		/* in */
 	__u64 device;		/* device number of the slave */
-	char name[EC_EOE_NETDEV_NAME];	/* without its end 0 if it is longer */
+	char name[EC_EOE_NETDEV_NAME];	/* empty: in another network namespace */
 	__u8 address[6];
 	__u16 position;		/* ring position, when it was seen last */
 	__u32 state;

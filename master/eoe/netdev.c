@@ -7,6 +7,7 @@
 #include <linux/ethtool.h>
 #include <linux/if_vlan.h>
 #include <linux/jhash.h>
+#include <linux/nsproxy.h>
 #include <linux/skbuff.h>
 #include "../base/once64.h"
 #include "../bus/slave.h"
@@ -294,7 +295,7 @@ void ec_eoe_netdev_measure(struct ec_eoe_netdev *d)
  * @d: device
  * @info: @index; result
  *
- * Context: Any. RT-safe: no lock.
+ * Context: Process. No lock.
  */
 void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info)
 {
@@ -316,8 +317,9 @@ void ec_eoe_netdev_show(struct ec_eoe_netdev *d, struct ec_ioc_eoe *info)
 		.tx_lost = c.tx_lost + c.refused,
 		.tx_dropped = ec_read64(&d->tx_unsent) + c.tx_dropped,
 	};
-	/* it may be renamed at this moment */
-	memcpy(info->name, d->nd->name, sizeof(info->name) - 1);
+	/* a name of another namespace may be that of another device here; it may just be changed */
+	if (net_eq(dev_net(d->nd), current->nsproxy->net_ns))
+		memcpy(info->name, d->nd->name, sizeof(info->name) - 1);
 	ether_addr_copy(info->address, d->nd->dev_addr);
 }
 

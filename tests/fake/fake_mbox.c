@@ -431,6 +431,9 @@ static int eoe(struct ec_ioc_eoe *x)
 		  .state = EC_EOE_CONNECTED | EC_EOE_UP },
 		{ .index = 2, .device = 9, .name = "eoe0s7", .position = 7, .room = 64,
 		  .state = EC_EOE_UP },
+		/* of another network namespace */
+		{ .index = 3, .device = 10, .position = 8, .room = 64,
+		  .state = EC_EOE_CONNECTED },
 	};
 
 	if (!getenv("FAKE_EOE") || x->index >= LEN(all))

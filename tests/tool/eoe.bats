@@ -8,8 +8,9 @@ load common
 	golden eoe eoe
 	golden eoe_v eoe -v
 	out eoe -j >"$BATS_TEST_TMPDIR/json"
-	json '[i["state"] for i in d["masters"][0]["interfaces"]] == ["up", "wait", "lost"]' \
+	json '[i["state"] for i in d["masters"][0]["interfaces"]] == ["up", "wait", "lost", "down"]' \
 		<"$BATS_TEST_TMPDIR/json"
+	json 'd["masters"][0]["interfaces"][3]["interface"] is None' <"$BATS_TEST_TMPDIR/json"
 	json 'd["masters"][0]["interfaces"][0]["tx_waiting"] == 3' <"$BATS_TEST_TMPDIR/json"
 }
 
