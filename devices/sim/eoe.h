@@ -169,7 +169,7 @@ static inline u32 ec_app_get_be32(const u8 *p)
 static inline void ec_app_put_be16(u8 *p, u16 v)
 {
 	p[0] = (u8)(v >> 8);
-	p[1] = (u8)v;
+	p[1] = (u8)(v & 0xff);
 }
 
 static inline void ec_app_put_be32(u8 *p, u32 v)

@@ -48,6 +48,7 @@ struct ec_ioc_eoe_wish {
 	__u32 wish;		/* in */
 	struct ec_ioc_address slave;	/* in */
 	__u32 reserved;
+	__u32 reserved2;
 };
 
 #endif

@@ -83,7 +83,7 @@ CMD(EC_IOC_SII_WRITE, ec_ioc_sii_write, F_WRITE, SLAVE(ec_ioc_sii_write),
 CMD(EC_IOC_ALIAS, ec_ioc_alias, F_WRITE, SLAVE(ec_ioc_alias), RSV1(ec_ioc_alias),
 	FLAGS(EC_SII_FLAG_FORCE | EC_SII_FLAG_REPAIR))
 CMD(EC_IOC_STATE, ec_ioc_state, F_WRITE, SLAVE(ec_ioc_state), RSV1(ec_ioc_state))
-CMD(EC_IOC_EOE_WISH, ec_ioc_eoe_wish, F_WRITE, SLAVE(ec_ioc_eoe_wish), RSV1(ec_ioc_eoe_wish))
+CMD(EC_IOC_EOE_WISH, ec_ioc_eoe_wish, F_WRITE, SLAVE(ec_ioc_eoe_wish), RSV2(ec_ioc_eoe_wish))
 CMD(EC_IOC_IP_GET, ec_ioc_ip_get, F_WRITE, SLAVE(ec_ioc_ip),
 	RSV(FIELD(ec_ioc_ip, params.reserved), FIELD(ec_ioc_ip, reserved)))
 CMD(EC_IOC_IP_SET, ec_ioc_ip_set, F_WRITE, SLAVE(ec_ioc_ip),

@@ -29,7 +29,7 @@ static unsigned int datagrams(const struct scan *sc, unsigned int i)
 }
 
 /* Was the address of the slave at @i read at another position as well? */
-static bool has_twin(const struct scan *sc, unsigned int i)
+static bool is_read_twice(const struct scan *sc, unsigned int i)
 {
 	return sc->regs[i].was && sc->claims[sc->regs[i].was] > 1;
 }
@@ -40,7 +40,7 @@ static unsigned int prove_add(struct scan *sc, struct ec_dg *dg, unsigned int i)
 	struct regs *r = &sc->regs[i];
 
 	dg[0] = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, r->before);
-	if (!has_twin(sc, i))
+	if (!is_read_twice(sc, i))
 		return 1;
 	dg[1] = EC_FPRD(r->was, EC_REG_STATION, 2, r->al);
 	return 2;
@@ -52,7 +52,7 @@ static bool is_as_read(const struct scan *sc, unsigned int i, const struct ec_dg
 	const struct regs *r = &sc->regs[i];
 
 	return dg[0].wkc == 1 && get_unaligned_le16(r->before) == r->was &&
-	       (!has_twin(sc, i) || dg[1].wkc > 1);
+	       (!is_read_twice(sc, i) || dg[1].wkc > 1);
 }
 
 /*
@@ -78,7 +78,7 @@ static int prove_read(struct scan *sc, const u16 *at, unsigned int n)
 		if (datagrams(sc, at[i]) != READ_WRITE)
 			continue;
 		torn |= !is_as_read(sc, at[i], dg);
-		dg += has_twin(sc, at[i]) ? 2 : 1;
+		dg += is_read_twice(sc, at[i]) ? 2 : 1;
 	}
 	bus->torn = torn ? min(bus->torn + 1, TORN_MAX + 1) : 0;
 	return torn && bus->torn <= TORN_MAX ? -EAGAIN : 0;

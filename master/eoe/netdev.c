@@ -144,7 +144,7 @@ static void put_off(struct ec_eoe_netdev *d, const struct ec_slave *s, int err)
 	d->again_ns = ktime_get_ns() + (u64)d->again_ms * NSEC_PER_MSEC;
 }
 
-static void leave(struct ec_eoe_netdev *d)
+static void netdev_leave(struct ec_eoe_netdev *d)
 {
 	lockdep_assert_held(&d->lock);
 	if (!d->slave)
@@ -158,7 +158,7 @@ static void leave(struct ec_eoe_netdev *d)
 	d->slave = NULL;
 }
 
-static void join(struct ec_eoe_netdev *d, struct ec_slave *s)
+static void netdev_join(struct ec_eoe_netdev *d, struct ec_slave *s)
 {
 	int ret;
 
@@ -176,7 +176,7 @@ static void join(struct ec_eoe_netdev *d, struct ec_slave *s)
 }
 
 /* Has the port to be left? -errno of its mailbox, or 0. */
-static int judge(struct ec_eoe_netdev *d)
+static int netdev_judge(struct ec_eoe_netdev *d)
 {
 	u64 seen = fragments(d);
 
@@ -201,13 +201,13 @@ void ec_eoe_netdev_follow(struct ec_eoe_netdev *d, struct ec_slave *s)
 	int ret;
 
 	mutex_lock(&d->lock);
-	ret = d->slave ? judge(d) : 0;
+	ret = d->slave ? netdev_judge(d) : 0;
 	if (d->slave && (d->slave != s || !runs || ret))
-		leave(d);
+		netdev_leave(d);
 	if (ret && runs)
 		put_off(d, s, ret);
 	if (d->open && runs && !d->slave && ktime_get_ns() >= d->again_ns)
-		join(d, s);
+		netdev_join(d, s);
 	mutex_unlock(&d->lock);
 }
 
@@ -241,7 +241,7 @@ static int eoe_stop(struct net_device *nd)
 
 	mutex_lock(&d->lock);
 	d->open = false;
-	leave(d);
+	netdev_leave(d);
 	mutex_unlock(&d->lock);
 	ec_eoe_kick(d->eoe);
 	return 0;

@@ -101,7 +101,7 @@ static const struct ec_eoe_id *find_id(const struct ec_eoe_id *ids, unsigned int
  * Is it the same slave? One that was without power may come with a new device number, but has its
  * alias or serial number; one without both is known by its place alone.
  */
-static bool is_same(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
+static bool is_same_slave(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
 {
 	return a->vendor == b->vendor && a->product == b->product && a->alias == b->alias &&
 	       a->serial == b->serial && (a->alias || a->serial || a->position == b->position);
@@ -109,19 +109,19 @@ static bool is_same(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
 
 static bool has_same_name(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
 {
-	return is_same(a, b) && a->alias_shared == b->alias_shared &&
+	return is_same_slave(a, b) && a->alias_shared == b->alias_shared &&
 	       a->serial_shared == b->serial_shared;
 }
 
 /* The only slave without a device that is the same; NULL: none, or there are several. */
-static const struct ec_eoe_id *find_same(struct ec_eoe *eoe, const struct ec_eoe_id *lost,
+static const struct ec_eoe_id *find_only(struct ec_eoe *eoe, const struct ec_eoe_id *lost,
 					 const struct ec_eoe_id *ids, unsigned int n)
 {
 	const struct ec_eoe_id *found = NULL;
 	unsigned int i;
 
 	for (i = 0; i < n; i++) {
-		if (xa_load(&eoe->table, ids[i].device) || !is_same(&ids[i], lost))
+		if (xa_load(&eoe->table, ids[i].device) || !is_same_slave(&ids[i], lost))
 			continue;
 		if (found)
 			return NULL;
@@ -135,7 +135,7 @@ static const struct ec_eoe_id *find_same(struct ec_eoe *eoe, const struct ec_eoe
 static void adopt_one(struct ec_eoe *eoe, struct ec_eoe_netdev *d, const struct ec_eoe_id *ids,
 		      unsigned int n)
 {
-	const struct ec_eoe_id *id = find_same(eoe, &d->id, ids, n);
+	const struct ec_eoe_id *id = find_only(eoe, &d->id, ids, n);
 	unsigned long old = d->id.device;
 	void *wish;
 
@@ -149,7 +149,7 @@ static void adopt_one(struct ec_eoe *eoe, struct ec_eoe_netdev *d, const struct 
 		xa_store(&eoe->wishes, id->device, wish, GFP_KERNEL);
 }
 
-static void adopt(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+static void adopt_lost(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
 {
 	struct ec_eoe_netdev *d;
 	unsigned long device;
@@ -257,7 +257,7 @@ static bool create_new(struct ec_eoe *eoe, struct ec_bus *bus, const struct ec_e
 }
 
 /* Compare the devices with the list of slaves. Return: whether they agree. */
-static bool compare(struct ec_eoe *eoe, struct ec_bus *bus)
+static bool compare_devices(struct ec_eoe *eoe, struct ec_bus *bus)
 {
 	u32 lists = READ_ONCE(bus->lists);
 	struct ec_eoe_id *ids;
@@ -271,7 +271,7 @@ static bool compare(struct ec_eoe *eoe, struct ec_bus *bus)
 	ids = read_ids(bus, lists, &n);
 	if (ids) {
 		mark_shared(ids, n);
-		adopt(eoe, ids, n);
+		adopt_lost(eoe, ids, n);
 		remove_old(eoe, ids, n);
 		all = create_new(eoe, bus, ids, n);
 		note_slaves(eoe, ids, n);
@@ -298,7 +298,7 @@ static struct ec_slave *get_slave(struct ec_bus *bus, u64 device)
 	return s;
 }
 
-static void follow(struct work_struct *work)
+static void follow_slaves(struct work_struct *work)
 {
 	struct ec_eoe *eoe = container_of(to_delayed_work(work), struct ec_eoe, work);
 	struct ec_bus *bus = READ_ONCE(eoe->bus);
@@ -310,7 +310,7 @@ static void follow(struct work_struct *work)
 	if (!bus)
 		return;
 	mutex_lock(&eoe->lock);
-	again = !compare(eoe, bus);
+	again = !compare_devices(eoe, bus);
 	xa_for_each(&eoe->table, device, d) {
 		if (!READ_ONCE(d->open))
 			continue;
@@ -337,7 +337,7 @@ void ec_eoe_init(struct ec_eoe *eoe)
 	mutex_init(&eoe->lock);
 	xa_init(&eoe->table);
 	xa_init(&eoe->wishes);
-	INIT_DELAYED_WORK(&eoe->work, follow);
+	INIT_DELAYED_WORK(&eoe->work, follow_slaves);
 	eoe->stale = true;
 }
 

@@ -14,7 +14,7 @@
 
 #define STALE_NS	NSEC_PER_SEC	/* then an incomplete frame is dropped */
 
-static void add(struct ec_eoe_port *p, u64 *count, u64 n)
+static void port_add(struct ec_eoe_port *p, u64 *count, u64 n)
 {
 	lockdep_assert_held(&p->lock);
 	ec_write64(count, *count + n);
@@ -60,12 +60,12 @@ static bool tx_advance(struct ec_eoe_port *p)
 	const struct sk_buff *skb = p->ways->frames[p->sent % EC_EOE_FRAMES];
 
 	lockdep_assert_held(&p->lock);
-	add(p, &p->counts.tx_fragments, 1);
+	port_add(p, &p->counts.tx_fragments, 1);
 	p->at += p->cut;
 	p->number++;
 	if (p->at >= skb->len) {
-		add(p, &p->counts.tx_frames, 1);
-		add(p, &p->counts.tx_bytes, skb->len);
+		port_add(p, &p->counts.tx_frames, 1);
+		port_add(p, &p->counts.tx_bytes, skb->len);
 		p->at = 0;
 		p->number = 0;
 		p->frame++;
@@ -89,7 +89,7 @@ static void tx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 		p->busy = false;
 		port_fail(p, u->err);
 	} else {
-		add(p, &p->counts.tx_lost, !!u->err);
+		port_add(p, &p->counts.tx_lost, !!u->err);
 		next = tx_advance(p);
 		/* it has to leave first */
 		if (next && u->err) {
@@ -199,12 +199,12 @@ static void rx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 	if (u->err) {
 		port_fail(p, u->err);
 	} else if (u->got_type == EC_MBOX_ERR) {
-		add(p, &p->counts.refused, 1);
+		port_add(p, &p->counts.refused, 1);
 		port_fail(p, -EPROTO);
 	} else if (u->got_type == EC_MBOX_EOE) {
 		/* one entry is where the next message is written */
 		if (p->got + 1 - p->taken == EC_EOE_MESSAGES) {
-			add(p, &p->counts.rx_missed, 1);
+			port_add(p, &p->counts.rx_missed, 1);
 		} else {
 			p->ways->messages[p->got++ % EC_EOE_MESSAGES].len = u->got;
 			u->rx = p->ways->messages[p->got % EC_EOE_MESSAGES].data;
@@ -221,7 +221,7 @@ static void port_count(struct ec_eoe_port *p, u64 *count)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&p->lock, flags);
-	add(p, count, 1);
+	port_add(p, count, 1);
 	raw_spin_unlock_irqrestore(&p->lock, flags);
 }
 
@@ -234,7 +234,7 @@ static void drop_open(struct ec_eoe_port *p, struct ec_eoe_open *o)
 }
 
 /* The incomplete frame of a number; else a free entry, or that of the oldest. */
-static struct ec_eoe_open *find_open(struct ec_eoe_port *p, u8 frame, u64 now)
+static struct ec_eoe_open *find_begun(struct ec_eoe_port *p, u8 frame, u64 now)
 {
 	struct ec_eoe_open *o, *best = NULL;
 
@@ -253,7 +253,7 @@ static struct ec_eoe_open *find_open(struct ec_eoe_port *p, u8 frame, u64 now)
 static void rx_fragment(struct ec_eoe_port *p, const struct ec_eoe_fragment *f)
 {
 	u64 now = ktime_get_ns();
-	struct ec_eoe_open *o = find_open(p, f->frame, now);
+	struct ec_eoe_open *o = find_begun(p, f->frame, now);
 	int ret;
 
 	if (f->number) {
@@ -305,7 +305,7 @@ static void take_messages(struct ec_eoe_port *p)
 		rx_message(p, &p->ways->messages[p->taken % EC_EOE_MESSAGES]);
 		raw_spin_lock_irq(&p->lock);
 		p->taken++;
-		add(p, &p->counts.rx_fragments, 1);
+		port_add(p, &p->counts.rx_fragments, 1);
 		raw_spin_unlock_irq(&p->lock);
 	}
 }
@@ -448,7 +448,7 @@ void ec_eoe_port_detach(struct ec_eoe_port *p)
 		ec_desk_leave(p->mb, &p->tx, false);
 	ec_desk_leave(p->mb, &p->rx, false);
 	raw_spin_lock_irq(&p->lock);
-	add(p, &p->counts.tx_dropped, p->given - p->sent);
+	port_add(p, &p->counts.tx_dropped, p->given - p->sent);
 	raw_spin_unlock_irq(&p->lock);
 	for (n = p->freed; n != p->given; n++)
 		kfree_skb(p->ways->frames[n % EC_EOE_FRAMES]);

@@ -121,7 +121,7 @@ unsigned int ec_eoe_fragment_cut(struct ec_eoe_fragment *f, const u8 *frame, u16
 	return f->len;
 }
 
-static bool follows(const struct ec_eoe_part *p, const struct ec_eoe_fragment *f)
+static bool fragment_follows(const struct ec_eoe_part *p, const struct ec_eoe_fragment *f)
 {
 	return p->open && f->frame == p->frame && f->number == p->next &&
 	       f->units * EC_EOE_UNIT == p->len;
@@ -148,7 +148,7 @@ int ec_eoe_part_add(struct ec_eoe_part *p, u8 *data, size_t cap, const struct ec
 			.open = true,
 			.room = (u16)min_t(size_t, cap, f->units * EC_EOE_UNIT),
 		};
-	else if (!follows(p, f))
+	else if (!fragment_follows(p, f))
 		goto drop;
 	if (f->len > p->room - p->len || (!f->last && (!f->len || f->len % EC_EOE_UNIT)))
 		goto drop;

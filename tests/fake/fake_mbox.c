@@ -446,12 +446,12 @@ int fake_mbox(unsigned long request, void *arg)
 {
 	note_call(request, arg);
 	switch (request) {
-	case EC_IOC_IP_GET:
 	case EC_IOC_EOE:
 		return eoe(arg);
 	case EC_IOC_EOE_WISH:
 		fake_record("eoe wish %u\n", ((struct ec_ioc_eoe_wish *)arg)->wish);
 		return 0;
+	case EC_IOC_IP_GET:
 	case EC_IOC_IP_SET:
 		return ip(arg, request == EC_IOC_IP_SET);
 	case EC_IOC_SDO_UPLOAD:

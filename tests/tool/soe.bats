@@ -150,7 +150,7 @@ soe 2 0 0x0094 0000" ]
 	done
 	run ethercat soe_command -p2 0 S-0-148 stop
 	[[ $output == *"invalid action 'stop': expected run, start, cancel or state"* ]]
-	! grep soe "$FAKE_LOG"
+	[ -z "$(grep soe "$FAKE_LOG")" ]
 }
 
 @test "wrong IDNs, drives and types" {

@@ -29,7 +29,7 @@ static struct seen listen(struct host *h, u32 ms, u16 data)
 {
 	u64 end = h->b->now + ms * 1000000ull;
 	struct seen s = { 0 };
-	const u8 *p;
+	const u8 *p = NULL;
 
 	while (h->b->now < end) {
 		int len = host_recv(h, &p, 1);

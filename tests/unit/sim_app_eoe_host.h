@@ -163,7 +163,7 @@ static inline bool host_is_pong(const u8 *p, int len, u16 data)
 static inline bool host_pings(struct host *h, u16 data, u32 ms)
 {
 	u64 end = h->b->now + ms * 1000000ull;
-	const u8 *frame;
+	const u8 *frame = NULL;
 	u8 p[EC_EOE_FRAME_MAX];
 
 	if (!host_send(h, p, host_ping(h, p, data)))

@@ -24,6 +24,18 @@ static void vectors_soe_read_s_0_0015_of_drive_2(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, a.error, EC_SOE_ERR_DRIVE);
 }
 
+static void vectors_soe_notification_and_emergency(struct kunit *test)
+{
+	static const u8 notification[] = { 0x25, 0x01, 0x94, 0x00, 0x03, 0x00 };
+	static const u8 emergency[] = { 0x06, 0x00, 0x00, 0x00, 1, 2, 3, 4, 5 };
+	static const u8 response[] = { 0x42, 0x40, 0x0F, 0x00, 0x07, 0x00 };
+
+	KUNIT_EXPECT_TRUE(test, ec_soe_is_unasked(notification, sizeof(notification)));
+	KUNIT_EXPECT_TRUE(test, ec_soe_is_unasked(emergency, sizeof(emergency)));
+	KUNIT_EXPECT_FALSE(test, ec_soe_is_unasked(response, sizeof(response)));
+	KUNIT_EXPECT_FALSE(test, ec_soe_is_unasked(notification, 0));
+}
+
 static void vectors_soe_write_p_0_0150(struct kunit *test)
 {
 	static const u8 req[] = { 0x03, 0x40, 0x96, 0x80, 0x34, 0x12 };
@@ -75,6 +87,7 @@ static void vectors_soe_vendor_message(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(vectors_soe_read_s_0_0015_of_drive_2),
+	KUNIT_CASE(vectors_soe_notification_and_emergency),
 	KUNIT_CASE(vectors_soe_write_p_0_0150),
 	KUNIT_CASE(vectors_soe_fragments_and_flags_of_header),
 	KUNIT_CASE(vectors_soe_vendor_message),

@@ -52,7 +52,7 @@ const struct cmd cmds[] = {
 	CMD(MAIL, .raw = true),
 	CMD(SLAVES_DOWN, APP),
 	CMD(EOE, RSV1(ec_ioc_eoe)),
-	CMD(EOE_WISH, BUS, RSV1(ec_ioc_eoe_wish)),
+	CMD(EOE_WISH, BUS, RSV2(ec_ioc_eoe_wish)),
 	CMD(IP_GET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved), AT(ec_ioc_ip, reserved) }),
 	CMD(IP_SET, BUS, .reserved = { AT(ec_ioc_ip, params.reserved), AT(ec_ioc_ip, reserved) }),
 	CMD(SC_IP, APP, .reserved = { AT(ec_ioc_sc_ip, params.reserved) }),
