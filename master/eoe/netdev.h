@@ -42,7 +42,8 @@ struct ec_eoe_id {
  * @lock: protects @slave and @open, and attaching; inside rtnl
  * @slave: slave that @port is attached to, with a reference; NULL: none
  * @open: the device is up
- * @again_ns: not attached again before that time (ktime); of the work of the master, as what follows
+ * @again_ns: not attached again before that time (ktime); of the work of the master, as what
+ *	follows
  * @again_ms: distance of the last two tries, 0: the port works
  * @seen: fragments of @port both ways when it was looked at last
  * @stands: looks in a row at which the slave had taken no frame
