@@ -8,7 +8,7 @@ CYCLES=800
 
 setup_file() {
 	# what "slave 0" and "slave 1" of the readers are, with all a slave may have
-	printf '%s\n' "segment seed=44" "slave s io in=64 out=64" "slave a EL7201 motor=AM8121 soe=1" \
+	printf '%s\n' "segment seed=44" "slave s io in=64 out=64" "slave a EL7201 motor=AM8121 soe=1 eoe=host" \
 		>"$BATS_FILE_TMPDIR/segment"
 	chmod 755 "$BATS_FILE_TMPDIR"
 	start "$BATS_FILE_TMPDIR/segment" 2
