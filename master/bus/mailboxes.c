@@ -36,7 +36,7 @@ static bool is_candidate(struct ec_slave *s, bool all)
 	return (all || ec_mailboxes_polled(s)) && ec_mbox_present(&s->mbox) &&
 	       READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED && !ec_slave_busy(s) &&
 	       (READ_ONCE(s->al.status) & EC_AL_STATE_MASK) >= EC_AL_PREOP &&
-	       !ec_mbox_in_use(&s->mbox);
+	       !ec_mbox_is_read(&s->mbox);
 }
 
 static bool any_in_use(const struct ec_bus *bus)

@@ -225,12 +225,20 @@ static void port_count(struct ec_eoe_port *p, u64 *count)
 	raw_spin_unlock_irqrestore(&p->lock, flags);
 }
 
-static void drop_open(struct ec_eoe_port *p, struct ec_eoe_open *o)
+/* A frame is lost, which counts once however many of its fragments come. */
+static void rx_lost(struct ec_eoe_port *p, u8 frame)
 {
+	if (!(p->broken & BIT(frame)))
+		port_count(p, &p->counts.rx_errors);
+	p->broken |= BIT(frame);
+}
+
+static void drop_open(struct ec_eoe_port *p, struct ec_eoe_open *o, u8 frame)
+{
+	rx_lost(p, frame);
 	kfree_skb(o->skb);
 	o->skb = NULL;
 	o->part.open = false;
-	port_count(p, &p->counts.rx_errors);
 }
 
 /* The incomplete frame of a number; else a free entry, or that of the oldest. */
@@ -240,7 +248,7 @@ static struct ec_eoe_open *find_begun(struct ec_eoe_port *p, u8 frame, u64 now)
 
 	for (o = p->ways->open; o < p->ways->open + EC_EOE_OPEN; o++) {
 		if (o->skb && now - o->since_ns > STALE_NS)
-			drop_open(p, o);
+			drop_open(p, o, o->part.frame);
 		if (o->skb && o->part.frame == frame)
 			return o;
 		if (!best || (best->skb && (!o->skb || o->since_ns < best->since_ns)))
@@ -259,11 +267,12 @@ static void rx_fragment(struct ec_eoe_port *p, const struct ec_eoe_fragment *f)
 	if (f->number) {
 		/* without its begin */
 		if (!o->skb || o->part.frame != f->frame)
-			return port_count(p, &p->counts.rx_errors);
+			return rx_lost(p, f->frame);
 	} else {
 		/* what was incomplete under its number, or is the oldest, is lost */
 		if (o->skb)
-			drop_open(p, o);
+			drop_open(p, o, o->part.frame);
+		p->broken &= ~BIT(f->frame);
 		o->skb = alloc_skb(NET_IP_ALIGN + EC_EOE_FRAME_MAX, GFP_KERNEL);
 		if (!o->skb)
 			return port_count(p, &p->counts.rx_dropped);
@@ -272,7 +281,7 @@ static void rx_fragment(struct ec_eoe_port *p, const struct ec_eoe_fragment *f)
 	o->since_ns = now;
 	ret = ec_eoe_part_add(&o->part, o->skb->data, EC_EOE_FRAME_MAX, f);
 	if (ret < 0 || (ret && ret < ETH_HLEN)) {
-		drop_open(p, o);
+		drop_open(p, o, f->frame);
 	} else if (ret) {
 		struct sk_buff *skb = o->skb;
 
@@ -404,6 +413,7 @@ int ec_eoe_port_attach(struct ec_eoe_port *p, struct ec_mbox *mb)
 	p->number = 0;
 	p->got = 0;
 	p->taken = 0;
+	p->broken = 0;
 	p->tx.tx = p->ways->tx_data;
 	p->rx.rx = p->ways->messages[0].data;
 	raw_spin_lock_irq(&p->lock);

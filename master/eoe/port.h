@@ -20,7 +20,7 @@
  * @tx_bytes: bytes of them
  * @rx_fragments: fragments of the slave
  * @tx_fragments: fragments to the slave
- * @rx_errors: fragments that were wrong, or frames that were not completed
+ * @rx_errors: messages that are no fragments, and frames that were not completed
  * @rx_missed: messages of the slave that came while too many waited
  * @rx_dropped: frames that were not taken, for lack of memory
  * @tx_lost: fragments that were lost, perhaps, as their frame on the fieldbus was
@@ -115,6 +115,8 @@ struct ec_eoe_port {
 	u32 got;
 	/** @taken: those of them that @work has taken */
 	u32 taken;
+	/** @broken: frames of the slave that were lost, by their number; of @work */
+	u16 broken;
 
 	/** @mb: mailbox of the slave; NULL: none; changes while not @attached */
 	struct ec_mbox *mb;

@@ -165,6 +165,12 @@ void ec_box_arrived(struct ec_box *box)
 	ec_box_set_job(box, EC_BOX_NO_JOB);
 }
 
+/* Does the job wait until SM1 is empty? */
+static bool must_be_known_empty(const struct ec_box *box)
+{
+	return is_emptying(box) || box->job == EC_BOX_BLOCKED;
+}
+
 static enum ec_box_step box_choose(struct ec_box *box)
 {
 	enum ec_box_want want;
@@ -180,7 +186,7 @@ static enum ec_box_step box_choose(struct ec_box *box)
 				      want != EC_BOX_NOTHING);
 		if (read && box->gap == EC_BOX_GAP)
 			return EC_BOX_REPEAT_GET;
-		if (box->job != EC_BOX_WRITING)
+		if (box->job != EC_BOX_WRITING || (read && want == EC_BOX_FIRST))
 			break;
 		if (begin_write(box))
 			return EC_BOX_WRITE;
@@ -188,7 +194,7 @@ static enum ec_box_step box_choose(struct ec_box *box)
 	}
 	if (!read)
 		return EC_BOX_REST;
-	if (want != EC_BOX_BLIND && (box->gap == EC_BOX_UNREAD || box->job != EC_BOX_NO_JOB ||
+	if (want != EC_BOX_BLIND && (box->gap == EC_BOX_UNREAD || must_be_known_empty(box) ||
 				     !ec_box_reads_at_once(box)))
 		return EC_BOX_STATUS;
 	return begin_read(box);
@@ -288,9 +294,11 @@ static void box_received(struct ec_box *box)
 	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
 }
 
-/* SM1 has no message. */
+/* SM1 has no message. The next access to it can wait, but not a message that can be written. */
 static void found_empty(struct ec_box *box)
 {
+	if (box->job != EC_BOX_WRITING)
+		ec_box_pause(box);
 	unblock(box);
 	box->ops->event(box, EC_BOX_ON_NOTHING, 0);
 	/* the slave has to repeat what a lost frame has carried */
@@ -333,7 +341,6 @@ static enum ec_box_step on_status(struct ec_box *box, int ret)
 		box->due_ns = 0;
 		return begin_read(box);
 	}
-	ec_box_pause(box);
 	found_empty(box);
 	return EC_BOX_REST;
 }
@@ -362,11 +369,11 @@ static enum ec_box_step on_read(struct ec_box *box, int ret)
 		box_received(box);
 		return EC_BOX_REST;
 	}
-	ec_box_pause(box);
 	if (ret == -EIO) {
 		found_empty(box);
 		return EC_BOX_REST;
 	}
+	ec_box_pause(box);
 	/* also when the link is down: it may have been read */
 	read_lost(box);
 	if (ret != -ETIMEDOUT)

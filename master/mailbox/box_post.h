@@ -116,6 +116,8 @@ enum ec_box_want {
 	EC_BOX_NOTHING,
 	/** @EC_BOX_MESSAGE: the next message */
 	EC_BOX_MESSAGE,
+	/** @EC_BOX_FIRST: the next message, before another one is written */
+	EC_BOX_FIRST,
 	/** @EC_BOX_BLIND: one access without a poll of its status */
 	EC_BOX_BLIND,
 };

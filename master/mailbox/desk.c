@@ -12,6 +12,8 @@
 
 #define FLOOD_NS	(250 * NSEC_PER_MSEC)	/* of a slave that sends without end */
 
+#define STRIDE		4	/* messages without answer at most between accesses to SM1 */
+
 #define for_each_user(mb, u) list_for_each_entry(u, &(mb)->desk.users, list)
 
 static struct ec_mbox *mbox_of(struct ec_box *box)
@@ -132,6 +134,9 @@ static void job_over(struct ec_mbox *mb, int err)
 	if (!u || u->phase != EC_MBOX_USER_SENDING)
 		return;
 	u->lost |= err == -ENOTRECOVERABLE;
+	/* a stream of them leaves room for the messages of the slave */
+	if (!u->answer && mb->desk.ahead < EC_BOX_DRAIN)
+		mb->desk.ahead++;
 	if (u->answer && (!err || err == -ENOTRECOVERABLE)) {
 		u->phase = EC_MBOX_USER_WAITING;
 		ec_box_expect_reply(&mb->box);
@@ -145,7 +150,9 @@ static void job_over(struct ec_mbox *mb, int err)
 static enum ec_box_want desk_want(struct ec_box *box)
 {
 	struct ec_mbox *mb = mbox_of(box);
-	enum ec_box_want want = mb->desk.fetch ? EC_BOX_MESSAGE : EC_BOX_NOTHING;
+	enum ec_box_want message = mb->desk.ahead && mb->desk.ahead >= mb->desk.stride ?
+				   EC_BOX_FIRST : EC_BOX_MESSAGE;
+	enum ec_box_want want = mb->desk.fetch ? message : EC_BOX_NOTHING;
 	const struct ec_mbox_user *u;
 
 	lockdep_assert_held(&box->lock);
@@ -154,7 +161,7 @@ static enum ec_box_want desk_want(struct ec_box *box)
 			continue;
 		if (u->once)
 			return EC_BOX_BLIND;
-		want = EC_BOX_MESSAGE;
+		want = message;
 	}
 	return want;
 }
@@ -304,6 +311,7 @@ static void desk_event(struct ec_box *box, enum ec_box_event event, int err)
 	lockdep_assert_held(&box->lock);
 	switch (event) {
 	case EC_BOX_ON_RECEIVED:
+		mb->desk.stride = 1;
 		on_received(mb);
 		count_fetched(mb);
 		break;
@@ -316,9 +324,12 @@ static void desk_event(struct ec_box *box, enum ec_box_event event, int err)
 		count_fetched(mb);
 		break;
 	case EC_BOX_ON_NOTHING:
+		mb->desk.ahead = 0;
 		finish_once(mb);
 		break;
 	case EC_BOX_ON_EMPTY:
+		/* a slave that has nothing to say costs less of a stream */
+		mb->desk.stride = clamp(2 * mb->desk.stride, 1, STRIDE);
 		mb->desk.fetch = false;
 		mb->desk.fetched = 0;
 		break;
@@ -408,12 +419,14 @@ void ec_desk_enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 	unsigned long flags;
 
 	raw_spin_lock_irqsave(&mb->box.lock, flags);
+	u->exchange = u->answer || u->once || u->discard;
+	WRITE_ONCE(mb->desk.exchanges, mb->desk.exchanges + u->exchange);
 	line_up(mb, u);
 	ec_box_hurry(&mb->box);
 	ec_box_go(&mb->box);
 	raw_spin_unlock_irqrestore(&mb->box.lock, flags);
 	/* the user before the count */
-	if (mb->changes)
+	if (u->exchange && mb->changes)
 		atomic_inc_return_release(mb->changes);
 }
 
@@ -475,6 +488,7 @@ void ec_desk_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
 		mb->desk.sending = NULL;
 	}
 	list_del(&u->list);
+	WRITE_ONCE(mb->desk.exchanges, mb->desk.exchanges - u->exchange);
 	u->phase = EC_MBOX_USER_IDLE;
 	if (u->answer)
 		mb->desk.answered = answered;
@@ -487,14 +501,29 @@ void ec_desk_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered)
  * ec_mbox_in_use() - does a caller exchange messages with the slave now?
  * @mb: mailbox of the slave
  *
+ * One that only reads what the slave sends, or sends what has no answer, does not.
+ *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether one does; it gets all that the slave sends. A caller that enters or leaves a list
- * at this moment, or whose datagram is just received, may be missed.
+ * Return: whether one does. A caller that enters or leaves at this moment, or whose datagram is
+ * just received, may be missed.
  */
 bool ec_mbox_in_use(const struct ec_mbox *mb)
 {
-	return !list_empty(&mb->desk.queue) || !list_empty(&mb->desk.users) ||
-	       READ_ONCE(mb->box.step) != EC_BOX_REST;
+	return READ_ONCE(mb->desk.exchanges) ||
+	       (list_empty(&mb->desk.users) && READ_ONCE(mb->box.step) != EC_BOX_REST);
+}
+
+/**
+ * ec_mbox_is_read() - is all read that the slave sends?
+ * @mb: mailbox of the slave
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether a caller waits for a message of it, or exchanges messages with it; as for
+ * ec_mbox_in_use() one may be missed.
+ */
+bool ec_mbox_is_read(const struct ec_mbox *mb)
+{
+	return ec_mbox_in_use(mb) || !list_empty(&mb->desk.users);
 }
 
 /**

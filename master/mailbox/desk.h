@@ -13,6 +13,7 @@ void ec_desk_wait_on(struct ec_mbox *mb, struct ec_mbox_user *u);
 void ec_desk_leave(struct ec_mbox *mb, struct ec_mbox_user *u, bool answered);
 bool ec_desk_has_reader(struct ec_mbox *mb);
 bool ec_mbox_in_use(const struct ec_mbox *mb);
+bool ec_mbox_is_read(const struct ec_mbox *mb);
 void ec_mbox_reset(struct ec_mbox *mb);
 bool ec_mbox_fetch(struct ec_mbox *mb);
 

@@ -88,6 +88,8 @@ struct ec_mbox_user {
 	/** @once: one access to SM1, then -ENOMSG */
 	bool once;
 
+	/** @exchange: it counts as one in struct ec_desk */
+	bool exchange;
 	/** @phase: enum ec_mbox_phase; may be read without the lock */
 	u8 phase;
 	/** @got_type: result: @type or EC_MBOX_ERR */
@@ -131,6 +133,12 @@ struct ec_desk {
 	bool answered;
 	/** @frame_sent: the last message to the slave was a fragment of EoE, which has no answer */
 	bool frame_sent;
+	/** @ahead: messages without answer written since SM1 was accessed last */
+	u8 ahead;
+	/** @stride: of them, so many between two accesses to SM1; a power of 2 */
+	u8 stride;
+	/** @exchanges: users that await an answer; ec_mbox_in_use() reads it without the lock */
+	u16 exchanges;
 
 	/* of late.c; a user that gets its answer clears @never_late, INIT clears all */
 	/** @never_late: the last late reply was not received: no wait for the next one */

@@ -2,6 +2,7 @@
 /* Network devices of slaves with EoE: frames of the host to the IP stack of a slave, and back. */
 #include <linux/etherdevice.h>
 #include <linux/if_vlan.h>
+#include "devices/sim/app.h"
 #include "eoe_wire.h"
 #include "master/mailbox/coe.h"
 #include "master/mailbox/eoe.h"
@@ -248,6 +249,9 @@ static void net_faults(struct kunit *test)
 		eoe_ping(w, mac, 10);
 		ec_eoe_port_counts(&d->port, &c);
 		KUNIT_EXPECT_GT_MSG(test, c.rx_errors, before, "%s", kinds[i]);
+		/* once a frame, however many fragments follow; one without end begins again */
+		if (strcmp(kinds[i], "endless"))
+			KUNIT_EXPECT_LE_MSG(test, c.rx_errors, before + 2, "%s", kinds[i]);
 	}
 	eoe_down(w);
 }
@@ -266,6 +270,56 @@ static void net_spoof(struct kunit *test)
 	eoe_down(w);
 }
 
+/* A stream of frames to the slave leaves room for what it answers. */
+static void net_answers_beside_stream(struct kunit *test)
+{
+	struct eoe_wire *w = eoe_up(test, SEGMENT, 2, "eoe0a5");
+	struct ec_eoe_netdev *d = netdev_priv(w->nd);
+	u8 *f = kunit_kzalloc(test, 1400, GFP_KERNEL), mac[ETH_ALEN];
+	u32 i, us, before, heard = 0;
+
+	KUNIT_ASSERT_TRUE(test, eoe_ask_address(w, mac));
+	before = w->frames;
+	eoe_header(w, f, mac, ETH_P_802_EX1);	/* no answer to it */
+	for (i = 0; i < 300 && !heard; i++) {
+		for (us = 0; !ec_eoe_port_has_room(&d->port) && us < 100000; us += 10)
+			usleep_range(10, 10);
+		if (i == 50)
+			eoe_send_ping(w, mac, 10);
+		else
+			eoe_send(w, f, 1400);
+		heard = w->frames == before ? 0 : i;
+	}
+	/* the ping itself waits behind those that were given before */
+	KUNIT_EXPECT_GT(test, heard, 50u);
+	KUNIT_EXPECT_LT(test, heard, 50u + EC_EOE_FRAMES + 5);
+	eoe_down(w);
+}
+
+/* The reader of frames is no exchange, so what other slaves send is fetched soon. */
+static void net_emergency_of_another(struct kunit *test)
+{
+	struct eoe_wire *w = eoe_up(test, SEGMENT, 2, "eoe0a5");
+	struct ec_app *app = bus_app(w->b, "a");
+	u8 mac[ETH_ALEN];
+	u32 ms, i, worst = 0;
+
+	KUNIT_ASSERT_TRUE(test, eoe_ask_address(w, mac));
+	bus_idle(w->b);
+	for (i = 0; i < 20; i++) {
+		/* at any phase; between them a frame of the other slave */
+		usleep_range(230000 + i * 13000, 230001 + i * 13000);
+		KUNIT_EXPECT_NE(test, eoe_ping(w, mac, 10), 0ull);
+		ec_app_emergency(app, 0x3210, 0x04, (u8[5]){ i }, ktime_get_ns());
+		for (ms = 0; app->mbox.out_len && ms < 5000; ms++)
+			usleep_range(1000, 1001);
+		worst = max(worst, ms);
+	}
+	bus_figure("emergency beside a device that is up: fetched after at most %u ms", worst);
+	KUNIT_EXPECT_LE(test, worst, 25u);
+	eoe_down(w);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(net_ping),
 	KUNIT_CASE(net_beside_requests),
@@ -279,6 +333,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(net_no_ethercat),
 	KUNIT_CASE(net_faults),
 	KUNIT_CASE(net_spoof),
+	KUNIT_CASE(net_answers_beside_stream),
+	KUNIT_CASE(net_emergency_of_another),
 	{ }
 };
 
