@@ -134,7 +134,7 @@ static void job_over(struct ec_mbox *mb, int err)
 	if (!u || u->phase != EC_MBOX_USER_SENDING)
 		return;
 	u->lost |= err == -ENOTRECOVERABLE;
-	/* a stream of them leaves room for the messages of the slave */
+	/* a stream of them does not keep the slave from sending */
 	if (!u->answer && mb->desk.ahead < EC_BOX_DRAIN)
 		mb->desk.ahead++;
 	if (u->answer && (!err || err == -ENOTRECOVERABLE)) {

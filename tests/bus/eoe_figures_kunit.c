@@ -4,6 +4,7 @@
  * one ping alone.
  */
 #include <linux/kthread.h>
+#include <linux/mm.h>
 #include "cyc.h"
 #include "eoe_wire.h"
 #include "master/wire/frame.h"
@@ -26,6 +27,8 @@
 #define CYCLE_8		250
 #define PING_MEAN	250
 #define PING_WORST	300
+#define DEVICES		60
+#define MEMORY_KIB	40
 
 /* who pings */
 struct pinger {
@@ -204,12 +207,44 @@ static void eoe_ping_cycle(struct kunit *test)
 	eoe_down(p->w);
 }
 
+static u64 used_bytes(void)
+{
+	struct sysinfo si;
+
+	si_meminfo(&si);
+	return (u64)(si.totalram - si.freeram) << PAGE_SHIFT;
+}
+
+/* Memory of the devices of slaves without traffic: those are down. */
+static void eoe_memory(struct kunit *test)
+{
+	char text[120], name[IFNAMSIZ];
+	struct bus *b;
+	u64 before, bytes;
+
+	snprintf(text, sizeof(text), "segment seed=41\nrepeat %u slave d EL6614\n", DEVICES);
+	b = bus_up(test, text, DEVICES);
+	bus_idle(b);
+	before = used_bytes();
+	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	snprintf(name, sizeof(name), "eoe0s%u", DEVICES - 1);
+	eoe_await(test, name, true);
+	msleep(500);
+	bytes = used_bytes() - before;
+	bus_figure("network device of EoE, down: %llu bytes, %zu of them the master's own",
+		   div_u64(bytes, DEVICES), sizeof(struct ec_eoe_netdev));
+	judge(test, div_u64(bytes, DEVICES * 1024), 4, MEMORY_KIB,
+	      "KiB of memory for the network device of a slave with EoE, without traffic");
+	ec_eoe_stop(&b->m->eoe);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(eoe_idle_1),
 	KUNIT_CASE(eoe_idle_8),
 	KUNIT_CASE(eoe_cycle_1),
 	KUNIT_CASE(eoe_cycle_8),
 	KUNIT_CASE(eoe_ping_cycle),
+	KUNIT_CASE(eoe_memory),
 	{ }
 };
 
