@@ -110,8 +110,7 @@ static int ec_release(struct inode *inode, struct file *filp)
 		ec_session_leave_units(&m->sessions, f);
 	if (f->writable)
 		ec_session_end(&m->sessions, f);
-	ec_event_reader_end(f);
-	ec_mail_reader_end(f);
+	ec_reader_end(f);
 	kfree_rcu(f, rcu);
 	return 0;
 }
@@ -196,21 +195,16 @@ static int ec_mmap(struct file *filp, struct vm_area_struct *vma)
  * Takes no lock of the master: a caller that is preempted here delays no other caller.
  *
  * Context: Process. May sleep to add an entry to the wait queue.
- * Return: as ec_event_reader_poll() or ec_mail_reader_poll() for a reader; as
- * ec_cycle_thread_poll() for the owner of the cycle; EPOLLERR for every other file, and when too
- * many wait already.
+ * Return: as ec_reader_poll() for a reader; as ec_cycle_thread_poll() for the owner of the cycle;
+ * EPOLLERR for every other file, and when too many wait already.
  */
 __poll_t ec_file_poll(struct ec_file *f, struct file *filp, poll_table *wait)
 {
-	/* pairs with smp_store_release() of it */
-	struct ec_event_reader *r = smp_load_acquire(&f->reader);
-	/* likewise */
-	struct ec_mail_reader *mail = smp_load_acquire(&f->mail);
+	/* pairs with ec_reader_enter() */
+	struct ec_reader *r = smp_load_acquire(&f->reader);
 
-	if (mail)
-		return ec_mail_reader_poll(mail, filp, wait);
 	if (r)
-		return ec_event_reader_poll(r, filp, wait);
+		return ec_reader_poll(r, filp, wait);
 	return ec_waiters_poll(&f->waiters, filp, wait) ?
 	       ec_cycle_thread_poll(&f->master->cycles, f) : EPOLLERR;
 }
@@ -222,13 +216,7 @@ static __poll_t ec_poll(struct file *filp, poll_table *wait)
 
 static ssize_t ec_read(struct file *filp, char __user *to, size_t size, loff_t *at)
 {
-	struct ec_file *f = filp->private_data;
-	bool block = !(filp->f_flags & O_NONBLOCK);
-	/* pairs with smp_store_release() of it */
-	struct ec_mail_reader *mail = smp_load_acquire(&f->mail);
-
-	return mail ? ec_mail_reader_read(mail, to, size, block) :
-	       ec_event_reader_read(f, to, size, block);
+	return ec_reader_read(filp->private_data, to, size, !(filp->f_flags & O_NONBLOCK));
 }
 
 static const struct file_operations ec_fops = {

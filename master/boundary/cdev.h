@@ -10,9 +10,8 @@
 #include "ethercat.h"
 #include "../cycle/waiters.h"
 
-struct ec_event_reader;
-struct ec_mail_reader;
 struct ec_master;
+struct ec_reader;
 struct ec_session;
 
 /**
@@ -22,8 +21,7 @@ struct ec_session;
  * @reason: text of the last failure, under @lock
  * @lock: protects @reason
  * @waiters: callers that wait for a cycle
- * @reader: NULL, or it reads events; set once
- * @mail: NULL, or it reads mailbox messages; set once
+ * @reader: NULL, or it reads records; set once
  * @holds: it has held a sync unit of another application
  * @admitted: bits EC_ADMITTED_*: commands of the cycle that ioctl() has let through on this file
  * @rcu: frees it after the cycle has finished with @waiters
@@ -34,8 +32,7 @@ struct ec_file {
 	raw_spinlock_t lock;
 	char reason[EC_UAPI_REASON];
 	struct ec_waiters waiters;
-	struct ec_event_reader *reader;
-	struct ec_mail_reader *mail;
+	struct ec_reader *reader;
 	bool holds;
 	unsigned long admitted;
 	struct rcu_head rcu;

@@ -62,7 +62,7 @@ static inline struct ec_slave_devices *bus_slave_devices(const struct bus *b)
 /* open files that read events */
 static inline u32 bus_readers(const struct bus *b)
 {
-	return READ_ONCE(b->m->readers.count);
+	return READ_ONCE(b->m->readers.readers.count);
 }
 
 /* how often the monitor has gone to sleep */

@@ -466,7 +466,7 @@ static void events_reader_begins_at_oldest_or_newest(struct kunit *test)
 	ec_event(bus_base(b), EC_EVENT_DEBUG, 1);
 	KUNIT_EXPECT_TRUE(test, ec_file_poll(f, NULL, NULL) & EPOLLIN);
 	KUNIT_EXPECT_EQ(test, bus_readers(b), 1u);
-	ec_event_reader_end(f);
+	ec_reader_end(f);
 	KUNIT_EXPECT_EQ(test, bus_readers(b), 0u);
 	arg.flags = 2;
 	KUNIT_EXPECT_EQ(test, ec_ioc(f, EC_IOC_EVENTS, &arg), -EOPNOTSUPP);

@@ -40,17 +40,17 @@ static struct ec_file *reader_new(struct bus *b, u64 *next)
 	struct ec_file *f = file_new(b);
 
 	KUNIT_ASSERT_EQ(b->test, ec_ioc(f, EC_IOC_MAIL, &arg), 0);
-	KUNIT_ASSERT_NOT_NULL(b->test, f->mail);
+	KUNIT_ASSERT_NOT_NULL(b->test, f->reader);
 	*next = arg.next;
 	return f;
 }
 
 static bool next_mail(struct ec_file *f, struct ec_mail *m)
 {
-	u64 at = f->mail->at;
-	bool got = ec_mail_tap_get(f->mail->tap, &at, m);
+	u64 at = f->reader->at;
+	bool got = ec_mail_tap_get(f->reader->source, &at, m);
 
-	f->mail->at = at;
+	f->reader->at = at;
 	return got;
 }
 
@@ -114,7 +114,7 @@ static void mail_tap_reader_gets_request_and_response(struct kunit *test)
 	/* the slave takes 100 us */
 	KUNIT_EXPECT_GE(test, a.time_ns - q.time_ns, 100000ull);
 	KUNIT_EXPECT_LT(test, a.time_ns - q.time_ns, 20000000ull);
-	ec_mail_reader_end(f);
+	ec_reader_end(f);
 }
 
 static void mail_tap_readers_take_nothing_from_others(struct kunit *test)
@@ -131,18 +131,18 @@ static void mail_tap_readers_take_nothing_from_others(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, talk_upload(t, 0x1018, 4, false), 0);
 	KUNIT_EXPECT_EQ(test, rest_of(one), 4u);
 	KUNIT_EXPECT_EQ(test, rest_of(two), 2u);
-	ec_mail_reader_end(one);
+	ec_reader_end(one);
 	KUNIT_EXPECT_NOT_NULL(test, tap_of(b));
 	KUNIT_EXPECT_EQ(test, talk_upload(t, 0x1018, 4, false), 0);
 	KUNIT_EXPECT_EQ(test, rest_of(two), 2u);
-	ec_mail_reader_end(two);
+	ec_reader_end(two);
 	KUNIT_EXPECT_NULL(test, tap_of(b));
 	KUNIT_EXPECT_EQ(test, talk_upload(t, 0x1018, 4, false), 0);
 	/* numbers are not reused */
 	three = reader_new(b, &third);
 	KUNIT_EXPECT_EQ(test, third, first + 6);
 	KUNIT_EXPECT_EQ(test, rest_of(three), 0u);
-	ec_mail_reader_end(three);
+	ec_reader_end(three);
 }
 
 static void mail_tap_slow_reader_gets_exact_number(struct kunit *test)
@@ -168,7 +168,7 @@ static void mail_tap_slow_reader_gets_exact_number(struct kunit *test)
 	KUNIT_ASSERT_TRUE(test, next_mail(f, &m));
 	KUNIT_EXPECT_EQ(test, m.missed, 0ull);
 	KUNIT_EXPECT_EQ(test, rest_of(f), (u32)EC_MAILS_KEPT - 2);
-	ec_mail_reader_end(f);
+	ec_reader_end(f);
 }
 
 static void mail_tap_file_reads_one_thing(struct kunit *test)
@@ -189,8 +189,8 @@ static void mail_tap_file_reads_one_thing(struct kunit *test)
 	g = reader_new(b, &next);
 	KUNIT_EXPECT_EQ(test, ec_ioc(g, EC_IOC_MAIL, &arg), -EBUSY);
 	KUNIT_EXPECT_EQ(test, ec_ioc(g, EC_IOC_EVENTS, &events), -EBUSY);
-	ec_mail_reader_end(g);
-	ec_event_reader_end(f);
+	ec_reader_end(g);
+	ec_reader_end(f);
 	KUNIT_EXPECT_NULL(test, tap_of(b));
 }
 

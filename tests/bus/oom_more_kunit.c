@@ -222,7 +222,7 @@ static void oom_reader_of_events_is_refused(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&f, EC_IOC_EVENTS, &arg), -ENOMEM);
 	KUNIT_EXPECT_TRUE(test, oom_has_failed());
 	KUNIT_EXPECT_EQ(test, ec_ioc(&f, EC_IOC_EVENTS, &arg), 0);
-	ec_event_reader_end(&f);
+	ec_reader_end(&f);
 }
 
 /* No memory to take over: the cycle that runs goes on, and the next one takes it over. */

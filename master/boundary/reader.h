@@ -1,0 +1,72 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* Open files that read records: events, or mailbox messages. */
+#ifndef EC_READER_H
+#define EC_READER_H
+
+#include <linux/fs.h>
+#include <linux/list.h>
+#include <linux/mutex.h>
+#include <linux/poll.h>
+#include "../cycle/waiters.h"
+
+struct ec_file;
+struct ec_reader;
+
+/**
+ * struct ec_reader_ops - what is read
+ * @size: bytes of a record
+ * @kept: records at most at once
+ * @head: number of the next record that does not exist so far
+ * @copy: copy record *@at, or the oldest one after it, and set @at to the one after that; 1, 0: no
+ *	new record, -EFAULT or -ERESTARTSYS
+ * @free: the file is closed, and @r no longer in the list; the lock of the list is held
+ */
+struct ec_reader_ops {
+	size_t size;
+	size_t kept;
+	u64 (*head)(const struct ec_reader *r);
+	int (*copy)(struct ec_reader *r, u64 *at, void __user *to);
+	void (*free)(struct ec_reader *r);
+};
+
+/**
+ * struct ec_readers - readers of one kind
+ * @lock: protects @list
+ * @list: of them
+ * @count: entries in @list; changes under @lock
+ */
+struct ec_readers {
+	struct mutex lock;
+	struct list_head list;
+	unsigned int count;
+};
+
+/**
+ * struct ec_reader - one open file
+ * @ops: what it reads
+ * @readers: where it is in the list
+ * @list: in @readers
+ * @source: of the records, which stays as long as the file is in the list; of @ops
+ * @lock: protects @at; one caller reads at a time
+ * @at: number of the next record to read
+ * @waiters: callers that wait for a record
+ */
+struct ec_reader {
+	const struct ec_reader_ops *ops;
+	struct ec_readers *readers;
+	struct list_head list;
+	const void *source;
+	struct mutex lock;
+	aligned_u64 at;
+	struct ec_waiters waiters;
+};
+
+void ec_readers_init(struct ec_readers *rs);
+void ec_readers_wake(struct ec_readers *rs);
+struct ec_reader *ec_reader_new(const struct ec_reader_ops *ops, const void *source);
+int ec_reader_enter(struct ec_reader *r, struct ec_readers *rs, struct ec_file *f);
+void ec_reader_end(struct ec_file *f);
+ssize_t ec_reader_read(struct ec_file *f, char __user *to, size_t size, bool wait);
+__poll_t ec_reader_poll(struct ec_reader *r, struct file *filp, poll_table *wait);
+
+#endif
