@@ -1,5 +1,14 @@
 // SPDX-License-Identifier: GPL-2.0-only OR BSD-2-Clause
 #include "eoe_frame.h"
+#include "frame.h"
+
+#define VLAN_C		0x8100
+#define VLAN_S		0x88a8
+#define IPV4		0x0800
+#define IPV4_PLAIN	0x45	/* its first byte: without options */
+#define IPV4_UDP	17
+#define IPV4_HDR	20
+#define UDP_HDR		8
 
 /* first word of the header, behind the type */
 #define PORT_SHIFT	4
@@ -164,4 +173,50 @@ int ec_eoe_part_add(struct ec_eoe_part *p, u8 *data, size_t cap, const struct ec
 drop:
 	p->open = false;
 	return -EBADMSG;
+}
+
+static u16 get_be16(const u8 *p)
+{
+	return (u16)(p[0] << 8 | p[1]);
+}
+
+/* From the IP header on: do slaves take it for EtherCAT? Other types are no datagrams. */
+static bool is_ethercat_udp(struct ec_rbuf *r)
+{
+	const u8 *ip = ec_rbuf_take(r, IPV4_HDR), *udp = ec_rbuf_take(r, UDP_HDR);
+	u16 header = ec_rbuf_le16(r);
+
+	return !r->bad && ip[0] == IPV4_PLAIN && ip[9] == IPV4_UDP &&
+	       get_be16(udp + 2) == EC_ETHERTYPE && header >> 12 == EC_FRAME_TYPE_DGRAM;
+}
+
+/**
+ * ec_eoe_is_ethercat() - may slaves process an Ethernet frame?
+ * @frame: from the destination address on
+ * @len: bytes at @frame
+ *
+ * Context: Any. RT-safe: bounded by @len, no sleep, no allocation.
+ * Return: true: it is EtherCAT by its EtherType, or datagrams in UDP; perhaps behind VLAN tags.
+ */
+bool ec_eoe_is_ethercat(const u8 *frame, size_t len)
+{
+	struct ec_rbuf r = ec_rbuf(frame, len);
+	const u8 *type;
+
+	ec_rbuf_take(&r, 12);
+	while ((type = ec_rbuf_take(&r, 2))) {
+		switch (get_be16(type)) {
+		case VLAN_C:
+		case VLAN_S:
+			ec_rbuf_take(&r, 2);
+			break;
+		case EC_ETHERTYPE:
+			return true;
+		case IPV4:
+			return is_ethercat_udp(&r);
+		default:
+			return false;
+		}
+	}
+	return false;
 }

@@ -56,5 +56,6 @@ unsigned int ec_eoe_fragment_room(unsigned int mailbox);
 unsigned int ec_eoe_fragment_cut(struct ec_eoe_fragment *f, const u8 *frame, u16 frame_len,
 				 u16 at, u8 number, unsigned int mailbox);
 int ec_eoe_part_add(struct ec_eoe_part *p, u8 *data, size_t cap, const struct ec_eoe_fragment *f);
+bool ec_eoe_is_ethercat(const u8 *frame, size_t len);
 
 #endif

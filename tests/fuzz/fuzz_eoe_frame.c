@@ -12,6 +12,9 @@ const struct fuzz_seed fuzz_seeds[] = {
 	/* mailbox 48; three fragments, offsets 0, 32, 64; another service between */
 	SEED("\x30" "\x24\0\0\0\xc0\0" Z32 "\x24\0\0\0\x41\0" Z32 "\4\0\3\1\0\0" "\x14\0\0\1\x82\0"
 	     "0123456789abcdef"),
+	/* EtherCAT in UDP behind a tag */
+	SEED("\x80" "\x34\0\0\1\x80\0" "012345012345\x81\0\0\5\x08\0\x45\0\0\x1e\0\0\0\0\x40\x11\0\0"
+	     "01234567\1\2\x88\xa4\0\x0a\0\0\0\x10"),
 	{ NULL, 0 }
 };
 
@@ -75,6 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 		ret = ec_eoe_part_add(&p, frame, cap, &f);
 		MUST(p.len <= p.room && p.room <= cap && p.open == !ret);
 		MUST(ret <= 0 || (ret == p.len && f.last && p.port == f.port));
+		MUST(ret <= 0 || ret >= 14 || !ec_eoe_is_ethercat(frame, (size_t)ret));
 		if (ret > 0)
 			again(frame, (u16)ret, f.frame, mailbox);
 	}

@@ -227,6 +227,48 @@ static void eoe_frame_fragment_0_begins_frame(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, joined, frame + 32, 72);
 }
 
+/* What follows two MAC addresses, in memory of exactly @len bytes. */
+static bool is_ethercat(struct kunit *test, const char *bytes, size_t len)
+{
+	u8 *f = kunit_kzalloc(test, 12 + len, GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, f);
+	memcpy(f + 12, bytes, len);
+	return ec_eoe_is_ethercat(f, 12 + len);
+}
+
+#define IP(first, proto)	"\x08\0" first "\0\0\x2e\0\0\0\0\x40" proto "\0\0\x0a\1\0\2\xff\xff\xff\xff"
+#define UDP(port)		"\1\2" port "\0\x1a\0\0"
+
+static void eoe_frame_ethercat_is_recognized(struct kunit *test)
+{
+	static const char udp[] = IP("\x45", "\x11") UDP("\x88\xa4") "\x0e\x10";
+	static const char tagged[] = "\x88\xa8\0\5\x81\0\0\7"
+				     IP("\x45", "\x11") UDP("\x88\xa4") "\x0e\x10";
+	static const char options[] = IP("\x46", "\x11") UDP("\x88\xa4") "\x0e\x10";
+	static const char tcp[] = IP("\x45", "\x06") UDP("\x88\xa4") "\x0e\x10";
+	static const char dns[] = IP("\x45", "\x11") UDP("\0\x35") "\x0e\x10";
+	/* a mailbox gateway's */
+	static const char mailbox[] = IP("\x45", "\x11") UDP("\x88\xa4") "\x0e\x50";
+	size_t len;
+
+	KUNIT_EXPECT_TRUE(test, is_ethercat(test, "\x88\xa4", 2));
+	KUNIT_EXPECT_TRUE(test, is_ethercat(test, "\x81\0\0\5\x88\xa4", 6));
+	KUNIT_EXPECT_TRUE(test, is_ethercat(test, "\x88\xa8\0\5\x81\0\0\7\x88\xa4", 10));
+	KUNIT_EXPECT_FALSE(test, is_ethercat(test, "\x88\xa5", 2));
+	KUNIT_EXPECT_FALSE(test, is_ethercat(test, "\x08\6\x88\xa4", 4));
+	KUNIT_EXPECT_TRUE(test, is_ethercat(test, udp, sizeof(udp) - 1));
+	for (len = 0; len < sizeof(udp) - 1; len++)
+		KUNIT_EXPECT_FALSE_MSG(test, is_ethercat(test, udp, len), "%zu", len);
+	KUNIT_EXPECT_TRUE(test, is_ethercat(test, tagged, sizeof(tagged) - 1));
+	/* slaves take none of these */
+	KUNIT_EXPECT_FALSE(test, is_ethercat(test, options, sizeof(options) - 1));
+	KUNIT_EXPECT_FALSE(test, is_ethercat(test, tcp, sizeof(tcp) - 1));
+	KUNIT_EXPECT_FALSE(test, is_ethercat(test, dns, sizeof(dns) - 1));
+	KUNIT_EXPECT_FALSE(test, is_ethercat(test, mailbox, sizeof(mailbox) - 1));
+	KUNIT_EXPECT_FALSE(test, ec_eoe_is_ethercat(frame, 0));
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(eoe_frame_header_has_each_field),
 	KUNIT_CASE(eoe_frame_other_messages_are_refused),
@@ -238,6 +280,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(eoe_frame_wrong_fragment_drops_frame),
 	KUNIT_CASE(eoe_frame_size_has_limits),
 	KUNIT_CASE(eoe_frame_fragment_0_begins_frame),
+	KUNIT_CASE(eoe_frame_ethercat_is_recognized),
 	{ }
 };
 
