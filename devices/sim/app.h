@@ -579,7 +579,7 @@ int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 size_t ec_app_eoe_bytes(const struct ec_app_model *m);
 void ec_app_eoe_init(struct ec_app *app);
 void ec_app_eoe_reset(struct ec_app *app);
-void ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len);
+int ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len);
 bool ec_app_eoe_waits(const struct ec_app *app);
 bool ec_app_eoe_turn(struct ec_app *app, bool request);
 int ec_app_eoe_next(struct ec_app *app, u8 *tx, size_t cap, u64 now);

@@ -33,7 +33,7 @@ int ec_desc_eoe_fault(struct ec_desc *d, struct ec_sim_fault *f)
 {
 	static const char * const kinds[EC_SIM_EOE_FAULTS] = {
 		"good", "interleave", "stamp", "short", "lost", "offset", "number", "endless",
-		"size", "flood", "spoof", "ethercat",
+		"size", "flood", "spoof", "ethercat", "udp", "refuse",
 	};
 	struct ec_desc_word *w = ec_desc_next(d);
 	s64 every = 1;
@@ -49,6 +49,6 @@ int ec_desc_eoe_fault(struct ec_desc *d, struct ec_sim_fault *f)
 		f->arg2 = (u32)every;
 		return 0;
 	}
-	return ec_desc_fail(d, "invalid eoe fault: expected good, interleave, stamp, short, lost, offset, number, endless, size, flood, spoof or ethercat",
+	return ec_desc_fail(d, "invalid eoe fault: expected good, interleave, stamp, short, lost, offset, number, endless, size, flood, spoof, ethercat, udp or refuse",
 			    NULL, "");
 }

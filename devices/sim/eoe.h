@@ -121,6 +121,7 @@ struct ec_app_tcp {
  * @alternate: of two frames on their way at once: send of the second one
  * @number: of the next frame
  * @begun: frames begun since the fault, for those that it does not concern
+ * @asked: the same of frames from the master
  * @isn: begin of the next connection
  * @received: whole frames from the master
  * @bad: fragments that were refused
@@ -144,6 +145,7 @@ struct ec_app_eoe {
 	bool alternate;
 	u8 number;
 	u32 begun;
+	u32 asked;
 	u32 isn;
 	u32 received;
 	u32 bad;
@@ -201,6 +203,7 @@ void ec_app_http(struct ec_app *app, struct ec_app_tcp *c, const u8 *data, u16 l
 
 /* eoe_fault.c */
 void ec_app_eoe_fill(struct ec_app *app, u64 now);
+bool ec_app_eoe_refuses(struct ec_app *app, const struct ec_eoe_fragment *part);
 bool ec_app_eoe_spoil(struct ec_app *app, struct ec_app_eoe_frame *f,
 		      struct ec_eoe_fragment *part);
 bool ec_app_eoe_endless(struct ec_app *app, struct ec_app_eoe_frame *f,

@@ -158,22 +158,25 @@ static void remove(struct ec_app_eoe *e, u32 at)
  * @len: bytes at @rx
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EINVAL: it is refused, by a fault.
  */
-void ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len)
+int ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len)
 {
 	struct ec_app_eoe *e = app->eoe;
 	struct ec_eoe_fragment f;
 	int ret;
 
 	if (!ec_app_eoe_runs(app))
-		return;
+		return 0;
 	ret = ec_eoe_fragment_decode(rx, len, &f);
+	if (!ret && ec_app_eoe_refuses(app, &f))
+		return -EINVAL;
 	if (!ret)
 		ret = ec_eoe_part_add(&e->in, e->in_data, sizeof(e->in_data), &f);
 	if (ret < 0)
 		e->bad++;
 	if (ret < EC_APP_ETH_HDR)
-		return;
+		return 0;
 	e->received++;
 	app->esc->own.mbox_ns += app->response_ns;
 	e->heard = true;
@@ -182,13 +185,15 @@ void ec_app_eoe_fragment(struct ec_app *app, const u8 *rx, size_t len)
 		ec_app_eoe_out(app, e->in_data, (u16)ret);
 	else
 		ec_app_eoe_host(app, e->in_data, (u16)ret, app->mbox.now);
+	return 0;
 }
 
 /**
  * ec_app_eoe_waits() - is a fragment of a frame in the mailbox
  * @app: slave
  *
- * It has no reply, so that it can be taken while a message to the master waits.
+ * It has no reply, so that it can be taken while a message to the master waits. One that may be
+ * refused has to wait.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: true: there is one, with a valid header.
@@ -198,7 +203,8 @@ bool ec_app_eoe_waits(const struct ec_app *app)
 	const struct ec_sm *p = &app->esc->sm[0].page;
 	const u8 *h = app->esc->mem + p->start;
 
-	return ec_app_eoe_runs(app) && ec_esc_sm_readable(app->esc, 0) &&
+	return ec_app_eoe_runs(app) && app->esc->fault.eoe != EC_SIM_EOE_REFUSE &&
+	       ec_esc_sm_readable(app->esc, 0) &&
 	       (p->control & EC_SM_MODE_MASK) == EC_SM_MODE_MAILBOX &&
 	       min(p->len, app->mbox.cap) >= EC_MBOX_HDR + EC_EOE_HDR &&
 	       get_unaligned_le16(h) >= EC_EOE_HDR &&
@@ -280,6 +286,17 @@ static int write_part(struct ec_app *app, u32 at, u8 *tx, size_t cap)
 	return max(ret, 0);
 }
 
+/*
+ * May a fragment be sent? Not while messages are lost: those of a frame without end would be lost
+ * one after the other without end, all at one time.
+ */
+static bool sends(const struct ec_app *app)
+{
+	const struct ec_esc_fault *f = &app->esc->fault;
+
+	return ec_app_eoe_runs(app) && (f->mailbox != EC_SIM_MAILBOX_LOST || f->mailbox_after);
+}
+
 /**
  * ec_app_eoe_next() - the next fragment to the master
  * @app: slave
@@ -294,7 +311,7 @@ int ec_app_eoe_next(struct ec_app *app, u8 *tx, size_t cap, u64 now)
 {
 	struct ec_app_eoe *e = app->eoe;
 
-	if (!ec_app_eoe_runs(app))
+	if (!sends(app))
 		return 0;
 	ec_app_eoe_fill(app, now);
 	while (e->n && e->frames[e->order[0]].due <= now) {
@@ -339,7 +356,7 @@ u64 ec_app_eoe_due(const struct ec_app *app)
 	if (!ec_app_eoe_runs(app))
 		return at;
 	/* a message that is on its way has its own time, and the next one follows it */
-	if (e->n && !app->mbox.out_len && ec_esc_sm_writable(app->esc, 1))
+	if (e->n && sends(app) && !app->mbox.out_len && ec_esc_sm_writable(app->esc, 1))
 		at = e->frames[e->order[0]].due;
 	return min(at, ec_app_tcp_due(e));
 }

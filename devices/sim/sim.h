@@ -214,6 +214,8 @@ enum ec_sim_mailbox_fault {
  * @EC_SIM_EOE_FLOOD: broadcasts without end
  * @EC_SIM_EOE_SPOOF: the source is the address of the station that was heard last
  * @EC_SIM_EOE_ETHERCAT: EtherCAT frames
+ * @EC_SIM_EOE_UDP: the same in UDP
+ * @EC_SIM_EOE_REFUSE: the first fragment of a frame from the master gets an error reply
  * @EC_SIM_EOE_FAULTS: number of faults
  */
 enum ec_sim_eoe_fault {
@@ -229,6 +231,8 @@ enum ec_sim_eoe_fault {
 	EC_SIM_EOE_FLOOD,
 	EC_SIM_EOE_SPOOF,
 	EC_SIM_EOE_ETHERCAT,
+	EC_SIM_EOE_UDP,
+	EC_SIM_EOE_REFUSE,
 	EC_SIM_EOE_FAULTS
 };
 

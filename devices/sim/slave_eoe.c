@@ -34,7 +34,7 @@ static void take(struct ec_app_ip *ip, const struct ec_eoe_ip *p)
  * unsupported. Fragments of frames vanish in a slave without Ethernet.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: bytes at @tx; 0: no answer; -EMSGSIZE: the message is too short, or
+ * Return: bytes at @tx; 0: no answer; -EINVAL: a fragment is refused; -EMSGSIZE: the message is too short, or
  * the answer too long.
  */
 int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
@@ -59,8 +59,7 @@ int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 		return ec_eoe_result_encode(tx, cap, EC_EOE_SET_FILTER_RESP,
 					    EC_EOE_NO_FILTER);
 	case EC_EOE_FRAGMENT:
-		ec_app_eoe_fragment(app, rx, len);
-		return 0;
+		return ec_app_eoe_fragment(app, rx, len);
 	default:
 		return type < 0 ? type : 0;
 	}

@@ -21,6 +21,7 @@ struct seen {
 	u32 shorter;
 	u32 pongs;
 	u32 ethercat;
+	u32 udp;
 	u32 noise;
 	u32 from_host;
 };
@@ -40,6 +41,7 @@ static struct seen listen(struct host *h, u32 ms, u16 data)
 		s.shorter += len < EC_EOE_FRAME_MIN;
 		s.pongs += host_is_pong(p, len, data);
 		s.ethercat += p[12] == 0x88 && p[13] == 0xa4;
+		s.udp += p[12] == 8 && ec_eoe_is_ethercat(p, len);
 		s.noise += p[12] == 0x88 && p[13] == 0xb5;
 		s.from_host += !memcmp(p + 6, host_mac, 6);
 	}
@@ -222,10 +224,48 @@ static void sim_app_eoe_fault_sends_forbidden_frames(struct kunit *test)
 	fault(test, h, "eoe s ethercat");
 	KUNIT_EXPECT_EQ(test, listen(h, 5, 0).ethercat, 1u);
 	good(test, h);
+	s = ping_with(test, h, "eoe s udp", 100);
+	KUNIT_EXPECT_EQ(test, s.pongs, 1u);
+	KUNIT_EXPECT_EQ(test, s.udp, 1u);
+	good(test, h);
 	fault(test, h, "eoe s spoof");
 	KUNIT_EXPECT_EQ(test, listen(h, 5, 0).from_host, 1u);
 	good(test, h);
 	KUNIT_EXPECT_EQ(test, listen(h, 5, 0).from_host, 0u);
+}
+
+/* Each third frame is lost, for an error reply. */
+static void sim_app_eoe_fault_refuses_frames(struct kunit *test)
+{
+	struct host *h = host_new(test, SLAVE, 128);
+	u8 p[100];
+	u32 pongs = 0;
+
+	fault(test, h, "eoe s refuse every=3");
+	listen(h, 10, 0);
+	h->bad = 0;
+	for (u32 i = 0; i < 9; i++) {
+		KUNIT_EXPECT_TRUE(test, host_send(h, p, host_ping(h, p, 50)));
+		pongs += listen(h, 20, 50).pongs;
+	}
+	KUNIT_EXPECT_EQ(test, pongs, 6u);
+	KUNIT_EXPECT_EQ(test, h->bad, 3u);
+	good(test, h);
+}
+
+/* A flood is no endless loop where each message is lost. */
+static void sim_app_eoe_fault_ends_where_messages_are_lost(struct kunit *test)
+{
+	struct host *h = host_new(test, SLAVE, 128);
+
+	fault(test, h, "mailbox s lost");
+	fault(test, h, "eoe s flood");
+	KUNIT_EXPECT_EQ(test, listen(h, 20, 0).frames, 0u);
+	fault(test, h, "eoe s endless");
+	KUNIT_EXPECT_EQ(test, listen(h, 20, 0).frames, 0u);
+	fault(test, h, "mailbox s good");
+	listen(h, 20, 0);
+	good(test, h);
 }
 
 static void sim_app_eoe_fault_needs_ethernet(struct kunit *test)
@@ -248,6 +288,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_app_eoe_fault_omits_padding),
 	KUNIT_CASE(sim_app_eoe_fault_floods),
 	KUNIT_CASE(sim_app_eoe_fault_sends_forbidden_frames),
+	KUNIT_CASE(sim_app_eoe_fault_refuses_frames),
+	KUNIT_CASE(sim_app_eoe_fault_ends_where_messages_are_lost),
 	KUNIT_CASE(sim_app_eoe_fault_needs_ethernet),
 	{ }
 };
