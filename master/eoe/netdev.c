@@ -5,9 +5,9 @@
  */
 #include <linux/etherdevice.h>
 #include <linux/ethtool.h>
-#include <linux/if_vlan.h>
 #include <linux/jhash.h>
 #include <linux/nsproxy.h>
+#include <linux/rtnetlink.h>
 #include <linux/skbuff.h>
 #include "../base/once64.h"
 #include "../bus/slave.h"
@@ -25,19 +25,10 @@ static struct ec_eoe_netdev *of_port(struct ec_eoe_port *p)
 	return container_of(p, struct ec_eoe_netdev, port);
 }
 
-/* Is it an EtherCAT frame, behind VLAN tags perhaps? */
+/* Slaves would take it as a frame of the fieldbus. */
 static bool is_ethercat(const struct sk_buff *skb)
 {
-	unsigned int at = 2 * ETH_ALEN;
-	const u8 *p = skb->data;
-	u16 type;
-
-	for (; at + 2 <= skb_headlen(skb); at += VLAN_HLEN) {
-		type = get_unaligned_be16(p + at);
-		if (!eth_type_vlan(htons(type)))
-			return type == EC_ETHERTYPE;
-	}
-	return false;
+	return ec_eoe_is_ethercat(skb->data, skb_headlen(skb));
 }
 
 /* frames --------------------------------------------------------------------*/
@@ -169,10 +160,21 @@ static void netdev_join(struct ec_eoe_netdev *d, struct ec_slave *s)
 		return;
 	}
 	d->slave = ec_slave_ref(s);
+	d->refused = ec_read64(&d->port.counts.refused);
 	d->stands = 0;
 	d->seen = fragments(d);
 	netif_wake_queue(d->nd);
 	netif_carrier_on(d->nd);
+}
+
+/* Said once; the slave may refuse each frame. */
+static void report_refusal(struct ec_eoe_netdev *d)
+{
+	lockdep_assert_held(&d->lock);
+	if (d->refusing || ec_read64(&d->port.counts.refused) == d->refused)
+		return;
+	d->refusing = true;
+	ec_slave_warn(d->slave, "refuses Ethernet frames (EoE) by mailbox errors\n");
 }
 
 /* Has the port to be left? -errno of its mailbox, or 0. */
@@ -185,6 +187,7 @@ static int netdev_judge(struct ec_eoe_netdev *d)
 	if (seen != d->seen)
 		d->again_ms = 0;
 	d->seen = seen;
+	report_refusal(d);
 	return READ_ONCE(d->port.err) ?: (d->stands > STANDS ? -ETIMEDOUT : 0);
 }
 
@@ -438,13 +441,25 @@ struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_e
 }
 
 /**
- * ec_eoe_netdev_destroy() - remove a network device
- * @d: device
+ * ec_eoe_netdev_destroy() - remove network devices
+ * @old: devices, by their member @old; may be empty
+ *
+ * All at once: each removal alone would wait for RCU several times.
  *
  * Context: Process. Takes rtnl.
  */
-void ec_eoe_netdev_destroy(struct ec_eoe_netdev *d)
+void ec_eoe_netdev_destroy(struct list_head *old)
 {
-	unregister_netdev(d->nd);
-	free_netdev(d->nd);
+	struct ec_eoe_netdev *d, *next;
+	LIST_HEAD(nds);
+
+	if (list_empty(old))
+		return;
+	rtnl_lock();
+	list_for_each_entry(d, old, old)
+		unregister_netdevice_queue(d->nd, &nds);
+	unregister_netdevice_many(&nds);
+	rtnl_unlock();
+	list_for_each_entry_safe(d, next, old, old)
+		free_netdev(d->nd);
 }

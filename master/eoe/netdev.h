@@ -6,6 +6,7 @@
 #include <linux/if.h>
 #include <linux/mutex.h>
 #include <linux/netdevice.h>
+#include "ids.h"
 #include "port.h"
 
 struct ec_eoe;
@@ -13,30 +14,9 @@ struct ec_ioc_eoe;
 struct ec_slave;
 
 /**
- * struct ec_eoe_id - what a slave is called as a network device
- * @device: device number
- * @alias: alias, 0: none
- * @serial: serial number, 0: none
- * @position: ring position
- * @vendor: vendor ID
- * @product: product code
- * @alias_shared: another slave with EoE has this alias too
- * @serial_shared: the same for the serial number
- */
-struct ec_eoe_id {
-	u64 device;
-	u16 alias;
-	u32 serial;
-	u16 position;
-	u32 vendor;
-	u32 product;
-	bool alias_shared;
-	bool serial_shared;
-};
-
-/**
  * struct ec_eoe_netdev - private part of a network device
  * @nd: network device
+ * @old: in a list of those that are removed
  * @eoe: those of the master; immutable
  * @id: its slave
  * @lock: protects @slave and @open, and attaching; inside rtnl
@@ -46,6 +26,8 @@ struct ec_eoe_id {
  *	follows
  * @again_ms: distance of the last two tries, 0: the port works
  * @seen: fragments of @port both ways when it was looked at last
+ * @refused: fragments that slaves had refused before @slave was attached
+ * @refusing: it was said that the slave refuses frames
  * @stands: looks in a row at which the slave had taken no frame
  * @connected: the list has the slave
  * @port: way of the frames
@@ -60,6 +42,7 @@ struct ec_eoe_id {
  */
 struct ec_eoe_netdev {
 	struct net_device *nd;
+	struct list_head old;
 	struct ec_eoe *eoe;
 	struct ec_eoe_id id;
 	struct mutex lock;
@@ -68,6 +51,8 @@ struct ec_eoe_netdev {
 	u64 again_ns;
 	u32 again_ms;
 	u64 seen;
+	u64 refused;
+	bool refusing;
 	u8 stands;
 	bool connected;
 	struct ec_eoe_port port;
@@ -85,7 +70,7 @@ struct ec_eoe_netdev {
 
 struct ec_eoe_netdev *ec_eoe_netdev_create(struct ec_eoe *eoe, const struct ec_eoe_id *id,
 					   unsigned int choice);
-void ec_eoe_netdev_destroy(struct ec_eoe_netdev *d);
+void ec_eoe_netdev_destroy(struct list_head *old);
 void ec_eoe_netdev_room(struct ec_eoe_port *p);
 void ec_eoe_netdev_deliver(struct ec_eoe_port *p, struct sk_buff *skb);
 void ec_eoe_netdev_failed(struct ec_eoe_port *p);

@@ -3,82 +3,21 @@
  * The network devices follow the list of slaves, in a work behind the monitor. A network device
  * belongs to a device number, so it finds its slave again wherever that is connected. While it is
  * up it stays when its slave is lost, without a carrier: addresses, bridges and rules remain.
+ *
+ * Only the work changes the table, and ec_eoe_stop() behind it, so no lock is held while a device
+ * is registered or removed, which waits for its users.
  */
 #include <linux/etherdevice.h>
-#include <linux/rtnetlink.h>
 #include <linux/slab.h>
 #include "../bus/known.h"
 #include "../bus/slave.h"
 #include "../link/device.h"
 #include "../link/links.h"
-#include "netdevs.h"
+#include "ids.h"
 #include "netdev.h"
+#include "netdevs.h"
 
-#define STEP		64	/* slaves in a section of a reader */
 #define FOLLOW		(HZ / 10)	/* distance of the looks at slaves of devices that are up */
-
-/* the list ------------------------------------------------------------------*/
-
-static bool has_eoe(const struct ec_slave *s)
-{
-	return ec_mbox_present(&s->mbox) && s->info.protocols & EC_SII_PROTO_EOE;
-}
-
-static void identify(const struct ec_slave *s, struct ec_eoe_id *id)
-{
-	*id = (struct ec_eoe_id){
-		.device = s->device, .alias = s->alias, .serial = s->info.serial,
-		.position = s->position, .vendor = s->info.vendor, .product = s->info.product,
-	};
-}
-
-/* Slaves with EoE; NULL: there is no memory, or the list changes at present. To be freed. */
-static struct ec_eoe_id *read_ids(struct ec_bus *bus, u32 lists, unsigned int *n)
-{
-	unsigned int i = 0, size = READ_ONCE(bus->n_slaves);
-	struct ec_eoe_id *ids = kvcalloc(size + 1, sizeof(*ids), GFP_KERNEL);
-	bool more = ids;
-
-	*n = 0;
-	while (more) {
-		unsigned int end = i + STEP;
-
-		cond_resched();
-		if (ec_show_begin(&bus->base->show))
-			break;
-		if (READ_ONCE(bus->lists) != lists || ec_bus_scan_busy(bus) ||
-		    bus->n_slaves > size) {
-			ec_show_end(&bus->base->show);
-			break;
-		}
-		for (; i < min(end, bus->n_slaves); i++)
-			if (has_eoe(bus->slaves[i]))
-				identify(bus->slaves[i], &ids[(*n)++]);
-		more = i < bus->n_slaves;
-		ec_show_end(&bus->base->show);
-		if (!more)
-			return ids;
-	}
-	kvfree(ids);
-	return NULL;
-}
-
-/* A name that two slaves would have is none. */
-static void mark_shared(struct ec_eoe_id *ids, unsigned int n)
-{
-	unsigned int i, k;
-
-	for (i = 0; i < n; i++) {
-		for (k = i + 1; k < n; k++) {
-			if (ids[i].alias && ids[k].alias == ids[i].alias)
-				ids[i].alias_shared = ids[k].alias_shared = true;
-			if (ids[i].serial && ids[k].serial == ids[i].serial)
-				ids[i].serial_shared = ids[k].serial_shared = true;
-		}
-	}
-}
-
-/* devices -------------------------------------------------------------------*/
 
 static bool wanted(struct ec_eoe *eoe, u64 device)
 {
@@ -87,29 +26,9 @@ static bool wanted(struct ec_eoe *eoe, u64 device)
 	return wish ? xa_to_value(wish) == EC_EOE_WISH_ON : eoe->automatic;
 }
 
-static const struct ec_eoe_id *find_id(const struct ec_eoe_id *ids, unsigned int n, u64 device)
-{
-	unsigned int i;
-
-	for (i = 0; i < n; i++)
-		if (ids[i].device == device)
-			return &ids[i];
-	return NULL;
-}
-
-/*
- * Is it the same slave? One that was without power may come with a new device number, but has its
- * alias or serial number; one without both is known by its place alone.
- */
-static bool is_same_slave(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
-{
-	return a->vendor == b->vendor && a->product == b->product && a->alias == b->alias &&
-	       a->serial == b->serial && (a->alias || a->serial || a->position == b->position);
-}
-
 static bool has_same_name(const struct ec_eoe_id *a, const struct ec_eoe_id *b)
 {
-	return is_same_slave(a, b) && a->alias_shared == b->alias_shared &&
+	return ec_eoe_ids_same(a, b) && a->alias_shared == b->alias_shared &&
 	       a->serial_shared == b->serial_shared;
 }
 
@@ -120,8 +39,8 @@ static const struct ec_eoe_id *find_only(struct ec_eoe *eoe, const struct ec_eoe
 	const struct ec_eoe_id *found = NULL;
 	unsigned int i;
 
-	for (i = 0; i < n; i++) {
-		if (xa_load(&eoe->table, ids[i].device) || !is_same_slave(&ids[i], lost))
+	for (i = ec_eoe_ids_first(ids, n, lost); i < n && ec_eoe_ids_same(&ids[i], lost); i++) {
+		if (xa_load(&eoe->table, ids[i].device))
 			continue;
 		if (found)
 			return NULL;
@@ -139,25 +58,29 @@ static void adopt_one(struct ec_eoe *eoe, struct ec_eoe_netdev *d, const struct 
 	unsigned long old = d->id.device;
 	void *wish;
 
-	lockdep_assert_held(&eoe->lock);
 	if (!id || xa_err(xa_store(&eoe->table, id->device, d, GFP_KERNEL)))
 		return;
 	xa_erase(&eoe->table, old);
 	d->id.device = id->device;
+	mutex_lock(&eoe->lock);
 	wish = xa_erase(&eoe->wishes, old);
 	if (wish)
 		xa_store(&eoe->wishes, id->device, wish, GFP_KERNEL);
+	mutex_unlock(&eoe->lock);
 }
 
-static void adopt_lost(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned int n)
+static void adopt_lost(struct ec_eoe *eoe, struct ec_eoe_id *ids, unsigned int n)
 {
 	struct ec_eoe_netdev *d;
 	unsigned long device;
 
-	lockdep_assert_held(&eoe->lock);
 	xa_for_each(&eoe->table, device, d)
-		if (!find_id(ids, n, device))
+		WRITE_ONCE(d->connected, ec_eoe_ids_find(ids, n, device));
+	ec_eoe_ids_by_unit(ids, n);
+	xa_for_each(&eoe->table, device, d)
+		if (!d->connected)
 			adopt_one(eoe, d, ids, n);
+	ec_eoe_ids_by_device(ids, n);
 }
 
 /*
@@ -169,17 +92,18 @@ static void remove_old(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigned
 	const struct ec_eoe_id *id;
 	struct ec_eoe_netdev *d;
 	unsigned long device;
+	LIST_HEAD(old);
 
-	lockdep_assert_held(&eoe->lock);
 	xa_for_each(&eoe->table, device, d) {
-		id = find_id(ids, n, device);
+		id = ec_eoe_ids_find(ids, n, device);
 		if (wanted(eoe, device) &&
 		    (READ_ONCE(d->nd->flags) & IFF_UP ||
 		     (id && has_same_name(id, &d->id))))
 			continue;
 		xa_erase(&eoe->table, device);
-		ec_eoe_netdev_destroy(d);
+		list_add_tail(&d->old, &old);
 	}
+	ec_eoe_netdev_destroy(&old);
 }
 
 /* Which slaves are connected, and what they are called now. */
@@ -189,9 +113,8 @@ static void note_slaves(struct ec_eoe *eoe, const struct ec_eoe_id *ids, unsigne
 	struct ec_eoe_netdev *d;
 	unsigned long device;
 
-	lockdep_assert_held(&eoe->lock);
 	xa_for_each(&eoe->table, device, d) {
-		id = find_id(ids, n, device);
+		id = ec_eoe_ids_find(ids, n, device);
 		WRITE_ONCE(d->connected, id);
 		if (id)
 			d->id = *id;
@@ -202,9 +125,9 @@ static int create_one(struct ec_eoe *eoe, const struct ec_eoe_id *id)
 {
 	struct ec_eoe_netdev *d;
 	unsigned int choice = 0;
+	LIST_HEAD(old);
 	int ret;
 
-	lockdep_assert_held(&eoe->lock);
 	/* an index may have 32 bits */
 	if (id->device != (unsigned long)id->device)
 		return -ENOSPC;
@@ -214,8 +137,10 @@ static int create_one(struct ec_eoe *eoe, const struct ec_eoe_id *id)
 	if (IS_ERR(d))
 		return PTR_ERR(d);
 	ret = xa_err(xa_store(&eoe->table, id->device, d, GFP_KERNEL));
-	if (ret)
-		ec_eoe_netdev_destroy(d);
+	if (ret) {
+		list_add(&d->old, &old);
+		ec_eoe_netdev_destroy(&old);
+	}
 	return ret;
 }
 
@@ -242,7 +167,6 @@ static bool create_new(struct ec_eoe *eoe, struct ec_bus *bus, const struct ec_e
 	unsigned int i;
 	int ret;
 
-	lockdep_assert_held(&eoe->lock);
 	for (i = 0; i < n && all && READ_ONCE(eoe->bus); i++) {
 		if (!wanted(eoe, ids[i].device) || xa_load(&eoe->table, ids[i].device))
 			continue;
@@ -264,13 +188,11 @@ static bool compare_devices(struct ec_eoe *eoe, struct ec_bus *bus)
 	unsigned int n;
 	bool all;
 
-	lockdep_assert_held(&eoe->lock);
 	if (lists == eoe->synced && !READ_ONCE(eoe->stale))
 		return true;
 	WRITE_ONCE(eoe->stale, false);
-	ids = read_ids(bus, lists, &n);
+	ids = ec_eoe_ids_read(bus, lists, &n);
 	if (ids) {
-		mark_shared(ids, n);
 		adopt_lost(eoe, ids, n);
 		remove_old(eoe, ids, n);
 		all = create_new(eoe, bus, ids, n);
@@ -309,7 +231,6 @@ static void follow_slaves(struct work_struct *work)
 
 	if (!bus)
 		return;
-	mutex_lock(&eoe->lock);
 	again = !compare_devices(eoe, bus);
 	xa_for_each(&eoe->table, device, d) {
 		if (!READ_ONCE(d->open))
@@ -321,7 +242,6 @@ static void follow_slaves(struct work_struct *work)
 		if (s)
 			ec_slave_unref(s);
 	}
-	mutex_unlock(&eoe->lock);
 	if (again)
 		queue_delayed_work(system_unbound_wq, &eoe->work, FOLLOW);
 }
@@ -371,15 +291,15 @@ void ec_eoe_stop(struct ec_eoe *eoe)
 {
 	struct ec_eoe_netdev *d;
 	unsigned long device;
+	LIST_HEAD(old);
 
 	WRITE_ONCE(eoe->bus, NULL);
 	cancel_delayed_work_sync(&eoe->work);
-	mutex_lock(&eoe->lock);
 	xa_for_each(&eoe->table, device, d) {
 		xa_erase(&eoe->table, device);
-		ec_eoe_netdev_destroy(d);
+		list_add_tail(&d->old, &old);
 	}
-	mutex_unlock(&eoe->lock);
+	ec_eoe_netdev_destroy(&old);
 	/* a device that was closed just now has queued it */
 	cancel_delayed_work_sync(&eoe->work);
 	xa_destroy(&eoe->table);
@@ -421,7 +341,7 @@ void ec_eoe_look(struct ec_eoe *eoe)
  * @wish: EC_EOE_WISH_ON; EC_EOE_WISH_OFF: also if it is up; EC_EOE_WISH_AUTO: as all others
  *
  * Context: Process. May sleep.
- * Return: 0; -ENODEV: not at present; -ENOSPC; -ENOMEM; -EINTR.
+ * Return: 0; -ENODEV: not at present; -ENOSPC; -ENOMEM.
  */
 int ec_eoe_wish(struct ec_eoe *eoe, u64 device, unsigned int wish)
 {
@@ -431,9 +351,7 @@ int ec_eoe_wish(struct ec_eoe *eoe, u64 device, unsigned int wish)
 		return -ENODEV;
 	if (device != (unsigned long)device)
 		return -ENOSPC;
-	/* the removal of a device waits for its users */
-	if (mutex_lock_interruptible(&eoe->lock))
-		return -EINTR;
+	mutex_lock(&eoe->lock);
 	ret = xa_err(xa_store(&eoe->wishes, device,
 			      wish == EC_EOE_WISH_AUTO ? NULL : xa_mk_value(wish), GFP_KERNEL));
 	mutex_unlock(&eoe->lock);

@@ -16,7 +16,7 @@ struct ec_ioc_eoe;
 /**
  * struct ec_eoe - network devices of the slaves of a master
  *
- * A reader of @table takes no lock: a device is freed by unregister_netdev(), after a grace period.
+ * A reader of @table takes no lock: a device is freed a grace period after it has left it.
  */
 struct ec_eoe {
 	/** @bus: slaves; NULL: nothing is to be done (any more) */
@@ -27,15 +27,15 @@ struct ec_eoe {
 	bool automatic;
 	/** @main: address of the main device, when the first device was made */
 	u8 main[ETH_ALEN];
-	/** @lock: protects what follows; outside rtnl */
+	/** @lock: protects changes of @wishes */
 	struct mutex lock;
-	/** @table: struct ec_eoe_netdev by device number of their slaves */
-	struct xarray table;
 	/** @wishes: EC_EOE_WISH_ON or EC_EOE_WISH_OFF by device number */
 	struct xarray wishes;
-	/** @synced: the list of slaves, as counted by @bus->lists, that @table agrees with */
+	/** @table: struct ec_eoe_netdev by device number of their slaves; changed by @work */
+	struct xarray table;
+	/** @synced: the list of slaves, counted by @bus->lists, that @table agrees with; by @work */
 	u32 synced;
-	/** @stale: @table has to be compared in any case; may be set without the lock */
+	/** @stale: @table has to be compared in any case; may be set by others */
 	bool stale;
 	/** @work: makes, removes and connects devices */
 	struct delayed_work work;

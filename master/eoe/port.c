@@ -199,8 +199,8 @@ static void rx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 	if (u->err) {
 		port_fail(p, u->err);
 	} else if (u->got_type == EC_MBOX_ERR) {
+		/* it costs a frame: the slave drops the others of its fragments */
 		port_add(p, &p->counts.refused, 1);
-		port_fail(p, -EPROTO);
 	} else if (u->got_type == EC_MBOX_EOE) {
 		/* one entry is where the next message is written */
 		if (p->got + 1 - p->taken == EC_EOE_MESSAGES) {
