@@ -174,7 +174,25 @@ static bool is_mesh(const struct net_device *nd)
 	return nd->rtnl_link_ops && !strcmp(nd->rtnl_link_ops->kind, "batadv");
 }
 
-static int check(const struct net_device *nd)
+/* EtherCAT frames do not pass such a device. */
+static bool is_eoe(const struct net_device *nd)
+{
+	return nd->dev.type && !strcmp(nd->dev.type->name, "ethercat_eoe");
+}
+
+static int is_eoe_below(struct net_device *nd, struct netdev_nested_priv *priv)
+{
+	return is_eoe(nd);
+}
+
+/* Does it send frames of slaves (EoE), as a bridge with such a port does? */
+static bool has_eoe(struct net_device *nd)
+{
+	ASSERT_RTNL();
+	return is_eoe(nd) || netdev_walk_all_lower_dev(nd, is_eoe_below, NULL);
+}
+
+static int check(struct net_device *nd)
 {
 	if (is_mesh(nd)) {
 		pr_err_ratelimited("ec_generic: %s: batman-adv mesh loses EtherCAT frames; use an Ethernet interface\n",
@@ -186,8 +204,13 @@ static int check(const struct net_device *nd)
 				   nd->name, nd->mtu, ETH_DATA_LEN, nd->name, ETH_DATA_LEN);
 		return -EMSGSIZE;
 	}
-	if (netdev_is_rx_handler_busy((struct net_device *)nd)) {
+	if (netdev_is_rx_handler_busy(nd)) {
 		pr_err_ratelimited("ec_generic: %s: in use by a bridge, bond, team or macvlan; release it first\n",
+				   nd->name);
+		return -EBUSY;
+	}
+	if (has_eoe(nd)) {
+		pr_err_ratelimited("ec_generic: %s: network devices of slaves (EoE) are its ports; take them out first\n",
 				   nd->name);
 		return -EBUSY;
 	}
@@ -424,12 +447,6 @@ static bool is_free(struct net_device *nd)
 	return !netdev_master_upper_dev_get(nd) && !(in && rtnl_dereference(in->ifa_list));
 }
 
-/* EtherCAT frames do not pass such a device. */
-static bool is_eoe(const struct net_device *nd)
-{
-	return nd->dev.type && !strcmp(nd->dev.type->name, "ethercat_eoe");
-}
-
 /* Other namespaces have names and addresses of their own. */
 static bool wanted(struct net_device *nd)
 {
@@ -523,6 +540,29 @@ static int change_mtu(const struct net_device *nd, u32 was)
 	return notifier_from_errno(-EBUSY);
 }
 
+/* Are frames that a port of @nd receives sent to the fieldbus? */
+static bool leads_to_fieldbus(struct net_device *nd)
+{
+	const struct gen *g;
+	bool leads = false;
+
+	ASSERT_RTNL();
+	rcu_read_lock();
+	list_for_each_entry(g, &devices, list)
+		leads |= g->claimed && (g->nd == nd || netdev_has_upper_dev_all_rcu(nd, g->nd));
+	rcu_read_unlock();
+	return leads;
+}
+
+/* The ports of a bridge that is the device of a master are on the line of its slaves. */
+static int prepare_upper(struct net_device *nd, const struct netdev_notifier_changeupper_info *i)
+{
+	if (!i->linking || !leads_to_fieldbus(i->upper_dev) || !has_eoe(nd))
+		return NOTIFY_DONE;
+	NL_SET_ERR_MSG_MOD(i->info.extack, "frames of slaves (EoE) must not get to the fieldbus");
+	return notifier_from_errno(-EBUSY);
+}
+
 static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 {
 	struct net_device *nd = netdev_notifier_info_to_dev(ptr);
@@ -534,6 +574,8 @@ static int event(struct notifier_block *nb, unsigned long what, void *ptr)
 	g = find(nd);
 	if (what == NETDEV_PRECHANGEMTU)
 		return prepare_mtu(nd);
+	if (what == NETDEV_PRECHANGEUPPER)
+		return prepare_upper(nd, ptr);
 	if (g && what == NETDEV_CHANGEMTU)
 		return change_mtu(nd, ((struct netdev_notifier_info_ext *)ptr)->ext.mtu);
 	if (g && what == NETDEV_CHANGENAME)
