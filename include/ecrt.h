@@ -2438,9 +2438,10 @@ EC_PUBLIC_API int ecrt_slave_config_flag(ec_slave_config_t *sc,
  *
  * This function and the five below configure one EoE "set IP parameter" request (ETG.1000.6
  * clause 5.7). The master sends it each time it configures the slave, in PREOP after the
- * SDOs; values that are not configured are marked as not included. A slave that refuses the
- * request, or has no EoE, stays in PREOP; "ethercat slaves -v" and the kernel log show the
- * reason.
+ * SDOs; values that are not configured are marked as not included. Between configured values
+ * it repeats those of the slave, since slaves read gaps in different ways; a slave without a
+ * MAC address gets one. A slave that refuses the request, or has no EoE, stays in PREOP;
+ * "ethercat slaves -v" and the kernel log show the reason.
  *
  * Context: Process. May sleep.
  * Return: 0; %-EINVAL an argument is NULL.

@@ -309,11 +309,15 @@ struct ec_app_mbox {
  * @now: what it was given since power-on
  * @sets: how often
  * @refuse: it does not support IP
+ * @packed: absent fields have no place, in requests and in its answers
+ * @mute: it does not answer requests to get them
  */
 struct ec_app_ip {
 	struct ec_eoe_ip now;
 	u32 sets;
 	bool refuse;
+	bool packed;
+	bool mute;
 };
 
 /**
@@ -445,6 +449,8 @@ struct ec_app {
  * @clock_start: its clock at power-on
  * @eeprom_emulated: its CPU stands in for the EEPROM
  * @no_ip: its EoE does not support IP
+ * @ip_packed: absent IP parameters have no place in messages
+ * @ip_mute: it does not answer requests to get IP parameters
  * @foe_busy: BUSY answers of its FoE after each page of flash
  * @foe_page_ns: its FoE is busy for so long after each page of flash
  * @foe_header: file content its FoE accepts begins with it, not terminated
@@ -473,6 +479,8 @@ struct ec_app_config {
 	u64 clock_start;
 	bool eeprom_emulated;
 	bool no_ip;
+	bool ip_packed;
+	bool ip_mute;
 	u8 foe_busy;
 	u64 foe_page_ns;
 	const char *foe_header;

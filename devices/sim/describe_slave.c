@@ -98,7 +98,6 @@ int ec_desc_config(struct ec_desc *d, struct ec_app_config *c, struct ec_desc_ca
 	u64 delay = 0, clock = 0;
 	s64 alias = 0, serial = 0, drift = 0;
 	struct ec_desc_word w;
-	bool ip = true;
 	int ret;
 
 	c->response_ns = d->response_ns;
@@ -139,10 +138,13 @@ int ec_desc_config(struct ec_desc *d, struct ec_app_config *c, struct ec_desc_ca
 	c->eeprom_emulated = ec_desc_is(&w, "emulated");
 	if (w.s && !c->eeprom_emulated && !ec_desc_is(&w, "chip"))
 		return ec_desc_fail(d, "invalid eeprom '", &w, "': expected chip or emulated");
-	ret = ec_desc_yes(d, "ip", &ip);
-	if (ret)
-		return ret;
-	c->no_ip = !ip;
+	w = ec_desc_value(d, "ip");
+	c->no_ip = ec_desc_is(&w, "no");
+	c->ip_packed = ec_desc_is(&w, "packed");
+	c->ip_mute = ec_desc_is(&w, "write");
+	if (w.s && !c->no_ip && !c->ip_packed && !c->ip_mute && !ec_desc_is(&w, "yes"))
+		return ec_desc_fail(d, "invalid ip '", &w,
+				    "': expected yes, no, packed or write");
 	w = ec_desc_value(d, "dc");
 	c->clock_bits = ec_desc_is(&w, "64") ? 64 : ec_desc_is(&w, "32") ? 32 :
 			ec_desc_is(&w, "delay") ? EC_APP_CLOCK_DELAY :

@@ -421,6 +421,8 @@ struct ec_app *ec_app_add(struct ec_sim *sim, struct ec_app_model *model,
 	app->op_timeout_ns = cfg->op_timeout_ns;
 	app->id_ns = cfg->id_ns;
 	app->ip.refuse = cfg->no_ip;
+	app->ip.packed = cfg->ip_packed;
+	app->ip.mute = cfg->ip_mute;
 	ec_app_eoe_init(app);
 	app->foe.busy = cfg->foe_busy;
 	app->foe.page_ns = cfg->foe_page_ns;

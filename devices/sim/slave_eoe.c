@@ -45,15 +45,19 @@ int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 
 	switch (type) {
 	case EC_EOE_SET_IP_REQ:
-		if (ec_eoe_ip_decode(rx, len, &p))
+		if (app->ip.packed ? ec_eoe_ip_decode_packed(rx, len, &p) :
+				     ec_eoe_ip_decode(rx, len, &p))
 			return -EMSGSIZE;
 		if (!result)
 			take(&app->ip, &p);
 		return ec_eoe_result_encode(tx, cap, EC_EOE_SET_IP_RESP, result);
 	case EC_EOE_GET_IP_REQ:
+		if (app->ip.mute)
+			return 0;
 		if (!result)
-			return ec_eoe_ip_encode(tx, cap, EC_EOE_GET_IP_RESP,
-						&app->ip.now);
+			return app->ip.packed ?
+			       ec_eoe_ip_encode_packed(tx, cap, EC_EOE_GET_IP_RESP, &app->ip.now) :
+			       ec_eoe_ip_encode(tx, cap, EC_EOE_GET_IP_RESP, &app->ip.now);
 		return ec_eoe_result_encode(tx, cap, EC_EOE_GET_IP_RESP, result);
 	case EC_EOE_SET_FILTER_REQ:
 		return ec_eoe_result_encode(tx, cap, EC_EOE_SET_FILTER_RESP,

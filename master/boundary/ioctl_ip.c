@@ -5,6 +5,7 @@
 #include "ioctl.h"
 #include "../session/session.h"
 #include "../bus/slave.h"
+#include "../bus/slave_ip.h"
 
 static_assert(EC_IP_ALL == EC_EOE_ALL && EC_IP_NAME == EC_EOE_NAME);
 static_assert(sizeof(struct ec_ip_params) == sizeof(struct ec_eoe_ip));
@@ -48,7 +49,7 @@ int ec_ioc_ip_set(struct ec_call *call)
 
 	if (ret)
 		return ret;
-	ret = ec_eoe_set_ip(&call->slave->mbox, eoe_ip(&i->params), &result);
+	ret = ec_slave_give_ip(call->slave, eoe_ip(&i->params), &result);
 	i->result = result;
 	return failed(call, i, ret);
 }

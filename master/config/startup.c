@@ -7,9 +7,9 @@
 #include "startup.h"
 #include "../base/limits.h"
 #include "../bus/result.h"
+#include "../bus/slave_ip.h"
 #include "../carry/xfer.h"
 #include "../mailbox/coe.h"
-#include "../mailbox/eoe.h"
 #include "../mailbox/mailbox.h"
 #include "../mailbox/soe.h"
 #include "../wire/coe.h"
@@ -162,7 +162,7 @@ static int put(struct ec_slave *s, const struct ec_startup *u, u32 size, u32 *co
 				   &limit);
 		break;
 	case EC_STARTUP_IP:
-		ret = ec_eoe_set_ip(&s->mbox, (const void *)u->data, &error);
+		ret = ec_slave_give_ip(s, (const void *)u->data, &error);
 		break;
 	default:
 		return ec_xfer_fpwr(s->bus->links, s->station, u->index, u->data, size);

@@ -23,10 +23,40 @@ int ec_eoe_type_decode(const u8 *rx, size_t len)
 	return r.bad ? -EMSGSIZE : type;
 }
 
-/* Network order is the most significant byte first, the message's the last. */
-static void put_address(struct ec_wbuf *w, const struct ec_eoe_ip *p, u32 which, const u8 a[4])
+/* A field that is absent has its place, or none. */
+static void put_bytes(struct ec_wbuf *w, const u8 *from, size_t n, bool given, bool packed)
 {
-	ec_wbuf_le32(w, p->which & which ? (u32)a[0] << 24 | a[1] << 16 | a[2] << 8 | a[3] : 0);
+	if (given)
+		ec_wbuf_bytes(w, from, n);
+	else if (!packed)
+		ec_wbuf_zero(w, n);
+}
+
+/* Network order is the most significant byte first, the message's the last. */
+static void put_address(struct ec_wbuf *w, const u8 a[4], bool given, bool packed)
+{
+	u8 le[4];
+	unsigned int i;
+
+	for (i = 0; i < 4; i++)
+		le[i] = a[3 - i];
+	put_bytes(w, le, sizeof(le), given, packed);
+}
+
+static int ip_encode(u8 *tx, size_t cap, u8 type, const struct ec_eoe_ip *p, bool packed)
+{
+	struct ec_wbuf w = ec_wbuf(tx, cap);
+
+	ec_wbuf_le16(&w, (u16)(type | LAST_FRAGMENT));
+	ec_wbuf_le16(&w, 0);
+	ec_wbuf_le32(&w, p->which & EC_EOE_ALL);
+	put_bytes(&w, p->mac, sizeof(p->mac), p->which & EC_EOE_MAC, packed);
+	put_address(&w, p->ip, p->which & EC_EOE_IP, packed);
+	put_address(&w, p->mask, p->which & EC_EOE_MASK, packed);
+	put_address(&w, p->gateway, p->which & EC_EOE_GATEWAY, packed);
+	put_address(&w, p->dns, p->which & EC_EOE_DNS, packed);
+	put_bytes(&w, p->name, sizeof(p->name), p->which & EC_EOE_HOSTNAME, packed);
+	return w.bad ? -EMSGSIZE : (int)(w.p - tx);
 }
 
 /**
@@ -43,48 +73,85 @@ static void put_address(struct ec_wbuf *w, const struct ec_eoe_ip *p, u32 which,
  */
 int ec_eoe_ip_encode(u8 *tx, size_t cap, u8 type, const struct ec_eoe_ip *p)
 {
-	struct ec_wbuf w = ec_wbuf(tx, cap);
-
-	ec_wbuf_le16(&w, (u16)(type | LAST_FRAGMENT));
-	ec_wbuf_le16(&w, 0);
-	ec_wbuf_le32(&w, p->which & EC_EOE_ALL);
-	if (p->which & EC_EOE_MAC)
-		ec_wbuf_bytes(&w, p->mac, sizeof(p->mac));
-	else
-		ec_wbuf_zero(&w, sizeof(p->mac));
-	put_address(&w, p, EC_EOE_IP, p->ip);
-	put_address(&w, p, EC_EOE_MASK, p->mask);
-	put_address(&w, p, EC_EOE_GATEWAY, p->gateway);
-	put_address(&w, p, EC_EOE_DNS, p->dns);
-	if (p->which & EC_EOE_HOSTNAME)
-		ec_wbuf_bytes(&w, p->name, sizeof(p->name));
-	else
-		ec_wbuf_zero(&w, sizeof(p->name));
-	return w.bad ? -EMSGSIZE : EC_EOE_IP_SIZE;
+	return ip_encode(tx, cap, type, p, false);
 }
 
-/* The cursor ends behind the last field that is needed, at the latest. */
-static void get_bytes(struct ec_rbuf *r, u8 *to, size_t n, bool needed)
+/**
+ * ec_eoe_ip_encode_packed() - write IP parameters as some slaves read them
+ * @tx: message behind the mailbox header
+ * @cap: bytes at @tx
+ * @type: as that of ec_eoe_ip_encode()
+ * @p: what to write
+ *
+ * Fields that are not in @p->which have no place.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: bytes, -EMSGSIZE when it does not fit.
+ */
+int ec_eoe_ip_encode_packed(u8 *tx, size_t cap, u8 type, const struct ec_eoe_ip *p)
+{
+	return ip_encode(tx, cap, type, p, true);
+}
+
+/* The cursor ends behind the last field that is given, at the latest. */
+static void get_bytes(struct ec_rbuf *r, u8 *to, size_t n, bool given, bool packed)
 {
 	const u8 *p;
 
-	if (!needed && ec_rbuf_left(r) < n) {
+	if (!given && packed)
+		return;
+	if (!given && ec_rbuf_left(r) < n) {
 		r->p = r->end;
 		return;
 	}
 	p = ec_rbuf_take(r, n);
-	if (p && needed)
+	if (p && given)
 		memcpy(to, p, n);
 }
 
-static void get_address(struct ec_rbuf *r, u8 a[4], bool needed)
+static void get_address(struct ec_rbuf *r, u8 a[4], bool given, bool packed)
 {
 	u8 le[4] = { 0 };
 	unsigned int i;
 
-	get_bytes(r, le, sizeof(le), needed);
+	get_bytes(r, le, sizeof(le), given, packed);
 	for (i = 0; i < 4; i++)
 		a[i] = le[3 - i];
+}
+
+/* Return: the bytes that are left, or -EMSGSIZE. */
+static int ip_decode(const u8 *rx, size_t len, struct ec_eoe_ip *p, bool packed)
+{
+	struct ec_rbuf r = ec_rbuf(rx, len);
+
+	memset(p, 0, sizeof(*p));
+	ec_rbuf_le32(&r);
+	p->which = ec_rbuf_le32(&r) & EC_EOE_ALL;
+	get_bytes(&r, p->mac, sizeof(p->mac), p->which & EC_EOE_MAC, packed);
+	get_address(&r, p->ip, p->which & EC_EOE_IP, packed);
+	get_address(&r, p->mask, p->which & EC_EOE_MASK, packed);
+	get_address(&r, p->gateway, p->which & EC_EOE_GATEWAY, packed);
+	get_address(&r, p->dns, p->which & EC_EOE_DNS, packed);
+	get_bytes(&r, p->name, sizeof(p->name), p->which & EC_EOE_HOSTNAME, packed);
+	return r.bad ? -EMSGSIZE : (int)ec_rbuf_left(&r);
+}
+
+/**
+ * ec_eoe_ip_decode_packed() - read IP parameters as some slaves do
+ * @rx: message behind the mailbox header
+ * @len: bytes at @rx
+ * @p: result; fields that are not in @p->which are 0
+ *
+ * Fields that are not in @p->which have no place.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: 0, -EMSGSIZE when it is too short for what it says it has.
+ */
+int ec_eoe_ip_decode_packed(const u8 *rx, size_t len, struct ec_eoe_ip *p)
+{
+	int ret = ip_decode(rx, len, p, true);
+
+	return min(ret, 0);
 }
 
 /**
@@ -94,25 +161,57 @@ static void get_address(struct ec_rbuf *r, u8 a[4], bool needed)
  * @len: bytes at @rx
  * @p: result; fields that are not in @p->which are 0
  *
- * A message may end behind its last field in use.
+ * A message may end behind its last member in use. One that is too short for
+ * fixed places and just has the members in use is packed.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: 0, -EMSGSIZE when it is too short for what it says it has.
  */
 int ec_eoe_ip_decode(const u8 *rx, size_t len, struct ec_eoe_ip *p)
 {
-	struct ec_rbuf r = ec_rbuf(rx, len);
+	int ret = ip_decode(rx, len, p, false);
 
-	memset(p, 0, sizeof(*p));
-	ec_rbuf_le32(&r);
-	p->which = ec_rbuf_le32(&r) & EC_EOE_ALL;
-	get_bytes(&r, p->mac, sizeof(p->mac), p->which & EC_EOE_MAC);
-	get_address(&r, p->ip, p->which & EC_EOE_IP);
-	get_address(&r, p->mask, p->which & EC_EOE_MASK);
-	get_address(&r, p->gateway, p->which & EC_EOE_GATEWAY);
-	get_address(&r, p->dns, p->which & EC_EOE_DNS);
-	get_bytes(&r, p->name, sizeof(p->name), p->which & EC_EOE_HOSTNAME);
-	return r.bad ? -EMSGSIZE : 0;
+	if (ret < 0 && !ip_decode(rx, len, p, true))
+		return 0;
+	return min(ret, 0);
+}
+
+/**
+ * ec_eoe_ip_fill() - make a request that slaves of both readings understand
+ * @p: parameters to set; fields that are not wanted are added
+ * @now: those that the slave has; @which 0: not known
+ * @mac: address for a slave whose address is not known
+ *
+ * Some slaves look for each member at its fixed place, others behind the one
+ * before, others ignore what follows the first absent one. The three agree
+ * when no member before the last one is absent. An address that the slave may
+ * have from DHCP is not made a static one: without EC_EOE_IP, and without a
+ * mask, the request does not change.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether all slaves understand it.
+ */
+bool ec_eoe_ip_fill(struct ec_eoe_ip *p, const struct ec_eoe_ip *now, const u8 mac[6])
+{
+	u32 all = p->which | p->which >> 1, gaps, known;
+
+	all |= all >> 2;
+	all |= all >> 4;
+	gaps = all & ~p->which;
+	known = gaps & now->which;
+	if (gaps & EC_EOE_IP || gaps & ~known & EC_EOE_MASK)
+		return false;
+	if (gaps & EC_EOE_MAC)
+		memcpy(p->mac, known & EC_EOE_MAC ? now->mac : mac, sizeof(p->mac));
+	if (gaps & EC_EOE_MASK)
+		memcpy(p->mask, now->mask, sizeof(p->mask));
+	/* 0.0.0.0: there is none */
+	if (gaps & EC_EOE_GATEWAY)
+		memcpy(p->gateway, now->gateway, sizeof(p->gateway));
+	if (gaps & EC_EOE_DNS)
+		memcpy(p->dns, now->dns, sizeof(p->dns));
+	p->which |= gaps;
+	return true;
 }
 
 /**

@@ -52,11 +52,77 @@ static void eoe_short_messages(struct kunit *test)
 	in.which = EC_EOE_IP | EC_EOE_GATEWAY;
 	ec_eoe_ip_encode(msg, sizeof(msg), EC_EOE_SET_IP_REQ, &in);
 	for (len = 0; len < sizeof(msg); len++)
-		KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, len, &out), len < 26 ? -EMSGSIZE : 0);
+		/* two addresses, packed, have 16 */
+		KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, len, &out),
+				len < 26 && len != 16 ? -EMSGSIZE : 0);
 	KUNIT_EXPECT_MEMEQ(test, out.gateway, all.gateway, 4);
 	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode(msg, sizeof(msg) - 1, EC_EOE_SET_IP_REQ, &all),
 			-EMSGSIZE);
 	KUNIT_EXPECT_EQ(test, ec_eoe_type_decode(msg, 3), -EMSGSIZE);
+}
+
+/* absent fields have no place: what is left of a message with fixed places is another one */
+static void eoe_packed(struct kunit *test)
+{
+	struct ec_eoe_ip in = all, out;
+	u8 msg[EC_EOE_IP_SIZE];
+
+	in.which = EC_EOE_IP | EC_EOE_GATEWAY;
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode_packed(msg, sizeof(msg), EC_EOE_SET_IP_REQ, &in),
+			16);
+	KUNIT_EXPECT_MEMEQ(test, msg + 8, "\x11\0\xa8\xc0\x01\0\xa8\xc0", 8);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode_packed(msg, 15, &out), -EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode_packed(msg, 16, &out), 0);
+	KUNIT_EXPECT_MEMEQ(test, out.gateway, all.gateway, 4);
+	/* too short for fixed places */
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, 16, &out), 0);
+	KUNIT_EXPECT_MEMEQ(test, out.ip, all.ip, 4);
+	KUNIT_EXPECT_MEMEQ(test, out.gateway, all.gateway, 4);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode(msg, 17, &out), -EMSGSIZE);
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_encode_packed(msg, sizeof(msg), EC_EOE_SET_IP_REQ, &all),
+			EC_EOE_IP_SIZE);
+}
+
+static const struct {
+	u32 wanted;
+	u32 known;
+	u32 sent;	/* 0: no form is understood by all */
+} fills[] = {
+	{ EC_EOE_MAC, 0, EC_EOE_MAC },
+	{ EC_EOE_IP, 0, EC_EOE_MAC | EC_EOE_IP },
+	{ EC_EOE_IP | EC_EOE_MASK, EC_EOE_MAC, EC_EOE_MAC | EC_EOE_IP | EC_EOE_MASK },
+	{ EC_EOE_IP | EC_EOE_MASK | EC_EOE_HOSTNAME, EC_EOE_MAC, EC_EOE_ALL },
+	{ EC_EOE_IP | EC_EOE_DNS, EC_EOE_ALL, EC_EOE_ALL & ~EC_EOE_HOSTNAME },
+	{ EC_EOE_IP | EC_EOE_DNS, EC_EOE_MAC | EC_EOE_IP, 0 },
+	{ EC_EOE_HOSTNAME, EC_EOE_ALL, 0 },
+	{ EC_EOE_MAC | EC_EOE_GATEWAY, EC_EOE_ALL, 0 },
+	{ EC_EOE_ALL, 0, EC_EOE_ALL },
+};
+
+static void eoe_gaps_are_filled(struct kunit *test)
+{
+	static const u8 mac[6] = { 2, 1, 1, 1, 1, 1 };
+	unsigned int i;
+
+	for (i = 0; i < ARRAY_SIZE(fills); i++) {
+		struct ec_eoe_ip want = { .which = fills[i].wanted }, p;
+		struct ec_eoe_ip now = all;
+
+		now.which = fills[i].known;
+		p = want;
+		KUNIT_EXPECT_EQ_MSG(test, ec_eoe_ip_fill(&p, &now, mac), !!fills[i].sent, "%u", i);
+		if (!fills[i].sent) {
+			KUNIT_EXPECT_MEMEQ(test, &p, &want, sizeof(p));
+			continue;
+		}
+		KUNIT_EXPECT_EQ_MSG(test, p.which, fills[i].sent, "%u", i);
+		if (!(want.which & EC_EOE_MAC))
+			KUNIT_EXPECT_MEMEQ(test, p.mac, now.which & EC_EOE_MAC ? all.mac : mac, 6);
+		/* what is wanted is not replaced: it is 0 here */
+		KUNIT_EXPECT_EQ(test, p.ip[0], 0);
+		if (p.which & ~want.which & EC_EOE_MASK)
+			KUNIT_EXPECT_MEMEQ(test, p.mask, all.mask, 4);
+	}
 }
 
 static void eoe_results(struct kunit *test)
@@ -80,6 +146,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(eoe_parameters_survive_both_ways),
 	KUNIT_CASE(eoe_unset_fields_are_zero),
 	KUNIT_CASE(eoe_short_messages),
+	KUNIT_CASE(eoe_packed),
+	KUNIT_CASE(eoe_gaps_are_filled),
 	KUNIT_CASE(eoe_results),
 	{ }
 };
