@@ -2,7 +2,8 @@
 # For ethercatctl: the configuration file. Its lines are read, never run.
 #
 # parse FILE sets: masters (their number), device_N and at_N (the line of it), modules, up and at_up
-# (interfaces), modprobe_flags, segments and at_segments
+# (interfaces), modprobe_flags, segments and at_segments, bridge and at_bridge, addresses and
+# at_addresses (of the bridge)
 
 native_drivers="e1000 e1000e igb intel"
 other_drivers="generic sim igc r8169 e100 8139too r8152 cx2100 ccat genet dwmac-intel stmmac-pci"
@@ -159,13 +160,56 @@ set_flags() {
 	modprobe_flags=$1
 }
 
+set_bridge() {
+	at_bridge=$number bridge=$1
+	case $1 in
+	'')	return ;;
+	*%*)	;;
+	*)	! is_interface "$1" || return 0 ;;
+	esac
+	bad "EOE_BRIDGE=\"$1\" is no name of a bridge: 1 to 15 characters, no slash, no colon, no comma, no blank, no %"
+}
+
+# is_upto NUMBER MAX
+is_upto() { is_number "$1" && [ ${#1} -le 3 ] && [ "$1" -le "$2" ]; }
+
+# is_address TEXT: 192.168.5.1/24 or fd00::1/64; ip(8) knows it better
+is_address() {
+	local ip=${1%/*} bits=${1##*/} n=0 rest
+
+	case $1 in
+	*/*/*|/*|*[!0-9a-fA-F.:/]*) return 1 ;;
+	*:*/*)	is_upto "$bits" 128 && [ "$bits" -gt 0 ]
+		return ;;
+	*/*)	is_upto "$bits" 32 && [ "$bits" -gt 0 ] || return ;;
+	*)	return 1 ;;
+	esac
+	rest=$ip.
+	while [ -n "$rest" ]; do
+		is_upto "${rest%%.*}" 255 || return
+		rest=${rest#*.} n=$((n + 1))
+	done
+	[ $n = 4 ]
+}
+
+set_bridge_address() {
+	local a
+
+	for a in $1; do
+		is_address "$a" ||
+			bad "EOE_BRIDGE_ADDRESS: '$a' is no address with a prefix length, as 192.168.5.1/24; separate addresses by blanks"
+	done
+	addresses=$1 at_addresses=$number
+}
+
 unknown_variable() {
 	local upper
 
 	upper=$(echo "$1" | tr a-z A-Z)
 	case $upper in
 	"$1") ;;
-	MASTER*_DEVICE|MASTER*_BACKUP|DEVICE_MODULES|UPDOWN_INTERFACES|SIM_SEGMENT|MODPROBE_FLAGS)
+	MASTER*_DEVICE|MASTER*_BACKUP|DEVICE_MODULES|UPDOWN_INTERFACES|SIM_SEGMENT|MODPROBE_FLAGS|\
+	EOE_BRIDGE|EOE_BRIDGE_ADDRESS)
 		bad "unknown variable $1; write $upper"
 		return ;;
 	esac
@@ -179,6 +223,8 @@ set_variable() {	# set_variable NAME VALUE
 	UPDOWN_INTERFACES|LINK_DEVICES) set_interfaces "$1" "$2" ;;
 	MODPROBE_FLAGS) set_flags "$2" ;;
 	SIM_SEGMENT) set_segments "$2" ;;
+	EOE_BRIDGE) set_bridge "$2" ;;
+	EOE_BRIDGE_ADDRESS) set_bridge_address "$2" ;;
 	EOE_INTERFACES|EOE_AUTOCREATE|PCAP_SIZE_MB|REBIND_NICS)
 		[ -z "$2" ] || warn "$1 has no effect in this version" ;;
 	*)	unknown_variable "$1" ;;
@@ -316,12 +362,29 @@ check_segments() {
 	fi
 }
 
+# the bridge is none of the masters' devices, and has the addresses
+check_bridge() {
+	local i=0 d
+
+	number=$at_addresses
+	[ -n "$bridge" ] || [ -z "$addresses" ] ||
+		bad "EOE_BRIDGE_ADDRESS=\"$addresses\" needs EOE_BRIDGE, the name of the bridge"
+	number=$at_bridge
+	while [ -n "$bridge" ] && [ $i -lt "$masters" ]; do
+		eval "d=\$device_$i"
+		[ "$d" != "$bridge" ] ||
+			bad "EOE_BRIDGE=\"$bridge\" is the device of MASTER$i; the fieldbus is no port of a network, write another name"
+		i=$((i + 1))
+	done
+}
+
 # parse FILE: exit code 6 if it cannot be read, 1 after messages with its lines
 parse() {
 	local line mark
 
 	mark=$(printf '\357\273\277')
 	conf=$1 number=0 wrong=0 modules= up= at_up=0 modprobe_flags= segments= at_segments=0 sims=0
+	bridge= at_bridge=0 addresses= at_addresses=0
 	if [ ! -f "$conf" ] || [ ! -r "$conf" ]; then
 		if [ -e "$conf" ]; then
 			err "cannot read the configuration $conf: no file that you may read"
@@ -338,6 +401,7 @@ parse() {
 	done <"$conf"
 	check_masters
 	check_segments
+	check_bridge
 	[ $wrong = 0 ] || exit 1
 }
 

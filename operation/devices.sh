@@ -253,6 +253,10 @@ check_machine() {
 		[ -z "${1:-}" ] || [ -e "/sys/class/net/$i" ] ||
 			warn "UPDOWN_INTERFACES: no interface $i; 'ip link' lists the interfaces"
 	done
+	number=$at_bridge
+	[ -z "$bridge" ] || [ ! -e "/sys/class/net/$bridge" ] ||
+		[ -e "/sys/class/net/$bridge/bridge" ] ||
+		bad "EOE_BRIDGE=\"$bridge\": this interface is no bridge; write another name"
 	number=$at_segments
 	[ "$sims" = 0 ] || for i in $(echo "$segments" | tr , ' '); do known_segment "$i"; done
 	[ "$wrong" = 0 ]

@@ -34,7 +34,7 @@ for group; do
 	build)	p="gcc gcc-12 g++ ccache make libc6-dev pkg-config bc bison flex libelf-dev pahole
 		   sparse kmod cpio xz-utils zstd git" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils zstd bats tcpdump
-		   iproute2 ethtool tshark procps psmisc python3 xxd udev" ;;
+		   iproute2 ethtool tshark procps psmisc python3 xxd udev systemd" ;;
 	capture) p="tcpdump iproute2 tshark" ;;
 	# without the package kernels.sh fetches the source
 	uml)	p="xz-utils python3"

@@ -107,6 +107,30 @@ accepted() {
 		"2: UPDOWN_INTERFACES: no interface eth7; 'ip link' lists the interfaces"
 }
 
+@test "a bridge of the slaves is accepted with addresses, and its mistakes are named" {
+	local a one='MASTER0_DEVICE=eth0\n'
+
+	accepted "${one}EOE_BRIDGE=br-eoe\nEOE_BRIDGE_ADDRESS='192.168.5.1/24 fd00::1/64'" eth0
+	[ "$(tail -n 1 "$BATS_TEST_TMPDIR/out")" = \
+		"Drivers: generic, bridge: br-eoe 192.168.5.1/24 fd00::1/64" ]
+	mkdir -p "$root/sys/class/net/br7/bridge"
+	accepted "${one}EOE_BRIDGE=br7" eth0
+	refused "${one}EOE_BRIDGE=eth1" \
+		'2: EOE_BRIDGE="eth1": this interface is no bridge; write another name'
+	refused 'MASTER0_DEVICE=eth1\nEOE_BRIDGE=eth1' \
+		'2: EOE_BRIDGE="eth1" is the device of MASTER0;'
+	refused "${one}EOE_BRIDGE=a/b" '2: EOE_BRIDGE="a/b" is no name of a bridge:'
+	refused "${one}EOE_BRIDGE='eoe%d'" '2: EOE_BRIDGE="eoe%d" is no name of a bridge:'
+	refused "${one}eoe_bridge=br7" '2: unknown variable eoe_bridge; write EOE_BRIDGE'
+	refused "${one}EOE_BRIDGE_ADDRESS=10.0.0.1/8" \
+		'2: EOE_BRIDGE_ADDRESS="10.0.0.1/8" needs EOE_BRIDGE, the name of the bridge'
+	for a in 192.168.5.1 192.168.5.1/33 192.168.5/24 192.168.5.256/24 192.168.5.1/0 \
+		1.2.3.4.5/8 192.168..1/24 /24 a/24 fd00::1 fd00::1/129 192.168.5.1/24/8; do
+		refused "${one}EOE_BRIDGE=br7\nEOE_BRIDGE_ADDRESS=$a" \
+			"3: EOE_BRIDGE_ADDRESS: '$a' is no address with a prefix length, as"
+	done
+}
+
 @test "another name of an interface is refused with the name to write" {
 	printf '%s\n' '#!/bin/sh' 'echo "2: eth0@if3: <UP> mtu 1500"' >"$root/ip"
 	chmod +x "$root/ip"

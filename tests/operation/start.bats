@@ -419,3 +419,67 @@ systemd_stop() {
 	[ "$status" = 1 ]
 	[[ $output =~ "has eth0; remove 'main_devices' from $root/etc/modprobe.d, then run" ]]
 }
+
+# with_bridge: a computer whose ip(8) makes a bridge and notes what it is asked
+with_bridge() {
+	stub ip 'echo "$*" >>$root/ip' 'd=$root/sys/class/net' 'case "$*" in' \
+		'"link add name "*) mkdir -p $d/$4/brif $d/$4/bridge ;;' \
+		'"link del "*) rm -r $d/$3 ;;' 'esac'
+	conf 'MASTER0_DEVICE=sim0' 'EOE_BRIDGE=br7' 'EOE_BRIDGE_ADDRESS="10.5.0.1/16 fd05::1/64"'
+	bridge=$root/sys/class/net/br7 known=$root/run/ethercatctl.bridge
+}
+
+@test "start makes the bridge before the modules are loaded, and stop removes it" {
+	with_bridge
+	stub ethercat '[ "$1 $2" != "eoe bridge" ] || { echo "$*" >>$root/ip; }'
+	ctl start
+	[ "$status" = 0 ]
+	[ "$(cat "$root/ip")" = "link add name br7 type bridge
+link set dev br7 up
+addr replace 10.5.0.1/16 dev br7
+addr replace fd05::1/64 dev br7
+eoe bridge br7" ]
+	# what the udev rule reads
+	[ "$(head -n 1 "$known")" = EOE_BRIDGE=br7 ]
+	ctl start
+	[ "$status" = 0 ]
+	[ "$(grep -c 'link add' "$root/ip")" = 1 ]
+	ctl stop
+	[ "$status" = 0 ]
+	[ ! -e "$bridge" ]
+	[ ! -e "$known" ]
+}
+
+@test "stop leaves a bridge that was there before, and one with ports of others" {
+	with_bridge
+	mkdir -p "$bridge/bridge"
+	ctl start
+	[ "$status" = 0 ]
+	ctl stop
+	[ -e "$bridge" ]
+	[ ! -e "$known" ]
+	rm -r "$bridge"
+	ctl start
+	touch "$bridge/brif/eth0"
+	ctl stop
+	[ "$status" = 0 ]
+	[ -e "$bridge" ]
+	[ ! -e "$known" ]
+}
+
+@test "a bridge that cannot be made is a warning; a start that fails leaves none" {
+	with_bridge
+	stub ip 'echo "Error: Unknown device type." >&2' 'exit 2'
+	ctl start
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "ethercatctl: warning: cannot make the bridge br7: Error: Unknown device type." ]
+	[ ! -e "$known" ]
+	ctl stop
+	with_bridge
+	echo ec_sim >"$root/broken"
+	ctl start
+	[ "$status" = 1 ]
+	grep -q 'link add name br7' "$root/ip"
+	[ ! -e "$bridge" ]
+	[ ! -e "$known" ]
+}

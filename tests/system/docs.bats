@@ -9,6 +9,7 @@ load helpers
 setup_file() {
 	export TREE=$BATS_FILE_TMPDIR/tree
 	mkdir -p "$TREE"/{build,tool,examples} "$BATS_FILE_TMPDIR/bin"
+	ln -s "$(command -v busybox)" "$BATS_FILE_TMPDIR/bin/wget"
 	ln -s "$EC_BUILD/modules" "$TREE/build/modules"
 	ln -s "$EC_BUILD/tool" "$TREE/tool/build"
 	ln -s "$EC_BUILD/examples" "$TREE/examples/build"
@@ -47,8 +48,8 @@ teardown() {
 	rm -f /tmp/segment
 }
 
-# doc FILE LINE [PID]: the commands of the block that begins with LINE, one by one. What does
-# not end by itself goes on in the background.
+# doc FILE LINE [PID]: the commands of the block that begins with LINE, one by one; $where: what
+# runs them. What does not end by itself goes on in the background.
 doc() {
 	local line n=0
 
@@ -62,7 +63,7 @@ doc() {
 			eval "$line" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- & pid=$! ;;
 		ethercat\ slaves|tool/build/ethercat\ slaves) wait_for 60 eval "$line | grep -q PREOP"; eval "$line" ;;
 		ethercat\ why) eval "$line" || [ $? = 1 ] || return ;;	# 1: a fault
-		*) eval "$line" || return ;;
+		*) eval "${where:-} $line" || return ;;
 		esac
 	done < <("$BATS_TEST_DIRNAME/../build/commands.py" --block "$1" "$2")
 	[ $n -gt 0 ]
@@ -241,7 +242,26 @@ motion() {
 	wait_for 10 eval '[ "$(cat /sys/class/net/eoe0a5/carrier)" = 1 ]'
 	ip addr flush dev eoe0a5
 	doc $f 'ethercat eoe bridge br0'
-	doc $f 'sysctl -w net.ipv4.ip_forward=1'
+	wait_for 40 eval 'wget -qO- http://192.168.5.2/ | grep -q web'
+	# another computer in the office
+	ip netns add office
+	ip link add veth0 type veth peer name eth0 netns office
+	ip addr add 192.168.1.10/24 dev veth0
+	ip link set veth0 up
+	ip -n office addr add 192.168.1.20/24 dev eth0
+	ip -n office link set eth0 up
+	local where='ip netns exec office'
+	run $where timeout 10 wget -qO- http://192.168.5.2/
+	[ "$status" != 0 ]
+	where= doc $f 'sysctl -w net.ipv4.ip_forward=1'
+	doc $f 'ip route add 192.168.5.0/24 via 192.168.1.10' >"$BATS_TEST_TMPDIR/page"
+	cat "$BATS_TEST_TMPDIR/page"
+	grep -q '<h1>web</h1>' "$BATS_TEST_TMPDIR/page"
+	ethercat ip -p1 | grep -q 192.168.5.1
+	sysctl -w net.ipv4.ip_forward=0
+	run $where timeout 10 wget -qO- http://192.168.5.2/
+	[ "$status" != 0 ]
+	ip netns del office
 	ip link del br0
 }
 

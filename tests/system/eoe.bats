@@ -1,6 +1,7 @@
 #!/usr/bin/env bats
 # SPDX-License-Identifier: GPL-2.0-only
-# Network devices of slaves with EoE: a ping, a page of a slave, a bridge, unload while open.
+# Network devices of slaves with EoE: a ping, a page of a slave, a bridge, unload while open. With
+# the udev of this machine: the bridge of ethercat.conf, and that of systemd-networkd.
 
 load helpers
 
@@ -11,6 +12,7 @@ setup() {
 }
 
 teardown() {
+	[ -z "${udevd:-}" ] || end_udev || true
 	ip link del br7 2>/dev/null || true
 	stop
 }
@@ -77,4 +79,97 @@ page() {
 	rmmod ec_sim
 	rmmod ec_master
 	[ ! -e /sys/class/net/port1 ]
+}
+
+# a computer with the rules, the modules and udev; slave "late" has no power
+start_udev() {
+	local tree=$BATS_TEST_TMPDIR/lib/modules/$(uname -r)
+
+	stop
+	mkdir -p "$tree" /etc/udev/rules.d
+	cp "$EC_BUILD"/modules/{master,devices/sim}/*.ko "$tree"
+	depmod -b "$BATS_TEST_TMPDIR" "$(uname -r)"
+	mount --bind "$tree" "/lib/modules/$(uname -r)"
+	cp "$BATS_TEST_DIRNAME/../../master/60-ethercat.rules" /etc/udev/rules.d
+	printf '%s\n' 'slave c EK1100' 'slave web drive alias=5 eoe=host' 'branch none' \
+		'slave late drive alias=6 eoe=host' >"$BATS_TEST_TMPDIR/segment"
+	SYSTEMD_IGNORE_CHROOT=1 /lib/systemd/systemd-udevd --debug \
+		>"$BATS_TEST_TMPDIR/udevd" 2>&1 3>&- &
+	udevd=$!
+	wait_for 60 env SYSTEMD_IGNORE_CHROOT=1 udevadm control --ping
+}
+
+end_udev() {
+	kill "$udevd" ${networkd:-}
+	umount "/lib/modules/$(uname -r)"
+	grep -E 'eoe0|ethercat' "$BATS_TEST_TMPDIR/udevd" | tail -n 30
+	[ -z "${networkd:-}" ] || cat "$BATS_TEST_TMPDIR/networkd"
+	ip link del br0 2>/dev/null
+	rm -f /etc/systemd/network/3?-eoe*
+}
+
+ports() { (cd "/sys/class/net/$1/brif" && echo *); }
+ports_are() { [ "$(ports "$1")" = "$2" ]; }
+plug_late() { echo 'plug web.1 late.0' >/sys/kernel/debug/ec_sim/sim0; }
+
+@test "udev and the bridge of ethercat.conf: also a slave that gets power later is a port" {
+	local ctl=$BATS_TEST_DIRNAME/../../operation/ethercatctl
+
+	start_udev
+	printf '%s\n' 'MASTER0_DEVICE=sim0' "SIM_SEGMENT=$BATS_TEST_TMPDIR/segment" \
+		'EOE_BRIDGE=br7' 'EOE_BRIDGE_ADDRESS="192.168.5.1/24"' >"$BATS_TEST_TMPDIR/conf"
+	PATH=$EC_BUILD/tool:$PATH "$ctl" -c "$BATS_TEST_TMPDIR/conf" start
+	wait_for 60 ports_are br7 eoe0a5
+	ethercat ip -p1 ip_address 192.168.5.2/24
+	wait_for 40 eval 'page 192.168.5.2 | grep -q web'
+	plug_late
+	wait_for 60 ports_are br7 'eoe0a5 eoe0a6'
+	ethercat ip -p2 ip_address 192.168.5.3/24
+	wait_for 40 eval 'page 192.168.5.3 | grep -q late'
+	# the other things that the rules do
+	[ "$(cat /sys/class/net/eoe0a6/ifalias)" = eoe0s2 ]
+	ip link show dev eoe0s2 | grep -q 'eoe0a6'
+	SYSTEMD_IGNORE_CHROOT=1 udevadm info -q property /sys/class/net/eoe0a6 |
+		grep -qx NM_UNMANAGED=1
+	PATH=$EC_BUILD/tool:$PATH "$ctl" -c "$BATS_TEST_TMPDIR/conf" stop
+	[ ! -e /sys/class/net/br7 ]
+	# without EOE_BRIDGE a device stays down
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment="$BATS_TEST_TMPDIR/segment"
+	wait_for 60 eval '[ -e /sys/class/net/eoe0a5 ]'
+	SYSTEMD_IGNORE_CHROOT=1 udevadm settle --timeout=60
+	[ "$(cat /sys/class/net/eoe0a5/operstate)" = down ]
+}
+
+# networkd_file NAME: of the documentation
+networkd_file() {
+	"$BATS_TEST_DIRNAME/../build/commands.py" --block Documentation/eoe.rst "# $1" \
+		>"/etc/systemd/network/$1"
+}
+
+@test "systemd-networkd has the bridge with the files of the documentation, and no device without" {
+	start_udev
+	mkdir -p /etc/systemd/network /run/systemd
+	modprobe ec_master main_devices=sim0
+	modprobe ec_sim segment="$BATS_TEST_TMPDIR/segment"
+	wait_for 60 eval '[ -e /sys/class/net/eoe0a5 ]'
+	/lib/systemd/systemd-networkd >"$BATS_TEST_TMPDIR/networkd" 2>&1 3>&- &
+	networkd=$!
+	wait_for 60 eval '[ -e "/run/systemd/netif/links/$(cat /sys/class/net/eoe0a5/ifindex)" ]'
+	grep -qx ADMIN_STATE=unmanaged \
+		"/run/systemd/netif/links/$(cat /sys/class/net/eoe0a5/ifindex)"
+	[ "$(cat /sys/class/net/eoe0a5/operstate)" = down ]
+	kill $networkd
+	wait $networkd || true
+	networkd_file 30-eoe.netdev
+	networkd_file 30-eoe-port.network
+	networkd_file 31-eoe.network
+	/lib/systemd/systemd-networkd >>"$BATS_TEST_TMPDIR/networkd" 2>&1 3>&- &
+	networkd=$!
+	wait_for 60 ports_are br0 eoe0a5
+	plug_late
+	wait_for 60 ports_are br0 'eoe0a5 eoe0a6'
+	wait_for 60 eval 'ip addr show dev br0 | grep -q 192.168.5.1/24'
+	ethercat ip -p2 ip_address 192.168.5.3/24
+	wait_for 40 eval 'page 192.168.5.3 | grep -q late'
 }
