@@ -29,6 +29,7 @@ bats
 fuzz
 data
 pysoem
+soem
 kickcat
 ethercrab
 system
@@ -91,6 +92,7 @@ level_bats() { tests/check-bats.sh; }
 level_fuzz() { make -s -C tests/fuzz check; }
 level_data() { make -s -C tests/data-check check DATA="$DATA"; }
 level_pysoem() { tests/pysoem/run.sh; }
+level_soem() { tests/foreign/soem.sh; }
 level_kickcat() { tests/foreign/kickcat.sh; }
 level_ethercrab() { tests/foreign/ethercrab.sh; }
 level_arch() { tests/arch/run.sh; }
