@@ -177,8 +177,11 @@ static bool check_slaves(struct watch *w)
 		note_change(s, status, code);
 		if (ec_identify_is_due(s))
 			ec_slave_kick(s);
-		/* what was asked for comes late, or it has fallen back by itself: bring it up */
-		state = status & EC_AL_STATE_MASK;
+		/*
+		 * What was asked for comes late, or it has fallen back by itself: bring it up. An
+		 * error of device emulation is an acknowledge that another master has written.
+		 */
+		state = status & (EC_AL_STATE_MASK | (s->emulation ? EC_AL_ERROR : 0));
 		if (READ_ONCE(s->note.error) ? state == READ_ONCE(s->al.awaited) :
 					  state != READ_ONCE(s->al.requested))
 			ec_slave_kick(s);

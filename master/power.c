@@ -108,10 +108,13 @@ static unsigned int wait_down(struct ec_master *m, unsigned int ms)
 	return states;
 }
 
-/* The bus as a whole, so that it reaches slaves that no worker has. */
+/*
+ * The bus as a whole, so that it reaches slaves that no worker has. No acknowledge: a slave with
+ * device emulation would show it as an error, and INIT ends an error of the others.
+ */
 static void broadcast_init(struct ec_master *m)
 {
-	u8 control[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
+	u8 control[2] = { EC_AL_INIT, 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BWR, 0, EC_REG_AL_CONTROL, 2, control);
 
 	ec_xfer_urgent(&m->links, &dg, 1);
@@ -134,7 +137,7 @@ static unsigned int written(struct ec_master *m, unsigned int *position)
 static void init_others(struct ec_master *m)
 {
 	u64 end = ktime_get_ns() + INIT_MS * (u64)NSEC_PER_MSEC;
-	u8 control[2] = { EC_AL_INIT | EC_AL_ERROR, 0 };
+	u8 control[2] = { EC_AL_INIT, 0 };
 	struct ec_slave *s;
 	unsigned int i;
 

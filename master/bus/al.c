@@ -174,7 +174,10 @@ int ec_al_ack(struct ec_slave *slave)
 	u16 state = READ_ONCE(slave->al.status) & EC_AL_STATE_MASK;
 	int ret;
 
-	/* device emulation copies AL control, so the acknowledge would show as an error */
+	/*
+	 * Device emulation copies AL control, so the acknowledge would show as an error. Another
+	 * master may have left one there: the state without it ends it.
+	 */
 	ret = request(slave, slave->emulation ? state : state | EC_AL_ERROR, until);
 	return ret ? ret : poll_one(slave, EC_AL_ERROR, 0, until);
 }

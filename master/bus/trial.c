@@ -168,8 +168,8 @@ static bool is_last(const struct ec_guest *g)
 static int tame(struct ec_trials *t, struct ec_guest *g)
 {
 	static const u8 zero[EC_MAX_FMMU * EC_FMMU_PAGE];
-	/* one that copies AL control to AL status would show an error */
-	const u8 init[2] = { EC_AL_INIT | (g->al[0] & EC_AL_ERROR), 0 };
+	/* no acknowledge: a slave with device emulation would show it as an error; INIT ends one */
+	static const u8 init[2] = { EC_AL_INIT };
 	u16 fmmus = min_t(u16, g->info[EC_REG_FMMUS], EC_MAX_FMMU) * EC_FMMU_PAGE;
 	const u8 tried[2] = { g->control[0] | EC_DL_TEMPORARY, guest_loops(g) };
 	const u8 closed[2] = { g->control[0] & ~EC_DL_TEMPORARY, guest_loops(g) };

@@ -263,7 +263,7 @@ static struct ec_result apply_step(struct ec_slave *s, bool *there)
 
 	lockdep_assert_held(&s->lock);
 	setup->heading = want;
-	if (!r.err && READ_ONCE(s->al.status) & EC_AL_ERROR && !s->emulation)
+	if (!r.err && READ_ONCE(s->al.status) & EC_AL_ERROR)
 		r = acknowledge(s);
 	if (r.err)
 		return r;
