@@ -4,23 +4,26 @@
 # Builds a UML kernel with KUnit and the sources of this clone built in.
 # Prints the path of the finished kernel as the last line of stdout.
 #
-#   build.sh [--debug] [--path]      --path: only prints where it would be
+#   build.sh [--debug] [--path|--objects]
+#
+# --path: only prints where it would be; --objects: where the objects of the kernel itself would be
 #
 # EC_CACHE      folder of the cache (default ~/.cache/ethercat)
 # EC_LINUX_TAR  kernel source, see source.sh
 # EC_UML_SKIP   more files to leave out, e.g. 'master/broken.c tests/bus/%'
 # EC_UML_OUT    kernel's objects (a copy of the cache's, for builds of two clones at a time)
+# EC_UML_OVER   folder with files that replace those of the clone, or come in addition
 # EC_JOBS       parallel jobs (default: number of CPUs)
 set -euo pipefail
 
 die() { echo "build.sh: $*" >&2; exit 1; }
 
-variant=plain pathonly=
+variant=plain only=
 for a in "$@"; do
 	case "$a" in
 	--debug) variant=debug ;;
-	--path) pathonly=1 ;;
-	*) die "unknown argument '$a'; usage: build.sh [--debug] [--path]" ;;
+	--path|--objects) only=$a ;;
+	*) die "unknown argument '$a'; usage: build.sh [--debug] [--path|--objects]" ;;
 	esac
 done
 
@@ -46,16 +49,19 @@ key=$( { echo "$srckey"; gcc --version | head -n1; cat "${frags[@]}"; } |
 out=${EC_UML_OUT:-$cache/uml/$variant-$key}
 # Objects of one clone live apart from those of another: two clones share the
 # kernel's objects but never a source of ours.
-clone=$cache/uml/clone-$(echo "$repo" | sha256sum | cut -c1-12)/$variant-$key
+over=$(realpath -e -- "${EC_UML_OVER:-$repo}")
+of=$repo
+[ "$over" = "$repo" ] || of="$repo $over"
+clone=$cache/uml/clone-$(echo "$of" | sha256sum | cut -c1-12)/$variant-$key
 farm=$clone/ethercat
 # Builds of one clone with different EC_UML_SKIP must not pass for each other.
 kernel=$clone/vmlinux
 [ -z "${EC_UML_SKIP-}" ] ||
 	kernel=$kernel-$(echo "$EC_UML_SKIP" | sha256sum | cut -c1-8)
-if [ -n "$pathonly" ]; then
-	echo "$kernel"
-	exit
-fi
+case $only in
+--path) echo "$kernel"; exit ;;
+--objects) echo "$out"; exit ;;
+esac
 
 "$here/source.sh" ${tree[@]+"${tree[@]}"} >/dev/null || exit 1
 
@@ -81,17 +87,26 @@ fi
 # times of the files they point to.
 want=$(mktemp)
 trap 'rm -f "$want"' EXIT
-(cd "$repo" && for d in include master lib/ecrt devices tests/unit tests/bus tests/uml; do
-	[ ! -d $d ] || find $d -type f \( -name '*.[ch]' -o -name '*.inc' -o \
-		-name '*.def' -o -name Makefile.uml -o -name skip.list \) \
-		! -name '*.mod.c' ! -name '.*' -print
-done) | sort >"$want"
+for top in "$repo" "$over"; do
+	(cd "$top" && for d in include master lib/ecrt devices tests/unit tests/bus tests/uml; do
+		[ ! -d $d ] || find $d -type f \( -name '*.[ch]' -o -name '*.inc' -o \
+			-name '*.def' -o -name Makefile.uml -o -name skip.list \) \
+			! -name '*.mod.c' ! -name '.*' -print
+	done)
+done | sort -u >"$want"
+# A file that has another origin now may be older than its object.
+(cd "$farm" && find . -type l -printf '%P %l\n') |
+	while read -r f was; do
+		is=$repo/$f
+		[ ! -e "$over/$f" ] || is=$over/$f
+		[ "$was" = "$is" ] || rm -f "$farm/$f" "$farm/${f%.c}.o"
+	done
 (cd "$farm" && find . -type l -printf '%P\n' | sort) | comm -13 "$want" - |
 	while read -r f; do rm -f "$farm/$f" "$farm/${f%.c}.o"; done
 (cd "$farm" && find . -type l -printf '%P\n' | sort) | comm -23 "$want" - |
 	while read -r f; do
 		mkdir -p "$farm/$(dirname "$f")"
-		ln -s "$repo/$f" "$farm/$f"
+		[ -e "$over/$f" ] && ln -s "$over/$f" "$farm/$f" || ln -s "$repo/$f" "$farm/$f"
 	done
 
 link=$out/drivers/ethercat

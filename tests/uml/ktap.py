@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: GPL-2.0-only
 """Judges the console log of a UML test run; see run.sh."""
 import argparse
+import os
 import re
 import sys
 
@@ -24,6 +25,8 @@ def main():
     ap.add_argument("log")
     ap.add_argument("--seconds", default="0")
     ap.add_argument("--limit", default="?")
+    ap.add_argument("--cases", default=os.devnull,
+                    help="file for the result of each case")
     a = ap.parse_args()
     with open(a.log, errors="replace") as f:
         lines = [re.sub(r"^\[ *\d+\.\d+\] ", "", x.rstrip("\r\n")) for x in f]
@@ -38,6 +41,7 @@ def main():
     passed = failed = skipped = 0
     hung = False
     last_seen = "start of the kernel"
+    cases = open(a.cases, "w")
 
     for n, line in enumerate(lines):
         line = line.replace("drivers/ethercat/", "")
@@ -69,6 +73,7 @@ def main():
         indent, ok, name, skip = m.groups()
         if len(indent) == 4 and cur:
             last_seen = "%s.%s" % (cur[0], name)
+            print("skip" if skip else ok, last_seen, file=cases)
             if ok == "not ok":
                 cur[2] += 1
                 print("FAIL %s.%s" % (cur[0], name))

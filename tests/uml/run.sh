@@ -9,6 +9,7 @@
 # The raw console log is kept; its path is printed on failure.
 # EC_UML_TIMEOUT: seconds of real time until a run counts as hung (300).
 # EC_UML_ARGS: more kernel parameters.
+# EC_UML_CASES: file for the result of each case, "ok SUITE.CASE" in a line.
 # More variables: see build.sh.
 #
 # Last line: "N passed, N failed".  Exit 0 only if all is well: 1 for failures,
@@ -59,7 +60,8 @@ rc=$?
 [ $rc != 137 ] || echo "EC-UML-HANG" >>"$log"
 took=$(echo "$(date +%s.%N) - $start" | bc)
 
-python3 "$here/ktap.py" --seconds "$took" --limit "$limit" "$log"
+python3 "$here/ktap.py" --seconds "$took" --limit "$limit" ${EC_UML_CASES:+--cases "$EC_UML_CASES"} \
+	"$log"
 rc=$?
 if [ $rc != 0 ]; then
 	keep=1

@@ -95,7 +95,7 @@ static void watch_ends(struct bus *b)
 }
 
 /* Each frame, from the first one on, has the EtherType 0x88A4: no VLAN tag, no UDP. */
-static void class_a_frame_has_ethertype(struct kunit *test)
+static void etg1500_frame_has_ethertype(struct kunit *test)
 {
 	struct bus *b = bus_new(test, segment);
 
@@ -196,7 +196,7 @@ static void emulation_at_reboot(struct kunit *test, struct bus *b)
  * acknowledge as an error. No frame has one for it: not for an error that another master has left
  * there, not in a broadcast, not when it connects beside process data, not at a reboot.
  */
-static void class_a_emulation_gets_no_acknowledge(struct kunit *test)
+static void etg1500_emulation_gets_no_acknowledge(struct kunit *test)
 {
 	struct bus *b = bus_up(test, segment, N);
 	struct cyc *c;
@@ -267,7 +267,7 @@ static void arp_of_computer(u8 *f)
  * Network devices of slaves are ports of a switch: a frame of a computer behind one slave reaches
  * the other slave, and the reply, which is for none of the devices, the computer.
  */
-static void class_a_switch_joins_slaves(struct kunit *test)
+static void etg1500_switch_joins_slaves(struct kunit *test)
 {
 	struct ec_eoe_ip ip = {
 		.which = EC_EOE_IP | EC_EOE_MASK, .ip = { 10, 1, 0, 2 }, .mask = { 255, 255, 255 },
@@ -305,14 +305,14 @@ static void class_a_switch_joins_slaves(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(class_a_frame_has_ethertype),
-	KUNIT_CASE(class_a_emulation_gets_no_acknowledge),
-	KUNIT_CASE(class_a_switch_joins_slaves),
+	KUNIT_CASE(etg1500_frame_has_ethertype),
+	KUNIT_CASE(etg1500_emulation_gets_no_acknowledge),
+	KUNIT_CASE(etg1500_switch_joins_slaves),
 	{ }
 };
 
 static struct kunit_suite suite = {
-	.name = "bus_class_a",
+	.name = "bus_etg1500",
 	.exit = bus_exit,
 	.test_cases = cases,
 };
