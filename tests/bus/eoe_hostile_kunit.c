@@ -4,6 +4,7 @@
  * others, nor remains when the slave works again.
  */
 #include <linux/etherdevice.h>
+#include <linux/rtnetlink.h>
 #include "eoe_wire.h"
 #include "talk.h"
 #include "master/mailbox/soe.h"
