@@ -110,7 +110,7 @@ static unsigned int wait_down(struct ec_master *m, unsigned int ms)
 
 /*
  * The bus as a whole, so that it reaches slaves that no worker has. No acknowledge: a slave with
- * device emulation would show it as an error, and INIT ends an error of the others.
+ * device emulation would show it as an error, and INIT ends an error of most others.
  */
 static void broadcast_init(struct ec_master *m)
 {
@@ -137,11 +137,13 @@ static unsigned int written(struct ec_master *m, unsigned int *position)
 static void init_others(struct ec_master *m)
 {
 	u64 end = ktime_get_ns() + INIT_MS * (u64)NSEC_PER_MSEC;
-	u8 control[2] = { EC_AL_INIT, 0 };
+	u8 control[2] = { 0 };
 	struct ec_slave *s;
 	unsigned int i;
 
 	for (i = 0; ktime_get_ns() < end && (s = ec_bus_slave(&m->bus, i)); i++) {
+		/* not each slave stack takes INIT as an acknowledge */
+		control[0] = s->emulation ? EC_AL_INIT : EC_AL_INIT | EC_AL_ERROR;
 		if (READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && !ec_foe_writes(&s->mbox))
 			ec_xfer_fpwr(s->bus->links, s->station, EC_REG_AL_CONTROL, control,
 				     sizeof(control));
