@@ -198,6 +198,6 @@ done
 [ -z "$why" ] || head -n 40 <<<"$why"
 printf '%s' "$failed_names"
 fold -s -w 100 <<<"seconds/of CPU: ${costs%, }; all: $SECONDS"
-grep -hs '^class A of ETG.1500: [0-9]' "$log/class-a" | fold -s -w 100
+grep -hs '^class A of ETG.1500: [0-9]' "$log/class-a"
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]
