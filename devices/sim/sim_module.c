@@ -14,6 +14,7 @@
 #include "describe.h"
 #include "sim_control.h"
 #include "sim_link.h"
+#include "sim_port.h"
 #include "sim_responder.h"
 #include "sim_wire.h"
 
@@ -149,6 +150,20 @@ static void withdraw(void)
 			ec_sim_link_destroy(sim_link[i]);
 }
 
+/* Ethernet ports of switches. Without a network device their frames are lost. */
+static void __init add_ports(const char *name, struct ec_sim_wire *w)
+{
+	u32 n = ec_sim_count(w->sim), i;
+	int ret;
+
+	for (i = 0; i < n; i++) {
+		ret = ec_sim_port_add(name, w, i);
+		if (ret)
+			pr_warn("ec_sim: %s: no network device for the Ethernet port of slave %u (%pe)\n",
+				name, i, ERR_PTR(ret));
+	}
+}
+
 /*
  * Last: an open file of a module whose load fails would outlive it, as debugfs keeps the pointer
  * to its functions.
@@ -159,11 +174,14 @@ static void __init add_controls(void)
 	unsigned int i;
 
 	ec_sim_control_init();
-	if (n_netdev)
+	if (n_netdev) {
 		ec_sim_control_add(netdev[0], ec_sim_responder_wire(responder));
+		add_ports(netdev[0], ec_sim_responder_wire(responder));
+	}
 	for (i = 0; i < SEGMENTS && sim_link[i]; i++) {
 		snprintf(name, sizeof(name), "sim%u", i);
 		ec_sim_control_add(name, ec_sim_link_wire(sim_link[i]));
+		add_ports(name, ec_sim_link_wire(sim_link[i]));
 	}
 }
 
@@ -200,6 +218,7 @@ static int __init sim_init(void)
 
 static void __exit sim_exit(void)
 {
+	ec_sim_port_exit();
 	ec_sim_control_exit();
 	if (n_netdev)
 		ec_sim_responder_destroy(responder);

@@ -4,6 +4,7 @@
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include <linux/vmalloc.h>
+#include "app.h"
 #include "describe.h"
 #include "master/kernel/compat.h"
 #include "sim_wire.h"
@@ -332,6 +333,72 @@ bool ec_sim_wire_up(struct ec_sim_wire *w)
 	up = ec_sim_link(w->sim, 0);
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 	return up;
+}
+
+/**
+ * ec_sim_wire_takes() - is there a place for a frame that comes to an Ethernet port
+ * @w: wire
+ * @app: slave of the segment with a port
+ *
+ * Context: Any.
+ * Return: false: too many wait for the mailbox.
+ */
+bool ec_sim_wire_takes(struct ec_sim_wire *w, const struct ec_app *app)
+{
+	unsigned long flags;
+	bool takes;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	takes = ec_app_eoe_takes(app);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+	return takes;
+}
+
+/**
+ * ec_sim_wire_enter() - a frame comes to the Ethernet port of a slave
+ * @w: wire
+ * @app: slave of the segment with a port
+ * @frame: the frame
+ * @len: bytes of it
+ *
+ * Context: Any.
+ * Return: false: there is no place for it now.
+ */
+bool ec_sim_wire_enter(struct ec_sim_wire *w, struct ec_app *app, const u8 *frame, u16 len)
+{
+	unsigned long flags;
+	bool takes;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	advance(w);
+	takes = ec_app_eoe_takes(app);
+	if (takes)
+		ec_app_eoe_enter(app, frame, len, now_ns(w));
+	arm(w);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+	return takes;
+}
+
+/**
+ * ec_sim_wire_leave() - the next frame that leaves a slave by its Ethernet port
+ * @w: wire
+ * @app: slave of the segment with a port
+ * @frame: room for EC_EOE_FRAME_MAX bytes
+ *
+ * Context: Any.
+ * Return: bytes of it, 0: there is none.
+ */
+u16 ec_sim_wire_leave(struct ec_sim_wire *w, struct ec_app *app, u8 *frame)
+{
+	unsigned long flags;
+	u16 len;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	advance(w);
+	len = ec_app_eoe_leave(app, frame);
+	arm(w);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+	return len;
 }
 
 /**

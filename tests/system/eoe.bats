@@ -81,6 +81,41 @@ page() {
 	[ ! -e /sys/class/net/port1 ]
 }
 
+@test "the Ethernet port of a simulated switch is a network device, for another computer" {
+	local talk=$BATS_TEST_DIRNAME/eoe_talk.py server
+
+	stop
+	printf '%s\n' 'slave c EK1100' 'slave sw EL6614 alias=7 eoe=switch' \
+		'slave a_name_that_is_long EL6614 alias=8 eoe=switch' >"$BATS_TEST_TMPDIR/segment"
+	load_master
+	load_segment "$BATS_TEST_TMPDIR/segment"
+	wait_for 60 all_slaves_are PREOP 3
+	[ -e /sys/class/net/sim0-p2 ]
+	ip netns add outside
+	ip link set sim0-sw netns outside
+	ip -n outside addr add 192.168.7.2/24 dev sim0-sw
+	ip -n outside link set sim0-sw up
+	ip netns exec outside python3 "$talk" serve 3>&- &
+	server=$!
+	ip addr add 192.168.7.1/24 dev eoe0a7
+	ip link set eoe0a7 up
+	wait_for 20 eval '[ "$(cat /sys/class/net/eoe0a7/carrier)" = 1 ]'
+	[ "$(timeout 200 python3 "$talk" echo 192.168.7.2 60000)" = '60000 bytes came back' ]
+	# the port of a slave in INIT takes no frames and keeps none
+	ethercat states -p1 INIT
+	wait_for 5 eval '[ "$(cat /sys/class/net/eoe0a7/carrier)" = 0 ]'
+	ip netns exec outside timeout 5 bash -c 'echo >/dev/tcp/192.168.7.1/9' || true
+	ethercat states -p1 PREOP
+	wait_for 5 eval '[ "$(cat /sys/class/net/eoe0a7/carrier)" = 1 ]'
+	[ "$(timeout 200 python3 "$talk" echo 192.168.7.2 20000)" = '20000 bytes came back' ]
+	# the module takes it away where it is now
+	rmmod ec_sim
+	run ip -n outside link show dev sim0-sw
+	[ "$status" = 1 ]
+	kill $server
+	ip netns del outside
+}
+
 # a computer with the rules, the modules and udev; slave "late" has no power
 start_udev() {
 	local tree=$BATS_TEST_TMPDIR/lib/modules/$(uname -r)
