@@ -48,9 +48,7 @@ def echo(ip, count):
 
 
 def serve():
-    s = socket.socket()
-    s.bind(("", 7))
-    s.listen()
+    s = socket.create_server(("", 7), family=socket.AF_INET6, dualstack_ipv6=True)
     while True:
         peer = s.accept()[0]
         while True:

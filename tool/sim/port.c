@@ -10,6 +10,7 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/uio.h>
 #include <sys/un.h>
 #include <unistd.h>
 
@@ -107,6 +108,7 @@ static int attach(struct port *p, bool all)
 	int on = 1, space = 4 << 20;
 
 	if ((!all && setsockopt(p->fd, SOL_SOCKET, SO_ATTACH_FILTER, &filter, sizeof(filter))) ||
+	    (all && setsockopt(p->fd, SOL_PACKET, PACKET_VNET_HDR, &on, sizeof(on))) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_AUXDATA, &on, sizeof(on)) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_IGNORE_OUTGOING, &on, sizeof(on)) ||
 	    setsockopt(p->fd, SOL_PACKET, PACKET_ADD_MEMBERSHIP, &promisc, sizeof(promisc)) ||
@@ -114,6 +116,7 @@ static int attach(struct port *p, bool all)
 		fprintf(stderr, "ethercat-sim: %s: %s\n", p->name, strerror(errno));
 		return -1;
 	}
+	p->all = all;
 	/* a larger buffer is nice to have */
 	setsockopt(p->fd, SOL_SOCKET, SO_RCVBUF, &space, sizeof(space));
 	return 0;
@@ -217,6 +220,8 @@ static bool tag_of(struct msghdr *msg, uint8_t tag[VLAN_TAG])
  * @buf: gets the bytes on the wire, Ethernet header first
  * @cap: bytes at @buf
  *
+ * With @p->all the sender may have left checksum and segmentation to its card: @p->offload.
+ *
  * Return: bytes of the frame, more than @cap: too long; 0: no frame.
  */
 int port_receive(struct port *p, void *buf, size_t cap)
@@ -225,9 +230,12 @@ int port_receive(struct port *p, void *buf, size_t cap)
 		struct cmsghdr align;
 		char buf[CMSG_SPACE(sizeof(struct tpacket_auxdata))];
 	} control;
-	struct iovec data = { .iov_base = buf, .iov_len = cap };
+	struct iovec data[] = {
+		{ .iov_base = &p->offload, .iov_len = sizeof(p->offload) },
+		{ .iov_base = buf, .iov_len = cap },
+	};
 	struct msghdr msg = {
-		.msg_iov = &data, .msg_iovlen = 1,
+		.msg_iov = data + !p->all, .msg_iovlen = 1 + p->all,
 		.msg_control = control.buf, .msg_controllen = sizeof(control.buf),
 	};
 	ssize_t n = recvmsg(p->fd, &msg, MSG_TRUNC);
@@ -237,8 +245,11 @@ int port_receive(struct port *p, void *buf, size_t cap)
 		port_check(p);
 	if (n < 0)
 		return 0;
+	if (p->all)
+		n -= (ssize_t)sizeof(p->offload);
 	if (n < ETH_HLEN || !tag_of(&msg, tag))
 		return (int)n;
+	p->offload.csum_start = (uint16_t)(p->offload.csum_start + VLAN_TAG);
 	if ((size_t)n + VLAN_TAG <= cap) {
 		memmove(at + VLAN_TAG, at, (size_t)n - MACS);
 		memcpy(at, tag, VLAN_TAG);
@@ -256,5 +267,13 @@ int port_receive(struct port *p, void *buf, size_t cap)
  */
 int port_send(struct port *p, const void *buf, size_t len)
 {
+	struct virtio_net_hdr none = { 0 };
+	struct iovec data[] = {
+		{ .iov_base = &none, .iov_len = sizeof(none) },
+		{ .iov_base = (void *)buf, .iov_len = len },
+	};
+
+	if (p->all)
+		return writev(p->fd, data, 2) == (ssize_t)(sizeof(none) + len) ? 0 : -1;
 	return send(p->fd, buf, len, 0) == (ssize_t)len ? 0 : -1;
 }

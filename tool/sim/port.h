@@ -3,6 +3,7 @@
 #ifndef EC_SIM_PORT_H
 #define EC_SIM_PORT_H
 
+#include <linux/virtio_net.h>
 #include <net/if.h>
 #include <stdbool.h>
 #include <stddef.h>
@@ -13,6 +14,8 @@
  * @index: of the interface
  * @fd: packet socket, -1: none
  * @claim: socket whose name says that the interface is taken, -1: none
+ * @all: it receives all frames, and those that wait for an offload, see @offload
+ * @offload: of the last frame received: what the sender has left to its card
  * @down: the interface is down
  * @gone: the interface does not exist any more
  */
@@ -21,6 +24,8 @@ struct port {
 	int index;
 	int fd;
 	int claim;
+	bool all;
+	struct virtio_net_hdr offload;
 	bool down;
 	bool gone;
 };

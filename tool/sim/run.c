@@ -276,7 +276,7 @@ static void rest(struct run *r, const sigset_t *mask)
 			.events = ec_app_eoe_takes(r->uplinks[k].app) ? POLLIN : 0,
 		};
 	t = (struct timespec){ .tv_nsec = (long)left };
-	if (ppoll(fds, (nfds_t)(r->n_ports + 1 + r->n_uplinks), &t, mask) <= 0)
+	if (ppoll(fds, (nfds_t)(r->n_ports + 1 + r->n_uplinks), &t, mask) < 0)
 		return;
 	for (i = 0; i < r->n_ports; i++)
 		if (fds[i].revents)
@@ -286,7 +286,7 @@ static void rest(struct run *r, const sigset_t *mask)
 		control_receive(r->control, r->sim);
 	}
 	for (int k = 0; k < r->n_uplinks; k++)
-		if (up[k].revents)
+		if (up[k].revents || uplink_waits(&r->uplinks[k]))
 			uplink_in(&r->uplinks[k], now_ns(r));
 }
 

@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <linux/if_tun.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <sys/ioctl.h>
 #include <unistd.h>
@@ -41,8 +42,17 @@ static int open_tap(struct uplink *u, const char *name)
 			strerror(errno));
 		return -1;
 	}
-	u->tap = true;
 	return 0;
+}
+
+static int open_interface(struct uplink *u, const char *name)
+{
+	u->offload = calloc(1, sizeof(*u->offload));
+	if (!u->offload) {
+		fprintf(stderr, "ethercat-sim: no memory\n");
+		return -1;
+	}
+	return port_open(&u->port, name, true);
 }
 
 /**
@@ -69,8 +79,7 @@ int uplink_open(struct uplink *u, struct ec_sim *sim, const char *text)
 			text);
 		return -1;
 	}
-	return if_nametoindex(name + 1) ? port_open(&u->port, name + 1, true) :
-					  open_tap(u, name + 1);
+	return if_nametoindex(name + 1) ? open_interface(u, name + 1) : open_tap(u, name + 1);
 }
 
 /**
@@ -80,6 +89,8 @@ int uplink_open(struct uplink *u, struct ec_sim *sim, const char *text)
 void uplink_close(struct uplink *u)
 {
 	port_close(&u->port);
+	free(u->offload);
+	u->offload = NULL;
 }
 
 /**
@@ -92,8 +103,41 @@ void uplink_out(struct uplink *u)
 	u16 len;
 
 	while ((len = ec_app_eoe_leave(u->app, frame)))
-		if (write(u->port.fd, frame, len) != len)
+		if (u->offload ? port_send(&u->port, frame, len) :
+				 write(u->port.fd, frame, len) != len)
 			u->dropped++;
+}
+
+/* The next frame as it would be on the wire. */
+static int receive(struct uplink *u, u8 *frame, size_t cap)
+{
+	struct offload *o = u->offload;
+	size_t n;
+	int got;
+
+	if (!o)
+		return (int)read(u->port.fd, frame, cap);
+	for (;;) {
+		n = offload_next(o, frame, cap);
+		if (n)
+			return (int)n;
+		got = port_receive(&u->port, o->frame, sizeof(o->frame));
+		if (got <= 0)
+			return got;
+		if (!offload_begin(o, (size_t)got, &u->port.offload))
+			u->dropped++;
+	}
+}
+
+/**
+ * uplink_waits() - does a frame wait that the interface does not show
+ * @u: the port
+ *
+ * Return: whether segments of one wait here.
+ */
+bool uplink_waits(const struct uplink *u)
+{
+	return u->offload && u->offload->len;
 }
 
 /**
@@ -106,8 +150,7 @@ void uplink_in(struct uplink *u, u64 now)
 	u8 frame[EC_EOE_FRAME_MAX];
 
 	for (int i = 0; i < BURST && ec_app_eoe_takes(u->app); i++) {
-		int n = u->tap ? (int)read(u->port.fd, frame, sizeof(frame)) :
-				 port_receive(&u->port, frame, sizeof(frame));
+		int n = receive(u, frame, sizeof(frame));
 
 		if (n <= 0)
 			return;

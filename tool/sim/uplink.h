@@ -4,6 +4,7 @@
 #define EC_SIM_UPLINK_H
 
 #include "../../devices/sim/app.h"
+#include "offload.h"
 #include "port.h"
 
 #define UPLINKS	8
@@ -12,19 +13,20 @@
  * struct uplink - an Ethernet port of a slave
  * @app: the slave
  * @port: interface; of a tap only its descriptor
- * @tap: it is a tap of this program
+ * @offload: frame from an interface, of which segments may wait; NULL: a tap of this program
  * @dropped: frames too long, or not sent
  */
 struct uplink {
 	struct ec_app *app;
 	struct port port;
-	bool tap;
+	struct offload *offload;
 	u64 dropped;
 };
 
 int uplink_open(struct uplink *u, struct ec_sim *sim, const char *text);
 void uplink_close(struct uplink *u);
 void uplink_out(struct uplink *u);
+bool uplink_waits(const struct uplink *u);
 void uplink_in(struct uplink *u, u64 now);
 
 #endif
