@@ -88,11 +88,13 @@ static void send(const u8 *frame, u16 len)
 	u16 at = 0;
 
 	while (at < len) {
-		int n;
+		int n, ret;
 
 		at = (u16)(at + ec_eoe_fragment_cut(&f, frame, len, at, number++, SIZE));
 		n = ec_eoe_fragment_encode(msg, SIZE - EC_MBOX_HDR, &f);
-		MUST(n > 0 && !ec_app_eoe(app, msg, (size_t)n, NULL, 0));
+		MUST(n > 0);
+		ret = ec_app_eoe(app, msg, (size_t)n, NULL, 0);
+		MUST(!ret || (ret == -EINVAL && app->esc->fault.eoe == EC_SIM_EOE_REFUSE));
 	}
 }
 

@@ -18,9 +18,9 @@
 #define CYCLES_MAX	10000
 
 /* what is measured of a cycle */
-enum part { RECEIVE, SEND, WORK, LATE, PARTS };
+enum part { RECEIVE, SEND, WORK, LATE, SENT, PARTS };
 
-static const char * const names[PARTS] = { "receive", "send", "work", "late_ns" };
+static const char * const names[PARTS] = { "receive", "send", "work", "late_ns", "sent_ns" };
 static uint32_t samples[PARTS][CYCLES_MAX];
 
 static ec_master_t *master;
@@ -175,6 +175,8 @@ static int one_cycle(uint64_t *at, int by_kernel, uint32_t *cost)
 		cost[LATE] = cycle.late_max;
 	}
 	ecrt_domain_queue(domain);
+	/* the send deviation, where this process makes the schedule */
+	cost[SENT] = by_kernel ? 0 : (uint32_t)(now_ns() - *at);
 	t[2] = ticks();
 	ecrt_master_send(master);
 	t[3] = ticks();
@@ -199,8 +201,9 @@ static void report(unsigned int count, unsigned int incomplete)
 		for (unsigned int i = 0; i < count; i++)
 			sum += samples[p][i];
 		qsort(samples[p], count, sizeof(uint32_t), ascending);
-		printf("%s %u %u %u ", names[p], (unsigned int)(sum / count),
-		       samples[p][count - 1 - count / 100], samples[p][count - 1]);
+		printf("%s %u %u %u %u ", names[p], (unsigned int)(sum / count),
+		       samples[p][count - 1 - count / 100], samples[p][count - 1],
+		       samples[p][count - 1 - count / 1000]);
 	}
 	printf("incomplete %u\n", incomplete);
 }
