@@ -34,8 +34,8 @@ static void take(struct ec_app_ip *ip, const struct ec_eoe_ip *p)
  * unsupported. Fragments of frames vanish in a slave without Ethernet.
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: bytes at @tx; 0: no answer; -EINVAL: a fragment is refused; -EMSGSIZE: the message is too short, or
- * the answer too long.
+ * Return: bytes at @tx; 0: no answer; -EINVAL: a fragment is refused;
+ * -EMSGSIZE: the message is too short, or the answer too long.
  */
 int ec_app_eoe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap)
 {

@@ -55,7 +55,7 @@ page() {
 		printf "GET / HTTP/1.0\r\n\r\n" >&9
 		cat <&9' 2>/dev/null 3>&-
 }
-reads_page() { page "$@" | grep -q web; }
+reads_page() { [[ $(page "$@") == *web* ]]; }
 
 received() { ${in[@]+"${in[@]}"} cat /sys/class/net/eoe0a5/statistics/rx_packets; }
 receives() { [ "$(received)" -gt "$1" ]; }
@@ -178,7 +178,7 @@ refused() {
 	for kind in garbage almost; do
 		echo "mailbox web $kind" >$sim
 		echo "mailbox axis $kind" >$sim
-		page >/dev/null || true
+		page >/dev/null || true	# it answers as it likes
 		timeout 20 "$EC_BUILD/tool/ethercat" soe_list -p2 >/dev/null 2>&1 || [ $? = 1 ]
 		timeout 20 "$EC_BUILD/tool/ethercat" upload -p2 -t uint32 0x1018 4 >/dev/null 2>&1 || [ $? = 1 ]
 	done
