@@ -30,8 +30,8 @@ t() {	# t NAME COMMAND...
 
 # noticed SED FINDING: the rows with this change are refused; else the check could not fail
 noticed() {
-	sed -E "$1" tests/class-a/rows.txt >"$tmp/rows" && ! cmp -s "$tmp/rows" tests/class-a/rows.txt &&
-		! EC_ROWS=$tmp/rows $rows check >"$tmp/found" && grep -F "$2" "$tmp/found"
+	sed -E "$1" tests/class-a/rows.txt >"$tmp/rows" &&
+		! cmp -s "$tmp/rows" tests/class-a/rows.txt && ! EC_ROWS=$tmp/rows $rows check >"$tmp/found" && grep -F "$2" "$tmp/found"
 }
 
 same_page() { $rows page | diff Documentation/class-a.rst -; }
@@ -45,8 +45,8 @@ another_page() {
 # a_failure: a test of a row fails, another one is skipped, a third one has no result
 a_failure() {
 	mkdir "$tmp/run" && echo "1 2 3 4" >"$tmp/run/uml.end" &&
-		printf '%s\n' 'ok bus_voe.voe_echo' 'skip bus_dc.dc_window' 'not ok bus_soe.soe_values' \
-			>"$tmp/run/uml.cases" && ! $rows table "$tmp/run" >"$tmp/table" &&
+		printf '%s\n' 'ok bus_voe.voe_echo' 'skip bus_dc.dc_window' \
+			'not ok bus_soe.soe_values' >"$tmp/run/uml.cases" && ! $rows table "$tmp/run" >"$tmp/table" &&
 		grep -qx 'not ok - class A: row 801: failed: bus_soe.soe_values' "$tmp/table" &&
 		grep -qx 'not ok - class A: row 1103: skipped: bus_dc.dc_window' "$tmp/table" &&
 		grep -qx 'not ok - class A: row 1001: no result: bus_voe.voe_handlers' "$tmp/table" &&

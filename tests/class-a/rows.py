@@ -19,6 +19,7 @@ import hashlib
 import os
 import re
 import sys
+import textwrap
 
 TOP = os.path.realpath(os.path.join(os.path.dirname(__file__), "../.."))
 FILE = os.environ.get("EC_ROWS") or os.path.join(TOP, "tests/class-a/rows.txt")
@@ -276,17 +277,19 @@ def page(rows):
     if missing:
         out += title("Rows with a remark", "=")
         for r in missing:
-            out += "- %d, %s: %s.\n" % (r.number, r.name, r.note)
+            out += textwrap.fill("- %d, %s: %s." % (r.number, r.name, r.note), 99,
+                                 subsequent_indent="  ") + "\n"
         out += "\n"
     out += title("Tests", "=")
     out += ("A name with a dot is a KUnit case of ``tests/bus`` or ``tests/unit``, other names are "
-            "those of bats\nfiles. Each test fails without the function, but for those with *also*, "
-            "for which that is not tried.\n\n")
+            "those of bats\nfiles. Each test fails without the function, but for those with "
+            "*also*, for which that is not tried.\n\n")
     for r in rows:
         if r.tests:
             out += "%d, %s\n" % (r.number, r.name)
             out += "".join("  | ``%s``\n" % t for t in r.tests)
-            out += "".join("  | also ``%s``\n" % t for t in r.also) + "\n"
+            out += "".join("  | also ``%s``\n" % t.replace(": ", "``\n    ``", 1)
+                           for t in r.also) + "\n"
     return out.rstrip("\n") + "\n"
 
 

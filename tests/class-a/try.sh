@@ -30,7 +30,8 @@ build() {
 
 	mkdir -p "$over" "$out"
 	$rows over "$over" "${numbers[@]}" || return
-	base=$(tests/uml/build.sh --path) && mine=$(EC_UML_OVER=$over tests/uml/build.sh --path) || return
+	base=$(tests/uml/build.sh --path) || return
+	mine=$(EC_UML_OVER=$over tests/uml/build.sh --path) || return
 	if [ ! -d "${mine%/*}" ] && [ -e "$base" ]; then
 		mkdir -p "${mine%/*}" && cp -a "${base%/*}/ethercat" "${mine%/*}" || return
 	fi
