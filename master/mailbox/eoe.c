@@ -46,6 +46,24 @@ static int eoe_exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u
 	return ret;
 }
 
+static int set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result, bool packed)
+{
+	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
+	int ret;
+
+	*result = 0;
+	if (IS_ERR(b))
+		return PTR_ERR(b);
+	ret = packed ? ec_eoe_ip_encode_packed(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p) :
+		       ec_eoe_ip_encode(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p);
+	ret = eoe_exchange(mb, b, ret, EC_EOE_SET_IP_RESP, result, TIMEOUT_MS);
+	kfree(b);
+	ret = min(ret, 0);
+	ec_mbox_dbg_result(mb, ret, "set IP parameters 0x%02x, EoE result 0x%04x", p->which,
+			    *result);
+	return ret;
+}
+
 /**
  * ec_eoe_set_ip() - give a slave IP parameters
  * @mb: mailbox of the slave
@@ -62,19 +80,7 @@ static int eoe_exchange(struct ec_mbox *mb, struct ec_mbox_buf *b, size_t len, u
  */
 int ec_eoe_set_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, u16 *result)
 {
-	struct ec_mbox_buf *b = ec_mbox_alloc(mb, EC_SII_PROTO_EOE, EC_EOE_IP_SIZE);
-	int ret;
-
-	*result = 0;
-	if (IS_ERR(b))
-		return PTR_ERR(b);
-	ret = ec_eoe_ip_encode(b->tx, sizeof(b->tx), EC_EOE_SET_IP_REQ, p);
-	ret = eoe_exchange(mb, b, ret, EC_EOE_SET_IP_RESP, result, TIMEOUT_MS);
-	kfree(b);
-	ret = min(ret, 0);
-	ec_mbox_dbg_result(mb, ret, "set IP parameters 0x%02x, EoE result 0x%04x", p->which,
-			    *result);
-	return ret;
+	return set_ip(mb, p, result, false);
 }
 
 static int get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result, u32 timeout_ms)
@@ -111,6 +117,17 @@ int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result)
 	return get_ip(mb, p, result, TIMEOUT_MS);
 }
 
+/* Does a slave have what it would, if it has read a request with fixed places as packed? */
+static bool misread(const struct ec_eoe_ip *p, const struct ec_eoe_ip *now)
+{
+	u8 msg[EC_EOE_IP_SIZE];
+	struct ec_eoe_ip wrong;
+
+	return ec_eoe_ip_encode(msg, sizeof(msg), EC_EOE_SET_IP_REQ, p) > 0 &&
+	       !ec_eoe_ip_decode_packed(msg, sizeof(msg), &wrong) &&
+	       !ec_eoe_ip_same(now, p, p->which) && ec_eoe_ip_same(now, &wrong, p->which);
+}
+
 /**
  * ec_eoe_give_ip() - give a slave IP parameters, in a form that each slave understands
  * @mb: mailbox of the slave
@@ -118,8 +135,10 @@ int ec_eoe_get_ip(struct ec_mbox *mb, struct ec_eoe_ip *p, u16 *result)
  * @mac: MAC address for a slave that reports none, if its request needs one
  * @result: EC_EOE_OK... of the slave
  *
- * Between wanted fields the request repeats what the slave has, see
- * ec_eoe_ip_fill(); a slave that does not report it has 500 ms.
+ * Between wanted parameters the request repeats what the slave has, see
+ * ec_eoe_ip_fill(); a slave that does not report it has 500 ms. Where that does
+ * not help, the parameters are read back, and are packed if the slave has read
+ * them so.
  *
  * Context: Process. Waits for bus traffic.
  * Return: as ec_eoe_set_ip().
@@ -137,6 +156,13 @@ int ec_eoe_give_ip(struct ec_mbox *mb, const struct ec_eoe_ip *p, const u8 mac[6
 	ret = get_ip(mb, &now, result, KNOWN_MS);
 	if (ret == -EINTR || ret == -ECANCELED || ret == -EAGAIN || ret == -ENOMEM)
 		return ret;
-	ec_eoe_ip_fill(&all, ret ? &nothing : &now, mac);
-	return ec_eoe_set_ip(mb, &all, result);
+	if (ec_eoe_ip_fill(&all, ret ? &nothing : &now, mac) || ret)
+		return ec_eoe_set_ip(mb, &all, result);
+	ret = ec_eoe_set_ip(mb, p, result);
+	if (ret)
+		return ret;
+	if (!get_ip(mb, &now, result, KNOWN_MS) && misread(p, &now))
+		return set_ip(mb, p, result, true);
+	*result = 0;
+	return 0;
 }

@@ -215,6 +215,25 @@ bool ec_eoe_ip_fill(struct ec_eoe_ip *p, const struct ec_eoe_ip *now, const u8 m
 }
 
 /**
+ * ec_eoe_ip_same() - are parameters the same
+ * @a: parameters
+ * @b: others; those that they do not have are 0
+ * @which: EC_EOE_MAC..., those that are compared
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether they are.
+ */
+bool ec_eoe_ip_same(const struct ec_eoe_ip *a, const struct ec_eoe_ip *b, u32 which)
+{
+	return (!(which & EC_EOE_MAC) || !memcmp(a->mac, b->mac, sizeof(a->mac))) &&
+	       (!(which & EC_EOE_IP) || !memcmp(a->ip, b->ip, sizeof(a->ip))) &&
+	       (!(which & EC_EOE_MASK) || !memcmp(a->mask, b->mask, sizeof(a->mask))) &&
+	       (!(which & EC_EOE_GATEWAY) || !memcmp(a->gateway, b->gateway, sizeof(a->gateway))) &&
+	       (!(which & EC_EOE_DNS) || !memcmp(a->dns, b->dns, sizeof(a->dns))) &&
+	       (!(which & EC_EOE_HOSTNAME) || !memcmp(a->name, b->name, sizeof(a->name)));
+}
+
+/**
  * ec_eoe_result_encode() - write a message that is a header only
  * @tx: message behind the mailbox header
  * @cap: bytes at @tx

@@ -64,6 +64,7 @@ int ec_eoe_ip_decode(const u8 *rx, size_t len, struct ec_eoe_ip *p);
 int ec_eoe_ip_encode_packed(u8 *tx, size_t cap, u8 type, const struct ec_eoe_ip *p);
 int ec_eoe_ip_decode_packed(const u8 *rx, size_t len, struct ec_eoe_ip *p);
 bool ec_eoe_ip_fill(struct ec_eoe_ip *p, const struct ec_eoe_ip *now, const u8 mac[6]);
+bool ec_eoe_ip_same(const struct ec_eoe_ip *a, const struct ec_eoe_ip *b, u32 which);
 int ec_eoe_result_encode(u8 *tx, size_t cap, u8 type, u16 result);
 int ec_eoe_result_decode(const u8 *rx, size_t len, u8 type, u16 *result);
 const char *ec_eoe_result_text(u16 result);

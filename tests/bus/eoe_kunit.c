@@ -198,6 +198,31 @@ static void eoe_packed_slave_keeps_other_parameters(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, c.params.ip, more.ip, 4);
 }
 
+/* Its address may be from DHCP, so that a name alone has a gap. Slaves of both readings get it. */
+static void eoe_name_alone_is_packed_for_packed_slave(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave f EL6614\nslave p EL6614 ip=packed\n"
+				     "slave w EL6614 ip=write\n", 3);
+	struct ec_ip_params name = { .which = EC_IP_HOSTNAME | EC_IP_GATEWAY, .name = "gate",
+				     .gateway = { 10, 2, 2, 2 } };
+	struct ec_ioc_ip c;
+	unsigned int i;
+
+	for (i = 0; i < 3; i++) {
+		struct ec_app *app = bus_app(b, (const char *[]){ "f", "p", "w" }[i]);
+
+		c = (struct ec_ioc_ip){ .slave.position = i, .params = address };
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_IP_SET, &c), 0);
+		c.params = name;
+		KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_IP_SET, &c), 0, "%s",
+				    b->app.reason);
+		KUNIT_EXPECT_STREQ(test, (char *)app->ip.now.name, "gate");
+		KUNIT_EXPECT_MEMEQ(test, app->ip.now.gateway, name.gateway, 4);
+		KUNIT_EXPECT_MEMEQ(test, app->ip.now.ip, address.ip, 4);
+		KUNIT_EXPECT_EQ(test, app->ip.sets, i == 1 ? 3u : 2u);
+	}
+}
+
 /* By an application: at the start, and again after a power loss. */
 static void eoe_configured_packed(struct kunit *test)
 {
@@ -233,6 +258,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(eoe_parameters_set_by_tool),
 	KUNIT_CASE(eoe_address_reaches_slaves_of_both_readings),
 	KUNIT_CASE(eoe_packed_slave_keeps_other_parameters),
+	KUNIT_CASE(eoe_name_alone_is_packed_for_packed_slave),
 	KUNIT_CASE(eoe_configured_packed),
 	{ }
 };
