@@ -107,10 +107,10 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	u16 wkc = get_unaligned_le16(data + d->len);
 	bool complete = ec_cyc_is_complete(d, wkc);
 
-	/* by their ages: the numbers may be any distance apart after a pause */
-	if (c->send - f->send > c->send - dom->send)
-		return;
 	if (f->send != dom->send) {
+		/* by their ages: the numbers may be any distance apart after a pause */
+		if (c->send - f->send > c->send - dom->send)
+			return;
 		dom->send = f->send;
 		dom->wkc = 0;
 		dom->partial = 0;
