@@ -156,7 +156,8 @@ static void idle(struct kunit *test, u32 n, u64 limit)
 		   PINGS, FRAGMENTS * FRAGMENT, n, MBOX, div_u64(ns, NSEC_PER_MSEC),
 		   div_u64(best, NSEC_PER_MSEC),
 		   div64_u64(8000ull * n * PINGS * FRAGMENTS * FRAGMENT, ns));
-	snprintf(text, sizeof(text), "%% of the shortest time: EoE both ways through %u slave(s), idle", n);
+	snprintf(text, sizeof(text),
+		 "%% of the shortest time: EoE both ways through %u slave(s), idle", n);
 	judge(test, div64_u64(ns * 100 + best - 1, best), 125, limit, text);
 	eoe_down(p->w);
 }

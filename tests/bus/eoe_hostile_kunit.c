@@ -335,7 +335,8 @@ static void hostile_rtnl_delays_no_wish(struct kunit *test)
 static void hostile_loss_of_many_mixes_no_device(struct kunit *test)
 {
 	static const char *const names[] = { "eoe0a7", "eoe0n8", "eoe0s3", "eoe0s4", "eoe0s5" };
-	struct bus *b = bus_up(test, "segment seed=5\nslave a drive\nslave p EL6614 alias=7 serial=9\n"
+	struct bus *b = bus_up(test, "segment seed=5\nslave a drive\n"
+			       "slave p EL6614 alias=7 serial=9\n"
 			       "slave q EL6614 serial=8\nslave r EL6614\nslave s EL6614 serial=9\n"
 			       "slave t EL6614\n", 6);
 	struct net_device *nds[ARRAY_SIZE(names)];
@@ -379,5 +380,7 @@ static struct kunit_case cases[] = {
 	{ }
 };
 
-static struct kunit_suite suite = { .name = "bus_eoe_hostile", .exit = bus_exit, .test_cases = cases };
+static struct kunit_suite suite = {
+	.name = "bus_eoe_hostile", .exit = bus_exit, .test_cases = cases,
+};
 kunit_test_suite(suite);

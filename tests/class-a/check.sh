@@ -31,7 +31,8 @@ t() {	# t NAME COMMAND...
 # noticed SED FINDING: the rows with this change are refused; else the check could not fail
 noticed() {
 	sed -E "$1" tests/class-a/rows.txt >"$tmp/rows" &&
-		! cmp -s "$tmp/rows" tests/class-a/rows.txt && ! EC_ROWS=$tmp/rows $rows check >"$tmp/found" && grep -F "$2" "$tmp/found"
+		! cmp -s "$tmp/rows" tests/class-a/rows.txt && ! EC_ROWS=$tmp/rows $rows check >"$tmp/found" &&
+		grep -F "$2" "$tmp/found"
 }
 
 same_page() { $rows page | diff Documentation/class-a.rst -; }

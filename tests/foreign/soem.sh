@@ -32,7 +32,8 @@ if [ ! -x "$program" ]; then
 	mkdir -p "$program.d" &&
 	for f in "$sources"/soem/*.c "$sources"/osal/linux/*.c "$sources"/oshw/linux/*.c; do
 		gcc -DEC_VER2 -O1 -w -I "$sources"/soem -I "$sources"/osal -I "$sources"/osal/linux \
-			-I "$sources"/oshw/linux -c -o "$program.d/$(basename "$f").o" "$f" || fail "SOEM cannot be built"
+			-I "$sources"/oshw/linux -c -o "$program.d/$(basename "$f").o" "$f" ||
+				fail "SOEM cannot be built"
 	done &&
 	gcc -DEC_VER2 -O1 -Wall -Wextra -Werror -isystem "$sources"/soem -isystem "$sources"/osal \
 		-isystem "$sources"/osal/linux -isystem "$sources"/oshw/linux \

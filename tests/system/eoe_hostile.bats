@@ -84,7 +84,9 @@ refused() {
 
 	shift
 	run "$@"
-	[ "$status" != 0 ] && [[ $output == *"$words"* ]] || { echo "$*: $status, $output"; return 1; }
+	[ "$status" != 0 ] && [[ $output == *"$words"* ]] && return
+	echo "$*: $status, $output"
+	return 1
 }
 
 @test "a device works in another network namespace, and is back when that is deleted" {
@@ -180,7 +182,8 @@ refused() {
 		echo "mailbox axis $kind" >$sim
 		page >/dev/null || true	# it answers as it likes
 		timeout 20 "$EC_BUILD/tool/ethercat" soe_list -p2 >/dev/null 2>&1 || [ $? = 1 ]
-		timeout 20 "$EC_BUILD/tool/ethercat" upload -p2 -t uint32 0x1018 4 >/dev/null 2>&1 || [ $? = 1 ]
+		timeout 20 "$EC_BUILD/tool/ethercat" upload -p2 -t uint32 0x1018 4 >/dev/null 2>&1 ||
+			[ $? = 1 ]
 	done
 	for kind in web axis; do
 		echo "mailbox $kind good" >$sim

@@ -60,7 +60,8 @@ rc=$?
 [ $rc != 137 ] || echo "EC-UML-HANG" >>"$log"
 took=$(echo "$(date +%s.%N) - $start" | bc)
 
-python3 "$here/ktap.py" --seconds "$took" --limit "$limit" ${EC_UML_CASES:+--cases "$EC_UML_CASES"} \
+python3 "$here/ktap.py" --seconds "$took" --limit "$limit" \
+	${EC_UML_CASES:+--cases "$EC_UML_CASES"} \
 	"$log"
 rc=$?
 if [ $rc != 0 ]; then

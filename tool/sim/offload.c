@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * A veth pair has no card: the frames of its other end arrive without checksum, and a TCP segment of
- * up to 64 KiB as one frame. Here is what the card would do.
+ * A veth pair has no card: the frames of its other end arrive without checksum, and a TCP segment
+ * of up to 64 KiB as one frame. Here is what the card would do.
  */
 #include <linux/if_ether.h>
 #include <netinet/in.h>
