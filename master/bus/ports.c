@@ -72,8 +72,14 @@ void ec_ports_guard(struct ec_bus *bus, bool on)
 		bus->ops->wake(bus);
 }
 
-/* A ring ends at a port without a slave. */
-static bool is_guarded(const struct ec_bus *bus)
+/**
+ * ec_ports_are_guarded() - are ports closed behind which nothing is known?
+ * @bus: bus
+ *
+ * Context: Any.
+ * Return: true while process data run, but not in a ring, which ends at a port without a slave.
+ */
+bool ec_ports_are_guarded(const struct ec_bus *bus)
 {
 	return READ_ONCE(bus->guarded) && !READ_ONCE(bus->down) && ec_links_n(bus->links) == 1;
 }
@@ -110,7 +116,7 @@ static u8 wanted_loops(const struct ec_slave *s)
 	unsigned int p;
 	u8 loops = 0;
 
-	if (!is_guarded(s->bus) || s->ports.fixed)
+	if (!ec_ports_are_guarded(s->bus) || s->ports.fixed)
 		return 0;
 	for (p = 0; p < EC_MAX_PORT; p++)
 		loops |= wanted_loop(s, p) << 2 * p;
@@ -384,7 +390,7 @@ enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned)
 	write_loops(bus);
 	if (xchg(&bus->retry, false))
 		forget_waits(bus);
-	return scanned && is_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
+	return scanned && ec_ports_are_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
 }
 
 /**
@@ -402,7 +408,7 @@ void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open)
 	struct ec_loss *l = &s->ports.loss[port];
 	u64 now = ktime_get_ns();
 
-	if (!is_guarded(s->bus) || READ_ONCE(s->ports.fast) & BIT(port))
+	if (!ec_ports_are_guarded(s->bus) || READ_ONCE(s->ports.fast) & BIT(port))
 		return;
 	if (now - l->since_ns > LOSS_NS + l->wait_s * (u64)NSEC_PER_SEC)
 		*l = (struct ec_loss){ .since_ns = now };
@@ -434,7 +440,7 @@ u32 ec_ports_kept(const struct ec_slave *s, unsigned int port, u32 *wait_s)
 
 	ec_bus_assert_stays(s->bus);
 	*wait_s = 0;
-	if (!is_guarded(s->bus) || !is_door(s, port))
+	if (!ec_ports_are_guarded(s->bus) || !is_door(s, port))
 		return EC_PORT_NOT_KEPT;
 	if (kept)
 		return kept;

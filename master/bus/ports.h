@@ -19,6 +19,7 @@ enum ec_ports_result {
 };
 
 void ec_ports_guard(struct ec_bus *bus, bool on);
+bool ec_ports_are_guarded(const struct ec_bus *bus);
 enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned);
 void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open);
 void ec_ports_retry(struct ec_bus *bus);

@@ -14,6 +14,7 @@
 #include <linux/slab.h>
 #include "../carry/post.h"
 #include "../link/links.h"
+#include "ports_lost.h"
 #include "scan_sii_int.h"
 
 #define BUSY_NS		(20 * NSEC_PER_MSEC)	/* of one access */
@@ -209,6 +210,7 @@ static bool chain_follow_all(struct job *j, struct chain *chains)
 	for (i = 0; i < j->n; i++)
 		runs |= chain_follow(&chains[i]);
 	ec_scan_image_interrupt(j);
+	ec_ports_look_for_lost(j->bus);
 	return runs;
 }
 

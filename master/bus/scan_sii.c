@@ -10,6 +10,7 @@
 #include <linux/slab.h>
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "ports_lost.h"
 #include "scan_count.h"
 #include "scan_sii.h"
 #include "scan_sii_int.h"
@@ -254,6 +255,7 @@ static void read_apart(struct job *j)
 			usleep_range(300, 400);
 			left = drop_gone(j, j->rds, scan_sii_look(j, j->rds, left, left));
 		}
+		ec_ports_look_for_lost(j->bus);
 	}
 }
 
@@ -292,6 +294,7 @@ static void scan_sii_run(struct job *j)
 	for (n = waiting(j, &word); n && ec_scan_sii_goes_on(j); n = waiting(j, &word)) {
 		scan_sii_step(j, j->rds, n, word);
 		ec_scan_image_interrupt(j);
+		ec_ports_look_for_lost(j->bus);
 	}
 	read_apart(j);
 }

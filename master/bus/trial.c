@@ -10,6 +10,7 @@
 #include "known.h"
 #include "owed.h"
 #include "ports.h"
+#include "ports_lost.h"
 #include "slave.h"
 #include "trial.h"
 #include "trial_int.h"
@@ -285,6 +286,10 @@ static int look(struct ec_trials *t)
 	};
 
 	ec_xfer(t->bus->links, dg, 2);
+	ec_ports_close_lost(t->bus, dg[0].irq | dg[1].irq);
+	if (t->slave)
+		t->host.loops = t->slave->ports.loops;
+	t->mute = dg[0].err && dg[1].err;
 	t->dl = dg[0].err || dg[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!(t->dl & EC_DLS_LINK(t->port)))
 		return -ENOLINK;
@@ -390,6 +395,9 @@ static int trial_branch(struct ec_trials *t, struct ec_guest *first)
 		t->position++;
 		ret = trial_one(t, &g);
 		l->host.loops = t->host.loops;
+		/* another port than this one may be the cause: the monitor looks for it */
+		if (t->mute)
+			break;
 		if (ret && ret != -EALREADY) {
 			t->position--;
 			continue;
@@ -446,7 +454,9 @@ int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 		return -ENOMEM;
 	WRITE_ONCE(s->bus->trials, s->bus->trials + 1);
 	t.next = t.position < s->bus->n_slaves ? s->bus->slaves[t.position] : NULL;
+	t.slave = s;
 	ret = trial_one(&t, &g);
+	t.slave = NULL;
 	s->ports.loops = t.host.loops;
 	s->dl_seen = t.dl ?: s->dl_seen;
 	*is = t.is;

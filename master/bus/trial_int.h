@@ -67,6 +67,8 @@ struct ec_guest {
  * @position: of the first slave behind the port
  * @branch_ns: a frame is in the branches of the host that it passes before the port for so long
  * @next: slave of the list at that position now; NULL: there is none
+ * @slave: slave of the list that @host is; NULL: it is a guest
+ * @mute: no frame returned at the last look
  * @dl: DL status of the host at the end of the last trial
  * @count: slaves that reply then
  * @door: what is known of the port; NULL: it is that of a guest
@@ -83,6 +85,8 @@ struct ec_trials {
 	u16 position;
 	u32 branch_ns;
 	const struct ec_slave *next;
+	struct ec_slave *slave;
+	bool mute;
 	u16 dl;
 	u16 count;
 	struct ec_door *door;

@@ -25,7 +25,7 @@ static void identify(const struct ec_slave *s, struct ec_eoe_id *id)
 	};
 }
 
-static struct ec_eoe_id *read_list(struct ec_bus *bus, u32 lists, unsigned int *n)
+static struct ec_eoe_id *ids_read_list(struct ec_bus *bus, u32 lists, unsigned int *n)
 {
 	unsigned int i = 0, size = READ_ONCE(bus->n_slaves);
 	struct ec_eoe_id *ids = kvcalloc(size + 1, sizeof(*ids), GFP_KERNEL);
@@ -67,7 +67,7 @@ static int by_alias(const void *a, const void *b)
 	return order(((const struct ec_eoe_id *)a)->alias, ((const struct ec_eoe_id *)b)->alias);
 }
 
-static int by_serial(const void *a, const void *b)
+static int ids_by_serial(const void *a, const void *b)
 {
 	return order(((const struct ec_eoe_id *)a)->serial, ((const struct ec_eoe_id *)b)->serial);
 }
@@ -83,7 +83,7 @@ static u64 type_of(const struct ec_eoe_id *id)
 }
 
 /* One without alias and serial number is known by its place alone. */
-static u64 unit_of(const struct ec_eoe_id *id)
+static u64 ids_unit_of(const struct ec_eoe_id *id)
 {
 	return (u64)id->alias << 48 | (u64)id->serial << 16 |
 	       (id->alias || id->serial ? 0 : id->position);
@@ -91,7 +91,7 @@ static u64 unit_of(const struct ec_eoe_id *id)
 
 static int by_unit(const void *a, const void *b)
 {
-	return order(type_of(a), type_of(b)) ?: order(unit_of(a), unit_of(b));
+	return order(type_of(a), type_of(b)) ?: order(ids_unit_of(a), ids_unit_of(b));
 }
 
 /* Heapsort: bounded for whatever slaves say. */
@@ -111,7 +111,7 @@ static void mark_shared(struct ec_eoe_id *ids, unsigned int n)
 	for (i = 1; i < n; i++)
 		if (ids[i].alias && ids[i].alias == ids[i - 1].alias)
 			ids[i].alias_shared = ids[i - 1].alias_shared = true;
-	sort_ids(ids, n, by_serial);
+	sort_ids(ids, n, ids_by_serial);
 	for (i = 1; i < n; i++)
 		if (ids[i].serial && ids[i].serial == ids[i - 1].serial)
 			ids[i].serial_shared = ids[i - 1].serial_shared = true;
@@ -153,7 +153,7 @@ void ec_eoe_ids_by_unit(struct ec_eoe_id *ids, unsigned int n)
  */
 struct ec_eoe_id *ec_eoe_ids_read(struct ec_bus *bus, u32 lists, unsigned int *n)
 {
-	struct ec_eoe_id *ids = read_list(bus, lists, n);
+	struct ec_eoe_id *ids = ids_read_list(bus, lists, n);
 
 	if (ids) {
 		mark_shared(ids, *n);

@@ -31,7 +31,8 @@ if [ ! -x "$program" ]; then
 	# SOEM is built as it is; warnings are for the program only
 	mkdir -p "$program.d" &&
 	for f in "$sources"/soem/*.c "$sources"/osal/linux/*.c "$sources"/oshw/linux/*.c; do
-		gcc -DEC_VER2 -O1 -w -I "$sources"/soem -I "$sources"/osal -I "$sources"/osal/linux \
+		gcc -DEC_VER2 -O1 -w -I "$sources"/soem -I "$sources"/osal \
+			-I "$sources"/osal/linux \
 			-I "$sources"/oshw/linux -c -o "$program.d/$(basename "$f").o" "$f" ||
 				fail "SOEM cannot be built"
 	done &&

@@ -31,7 +31,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 		int n = ec_eoe_ip_encode_packed(out, sizeof(out), EC_EOE_SET_IP_REQ, &p);
 
 		MUST(n >= EC_EOE_HDR + 4 && (size_t)n <= len);
-		MUST(!memcmp(out + EC_EOE_HDR + 4, data + EC_EOE_HDR + 4, (size_t)n - EC_EOE_HDR - 4));
+		MUST(!memcmp(out + EC_EOE_HDR + 4, data + EC_EOE_HDR + 4,
+			     (size_t)n - EC_EOE_HDR - 4));
 		MUST(!ec_eoe_ip_decode_packed(out, (size_t)n, &again) &&
 		     !memcmp(&p, &again, sizeof(p)));
 	}

@@ -36,7 +36,9 @@ setup() {
 teardown() {
 	local p
 
-	for p in ${TRAFFIC:-} ${CAPTURE:-} ${APP:-} ${SPIN:-}; do kill "$p" 2>/dev/null || true; done
+	for p in ${TRAFFIC:-} ${CAPTURE:-} ${APP:-} ${SPIN:-}; do
+		kill "$p" 2>/dev/null || true
+	done
 	ip netns del box 2>/dev/null || true
 	for p in br7 br8 main0 veth0; do ip link del $p 2>/dev/null || true; done
 	run dmesg
@@ -182,8 +184,8 @@ refused() {
 		echo "mailbox axis $kind" >$sim
 		page >/dev/null || true	# it answers as it likes
 		timeout 20 "$EC_BUILD/tool/ethercat" soe_list -p2 >/dev/null 2>&1 || [ $? = 1 ]
-		timeout 20 "$EC_BUILD/tool/ethercat" upload -p2 -t uint32 0x1018 4 >/dev/null 2>&1 ||
-			[ $? = 1 ]
+		timeout 20 "$EC_BUILD/tool/ethercat" upload -p2 -t uint32 0x1018 4 \
+			>/dev/null 2>&1 || [ $? = 1 ]
 	done
 	for kind in web axis; do
 		echo "mailbox $kind good" >$sim
@@ -197,7 +199,8 @@ refused() {
 
 # container COMMAND...: as a user with a user and a network namespace of their own
 container() {
-	python3 "$BATS_TEST_DIRNAME/unchroot.py" setpriv --reuid 65534 --regid 65534 --clear-groups \
+	python3 "$BATS_TEST_DIRNAME/unchroot.py" \
+		setpriv --reuid 65534 --regid 65534 --clear-groups \
 		unshare -Urn "$@"
 }
 
@@ -251,7 +254,8 @@ line() {
 	[ "$1" = veth0 ] || { ip link add "$1" type bridge && ip link set veth0 master "$1" up; }
 	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices="$1" frame_numbers=N
 	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
-	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$BATS_FILE_TMPDIR/segment" netdev=veth1
+	insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" \
+		segment="$BATS_FILE_TMPDIR/segment" netdev=veth1
 	wait_for 120 all_slaves_are PREOP 3
 	wait_for 10 has_device eoe0a5
 }

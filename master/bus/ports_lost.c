@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/*
+ * Ports that lose their link while the monitor is busy elsewhere, with a trial or EEPROMs: they are
+ * closed there and then. A PC or a switch that gets a link at one of them meanwhile would open it by
+ * its first frame, and no frame of the bus would return.
+ */
+#include <linux/ktime.h>
+#include <linux/mm.h>
+#include <linux/slab.h>
+#include "../carry/xfer.h"
+#include "../link/links.h"
+#include "graph.h"
+#include "ports.h"
+#include "ports_lost.h"
+#include "slave.h"
+
+#define LOOK_NS	(20 * NSEC_PER_MSEC)	/* between two looks; a link takes longer to come */
+
+/* The loop control with those ports closed behind which a slave is known, but no link. */
+static u8 without_lost(const struct ec_slave *s, u16 dl)
+{
+	u8 open = ec_graph_open_ports(dl), loops = s->ports.loops;
+	unsigned int p;
+
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (p != s->graph.upstream && s->graph.at[p] && !(open & BIT(p)))
+			loops = ec_loops_with(loops, p, EC_LOOP_CLOSED);
+	return loops;
+}
+
+/* Slaves with a port that is open as long as it has a link */
+static bool is_watched(const struct ec_slave *s)
+{
+	unsigned int p;
+
+	for (p = 1; p < EC_MAX_PORT; p++)
+		if (p != s->graph.upstream && s->graph.at[p] &&
+		    (s->ports.loops >> 2 * p & 3) == EC_LOOP_AUTO_CLOSE)
+			return !READ_ONCE(s->reply.silent);
+	return false;
+}
+
+static void close_them(struct ec_bus *bus, struct ec_slave **list, struct ec_dg *dg, u8 (*v)[3],
+		       unsigned int n)
+{
+	unsigned int i, k = 0;
+
+	for (i = 0; i < n; i++) {
+		u16 dl = get_unaligned_le16(v[i]);
+
+		if (dg[i].err || dg[i].wkc != 1)
+			continue;
+		list[i]->dl_seen = dl;
+		v[k][2] = without_lost(list[i], dl);
+		if (v[k][2] != list[i]->ports.loops)
+			list[k++] = list[i];
+	}
+	for (i = 0; i < k; i++)
+		dg[i] = EC_FPWR(list[i]->station, EC_REG_DL_LOOPS, 1, &v[i][2]);
+	if (k)
+		ec_xfer(bus->links, dg, k);
+	for (i = 0; i < k; i++)
+		if (!dg[i].err && dg[i].wkc == 1)
+			list[i]->ports.loops = v[i][2];
+}
+
+/**
+ * ec_ports_close_lost() - close ports in use that have lost their link
+ * @bus: bus
+ * @irq: IRQ field of a datagram that has passed all slaves just now; nothing is done unless it shows
+ *	the DL event
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ */
+void ec_ports_close_lost(struct ec_bus *bus, u16 irq)
+{
+	struct ec_slave **list;
+	unsigned int n = 0, i = 0;
+	struct ec_dg *dg;
+	u8 (*v)[3];
+
+	if (!(irq & EC_ECAT_EVENT_DL) || !ec_ports_are_guarded(bus))
+		return;
+	ec_for_each_slave(s, bus)
+		n += is_watched(s);
+	list = kvcalloc(n, sizeof(*list), GFP_KERNEL);
+	dg = kvcalloc(n, sizeof(*dg), GFP_KERNEL);
+	v = kvcalloc(n, sizeof(*v), GFP_KERNEL);
+	if (n && list && dg && v) {
+		ec_for_each_slave(s, bus) {
+			if (i == n || !is_watched(s))
+				continue;
+			dg[i] = EC_FPRD(s->station, EC_REG_DL_STATUS, 2, v[i]);
+			list[i++] = s;
+		}
+		ec_xfer(bus->links, dg, i);
+		close_them(bus, list, dg, v, i);
+	}
+	kvfree(list);
+	kvfree(dg);
+	kvfree(v);
+}
+
+/**
+ * ec_ports_look_for_lost() - the same in work that takes long, every 20 ms
+ * @bus: bus
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ */
+void ec_ports_look_for_lost(struct ec_bus *bus)
+{
+	u64 now = ktime_get_ns();
+	struct ec_dg dg;
+	u8 any;
+
+	if (!ec_ports_are_guarded(bus) || now - bus->lost_look_ns < LOOK_NS)
+		return;
+	bus->lost_look_ns = now;
+	dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, &any);
+	if (!ec_xfer(bus->links, &dg, 1))
+		ec_ports_close_lost(bus, dg.irq);
+}
