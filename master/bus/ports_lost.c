@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Ports that lose their link while the monitor is busy elsewhere, with a trial or EEPROMs: they are
- * closed there and then. A PC or a switch that gets a link at one of them meanwhile would open it by
- * its first frame, and no frame of the bus would return.
+ * closed there and then. A PC or a switch that gets a link at one of them meanwhile would open it
+ * by its first frame, and no frame of the bus would return.
  */
 #include <linux/ktime.h>
 #include <linux/mm.h>
@@ -67,8 +67,8 @@ static void close_them(struct ec_bus *bus, struct ec_slave **list, struct ec_dg 
 /**
  * ec_ports_close_lost() - close ports in use that have lost their link
  * @bus: bus
- * @irq: IRQ field of a datagram that has passed all slaves just now; nothing is done unless it shows
- *	the DL event
+ * @irq: IRQ field of a datagram that has passed all slaves just now; nothing is done unless it
+ *	shows the DL event
  *
  * Context: The monitor thread. Waits for bus traffic.
  */

@@ -33,7 +33,7 @@ struct ec_eoe {
 	struct xarray wishes;
 	/** @table: struct ec_eoe_netdev by device number of their slaves; changed by @work */
 	struct xarray table;
-	/** @synced: the list of slaves, counted by @bus->lists, that @table agrees with; by @work */
+	/** @synced: list of slaves, counted by @bus->lists, that @table agrees with; by @work */
 	u32 synced;
 	/** @stale: @table has to be compared in any case; may be set by others */
 	bool stale;
