@@ -78,7 +78,7 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 		ret = ec_eoe_part_add(&p, frame, cap, &f);
 		MUST(p.len <= p.room && p.room <= cap && p.open == !ret);
 		MUST(ret <= 0 || (ret == p.len && f.last && p.port == f.port));
-		MUST(ret <= 0 || ret >= 14 || !ec_eoe_is_ethercat(frame, (size_t)ret));
+		MUST(ret <= 0 || !ec_eoe_is_ethercat(frame, (size_t)ret) || ret >= 14);
 		if (ret > 0)
 			again(frame, (u16)ret, f.frame, mailbox);
 	}

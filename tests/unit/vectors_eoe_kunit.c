@@ -112,11 +112,57 @@ static void vectors_eoe_fragments(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, frame + 64, second + 4, 6);
 }
 
+/* The address alone without places for what is absent, then with what the slave has before it. */
+static void vectors_eoe_packed_ip(struct kunit *test)
+{
+	static const u8 packed[] = {
+		0x07, 0x01, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x11, 0x02, 0x10, 0xac,
+	};
+	static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x01, 0x07 };
+	static const u8 filled[] = {
+		0x02, 0x01, 0x00, 0x00, 0x03, 0x00, 0x00, 0x00,
+		0x02, 0x00, 0x00, 0xec, 0x01, 0x07, 0x11, 0x02, 0x10, 0xac,
+	};
+	static const u8 ip[4] = { 172, 16, 2, 17 };
+	struct ec_eoe_ip p, now = { 0 };
+	u8 out[EC_EOE_IP_SIZE];
+
+	KUNIT_EXPECT_EQ(test, ec_eoe_ip_decode_packed(packed, sizeof(packed), &p), 0);
+	KUNIT_EXPECT_EQ(test, p.which, (u32)EC_EOE_IP);
+	KUNIT_EXPECT_MEMEQ(test, p.ip, ip, 4);
+	KUNIT_EXPECT_TRUE(test, ec_eoe_ip_fill(&p, &now, mac));
+	KUNIT_EXPECT_GE(test, ec_eoe_ip_encode(out, sizeof(out), EC_EOE_SET_IP_REQ, &p),
+			(int)sizeof(filled));
+	KUNIT_EXPECT_MEMEQ(test, out, filled, sizeof(filled));
+}
+
+/* EtherType 0x88a4; UDP to port 0x88a4 with datagrams, behind a VLAN tag; ARP. */
+static void vectors_eoe_ethercat(struct kunit *test)
+{
+	static const u8 plain[60] = {
+		0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 1, 0x88, 0xa4, 0x0d, 0x10,
+	};
+	static const u8 udp[64] = {
+		0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 1, 0x81, 0x00, 0x00, 0x05,
+		0x08, 0x00, 0x45, 0x00, 0x00, 0x2b, 0, 0, 0, 0, 0x40, 0x11, 0, 0, 10, 1, 0, 2,
+		0xff, 0xff, 0xff, 0xff, 0x12, 0x34, 0x88, 0xa4, 0x00, 0x17, 0, 0, 0x0d, 0x10,
+	};
+	static const u8 arp[60] = {
+		0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x02, 0, 0, 0, 0, 1, 0x08, 0x06, 0, 1,
+	};
+
+	KUNIT_EXPECT_TRUE(test, ec_eoe_is_ethercat(plain, sizeof(plain)));
+	KUNIT_EXPECT_TRUE(test, ec_eoe_is_ethercat(udp, sizeof(udp)));
+	KUNIT_EXPECT_FALSE(test, ec_eoe_is_ethercat(arp, sizeof(arp)));
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(vectors_eoe_set_ip_request),
 	KUNIT_CASE(vectors_eoe_set_ip_response),
 	KUNIT_CASE(vectors_eoe_get_ip),
 	KUNIT_CASE(vectors_eoe_fragments),
+	KUNIT_CASE(vectors_eoe_packed_ip),
+	KUNIT_CASE(vectors_eoe_ethercat),
 	{ }
 };
 
