@@ -79,7 +79,7 @@ static int event_copy(struct ec_reader *r, u64 *at, void __user *to)
 	return copy_to_user(to, &e, sizeof(e)) ? -EFAULT : 1;
 }
 
-static const struct ec_reader_ops event_ops = {
+static const struct ec_reader_kind event_kind = {
 	.size = sizeof(struct ec_event),
 	.kept = EC_EVENTS_KEPT,
 	.head = event_head,
@@ -102,7 +102,7 @@ static void begin(struct ec_reader *r, struct ec_ioc_events *arg)
 static struct ec_reader *event_reader(struct ec_file *f)
 {
 	struct ec_readers *rs = &f->master->readers.readers;
-	struct ec_reader *r = ec_reader_new(&event_ops, &f->master->base->events);
+	struct ec_reader *r = ec_reader_new(&event_kind, &f->master->base->events);
 	int ret;
 
 	if (!r)
@@ -129,7 +129,7 @@ int ec_ioc_events(struct ec_call *call)
 	r = event_reader(call->file);
 	if (!r)
 		return -ENOMEM;
-	if (r->ops != &event_ops)
+	if (r->kind != &event_kind)
 		return ec_refuse(call, -EBUSY,
 				 "this open file reads mailbox messages; open the device file again");
 	begin(r, arg);

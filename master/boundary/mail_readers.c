@@ -116,7 +116,7 @@ static void mail_free(struct ec_reader *r)
 	kvfree_rcu(last, rcu);
 }
 
-static const struct ec_reader_ops mail_ops = {
+static const struct ec_reader_kind mail_kind = {
 	.size = sizeof(struct ec_mail),
 	.kept = EC_MAILS_KEPT,
 	.head = mail_head,
@@ -144,7 +144,7 @@ static int mail_readers_tap(struct ec_master *m)
 static int mail_readers_add(struct ec_file *f, u64 *next)
 {
 	struct ec_mail_readers *rs = &f->master->mail_readers;
-	struct ec_reader *r = ec_reader_new(&mail_ops, NULL);
+	struct ec_reader *r = ec_reader_new(&mail_kind, NULL);
 	int ret;
 
 	if (!r)

@@ -40,19 +40,19 @@ void ec_readers_wake(struct ec_readers *rs)
 
 /**
  * ec_reader_new() - a reader that is in no list
- * @ops: what it reads
+ * @kind: what it reads
  * @source: of the records
  *
  * Context: Process. May sleep.
  * Return: reader, for ec_reader_enter(), else kfree(); NULL: no memory.
  */
-struct ec_reader *ec_reader_new(const struct ec_reader_ops *ops, const void *source)
+struct ec_reader *ec_reader_new(const struct ec_reader_kind *kind, const void *source)
 {
 	struct ec_reader *r = kzalloc(sizeof(*r), GFP_KERNEL_ACCOUNT);
 
 	if (!r)
 		return NULL;
-	r->ops = ops;
+	r->kind = kind;
 	r->source = source;
 	mutex_init(&r->lock);
 	ec_waiters_init(&r->waiters);
@@ -95,8 +95,8 @@ void ec_reader_end(struct ec_file *f)
 	mutex_lock(&r->readers->lock);
 	list_del(&r->list);
 	WRITE_ONCE(r->readers->count, r->readers->count - 1);
-	if (r->ops->free)
-		r->ops->free(r);
+	if (r->kind->free)
+		r->kind->free(r);
 	mutex_unlock(&r->readers->lock);
 	/* no work finds it any more, and entries of poll() end with the file */
 	kfree(r);
@@ -104,7 +104,7 @@ void ec_reader_end(struct ec_file *f)
 
 static bool is_behind(const struct ec_reader *r)
 {
-	return r->ops->head(r) != ec_read64(&r->at);
+	return r->kind->head(r) != ec_read64(&r->at);
 }
 
 /* Copy as many records as there are and fit; their bytes. */
@@ -116,14 +116,14 @@ static ssize_t reader_copy(struct ec_reader *r, char __user *to, size_t size)
 
 	if (mutex_lock_interruptible(&r->lock))
 		return -ERESTARTSYS;
-	while (size - done >= r->ops->size) {
+	while (size - done >= r->kind->size) {
 		at = r->at;
-		ret = r->ops->copy(r, &at, to + done);
+		ret = r->kind->copy(r, &at, to + done);
 		if (ret <= 0)
 			break;
 		/* records that were not copied are read next time */
 		ec_write64(&r->at, at);
-		done += r->ops->size;
+		done += r->kind->size;
 		cond_resched();
 		if (signal_pending(current))
 			break;
@@ -150,10 +150,10 @@ ssize_t ec_reader_read(struct ec_file *f, char __user *to, size_t size, bool wai
 	ssize_t n = 0;
 	int ret;
 
-	if (!r || size < r->ops->size)
+	if (!r || size < r->kind->size)
 		return -EINVAL;
 	/* more is never kept; a limited size cannot overflow */
-	size = min(size, r->ops->kept * r->ops->size);
+	size = min(size, r->kind->kept * r->kind->size);
 	while (!n) {
 		n = reader_copy(r, to, size);
 		if (n)

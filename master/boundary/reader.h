@@ -13,7 +13,7 @@ struct ec_file;
 struct ec_reader;
 
 /**
- * struct ec_reader_ops - what is read
+ * struct ec_reader_kind - what is read
  * @size: bytes of a record
  * @kept: records at most at once
  * @head: number of the next record that does not exist so far
@@ -21,7 +21,7 @@ struct ec_reader;
  *	new record, -EFAULT or -ERESTARTSYS
  * @free: the file is closed, and @r no longer in the list; the lock of the list is held
  */
-struct ec_reader_ops {
+struct ec_reader_kind {
 	size_t size;
 	size_t kept;
 	u64 (*head)(const struct ec_reader *r);
@@ -43,16 +43,16 @@ struct ec_readers {
 
 /**
  * struct ec_reader - one open file
- * @ops: what it reads
+ * @kind: what it reads
  * @readers: where it is in the list
  * @list: in @readers
- * @source: of the records, which stays as long as the file is in the list; of @ops
+ * @source: of the records, which stays as long as the file is in the list; of @kind
  * @lock: protects @at; one caller reads at a time
  * @at: number of the next record to read
  * @waiters: callers that wait for a record
  */
 struct ec_reader {
-	const struct ec_reader_ops *ops;
+	const struct ec_reader_kind *kind;
 	struct ec_readers *readers;
 	struct list_head list;
 	const void *source;
@@ -63,7 +63,7 @@ struct ec_reader {
 
 void ec_readers_init(struct ec_readers *rs);
 void ec_readers_wake(struct ec_readers *rs);
-struct ec_reader *ec_reader_new(const struct ec_reader_ops *ops, const void *source);
+struct ec_reader *ec_reader_new(const struct ec_reader_kind *kind, const void *source);
 int ec_reader_enter(struct ec_reader *r, struct ec_readers *rs, struct ec_file *f);
 void ec_reader_end(struct ec_file *f);
 ssize_t ec_reader_read(struct ec_file *f, char __user *to, size_t size, bool wait);
