@@ -14,7 +14,7 @@
 #include "ports_lost.h"
 #include "slave.h"
 
-#define LOOK_NS	(20 * NSEC_PER_MSEC)	/* between two looks; a link takes longer to come */
+#define LOOK_NS	(50 * NSEC_PER_MSEC)	/* between two looks; a link takes longer to come */
 
 /* The loop control with those ports closed behind which a slave is known, but no link. */
 static u8 without_lost(const struct ec_slave *s, u16 dl)
@@ -64,23 +64,23 @@ static void close_them(struct ec_bus *bus, struct ec_slave **list, struct ec_dg 
 			list[i]->ports.loops = v[i][2];
 }
 
-/**
- * ec_ports_close_lost() - close ports in use that have lost their link
- * @bus: bus
- * @irq: IRQ field of a datagram that has passed all slaves just now; nothing is done unless it
- *	shows the DL event
- *
- * Context: The monitor thread. Waits for bus traffic.
- */
-void ec_ports_close_lost(struct ec_bus *bus, u16 irq)
+static bool look_is_due(struct ec_bus *bus)
+{
+	u64 now = ktime_get_ns();
+
+	if (!ec_ports_are_guarded(bus) || now - bus->lost_look_ns < LOOK_NS)
+		return false;
+	bus->lost_look_ns = now;
+	return true;
+}
+
+static void close_lost(struct ec_bus *bus)
 {
 	struct ec_slave **list;
 	unsigned int n = 0, i = 0;
 	struct ec_dg *dg;
 	u8 (*v)[3];
 
-	if (!(irq & EC_ECAT_EVENT_DL) || !ec_ports_are_guarded(bus))
-		return;
 	ec_for_each_slave(s, bus)
 		n += is_watched(s);
 	list = kvcalloc(n, sizeof(*list), GFP_KERNEL);
@@ -102,21 +102,33 @@ void ec_ports_close_lost(struct ec_bus *bus, u16 irq)
 }
 
 /**
- * ec_ports_look_for_lost() - the same in work that takes long, every 20 ms
+ * ec_ports_close_lost() - close ports in use that have lost their link, every 50 ms
+ * @bus: bus
+ * @irq: IRQ field of a datagram that has passed all slaves just now; nothing is done unless it
+ *	shows the DL event
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ */
+void ec_ports_close_lost(struct ec_bus *bus, u16 irq)
+{
+	if (irq & EC_ECAT_EVENT_DL && look_is_due(bus))
+		close_lost(bus);
+}
+
+/**
+ * ec_ports_look_for_lost() - the same in work that has no such datagram
  * @bus: bus
  *
  * Context: The monitor thread. Waits for bus traffic.
  */
 void ec_ports_look_for_lost(struct ec_bus *bus)
 {
-	u64 now = ktime_get_ns();
 	struct ec_dg dg;
 	u8 any;
 
-	if (!ec_ports_are_guarded(bus) || now - bus->lost_look_ns < LOOK_NS)
+	if (!look_is_due(bus))
 		return;
-	bus->lost_look_ns = now;
 	dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, &any);
-	if (!ec_xfer(bus->links, &dg, 1))
-		ec_ports_close_lost(bus, dg.irq);
+	if (!ec_xfer(bus->links, &dg, 1) && dg.irq & EC_ECAT_EVENT_DL)
+		close_lost(bus);
 }
