@@ -152,7 +152,7 @@ struct ec_bus {
 	u64 mailboxes_ns;
 	/** @some_mailboxes_ns: last poll of any */
 	u64 some_mailboxes_ns;
-	/** @lost_look_ns: last look for ports without link in work that takes long */
+	/** @lost_look_ns: last look for ports without link, in work that takes long as well */
 	u64 lost_look_ns;
 	/** @line_watch: where the reading of error counters is; the monitor's */
 	struct ec_line_watch line_watch;

@@ -388,6 +388,7 @@ static enum ec_ports_result work_at_doors(struct ec_bus *bus)
 enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned)
 {
 	write_loops(bus);
+	bus->lost_look_ns = ktime_get_ns();
 	if (xchg(&bus->retry, false))
 		forget_waits(bus);
 	return scanned && ec_ports_are_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;

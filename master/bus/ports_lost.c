@@ -14,7 +14,7 @@
 #include "ports_lost.h"
 #include "slave.h"
 
-#define LOOK_NS	(50 * NSEC_PER_MSEC)	/* between two looks; a link takes longer to come */
+#define LOOK_NS	(100 * NSEC_PER_MSEC)	/* between two looks; a link takes longer to come */
 
 /* The loop control with those ports closed behind which a slave is known, but no link. */
 static u8 without_lost(const struct ec_slave *s, u16 dl)
@@ -102,7 +102,7 @@ static void close_lost(struct ec_bus *bus)
 }
 
 /**
- * ec_ports_close_lost() - close ports in use that have lost their link, every 50 ms
+ * ec_ports_close_lost() - close ports in use that have lost their link, every 100 ms
  * @bus: bus
  * @irq: IRQ field of a datagram that has passed all slaves just now; nothing is done unless it
  *	shows the DL event
