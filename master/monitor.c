@@ -163,7 +163,6 @@ static bool check_slaves(struct watch *w)
 	for (i = 0; i < m->bus.n_slaves; i++) {
 		struct ec_slave *s = m->bus.slaves[i];
 		u16 status = get_unaligned_le16(r[i].al), code = get_unaligned_le16(r[i].al + 4);
-		u8 state;
 
 		if (!dg[i].err && !dg[i].wkc && READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED)
 			all = false;
@@ -177,13 +176,7 @@ static bool check_slaves(struct watch *w)
 		note_change(s, status, code);
 		if (ec_identify_is_due(s))
 			ec_slave_kick(s);
-		/*
-		 * What was asked for comes late, or it has fallen back by itself: bring it up. An
-		 * error of device emulation is an acknowledge that another master has written.
-		 */
-		state = status & (EC_AL_STATE_MASK | (s->emulation ? EC_AL_ERROR : 0));
-		if (READ_ONCE(s->note.error) ? state == READ_ONCE(s->al.awaited) :
-					  state != READ_ONCE(s->al.requested))
+		if (ec_survey_is_off(s, status))
 			ec_slave_kick(s);
 	}
 out:

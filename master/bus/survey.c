@@ -24,6 +24,25 @@ bool ec_survey_is_due(const struct ec_slave *s, u64 now)
 }
 
 /**
+ * ec_survey_is_off() - has its worker to act because of its AL status?
+ * @s: slave, without a busy worker
+ * @status: its AL status
+ *
+ * What was asked for comes late, or the slave has fallen back by itself. An error of device
+ * emulation is an acknowledge that another master has written.
+ *
+ * Context: Any. RT-safe.
+ * Return: whether it has.
+ */
+bool ec_survey_is_off(const struct ec_slave *s, u16 status)
+{
+	u8 state = status & (EC_AL_STATE_MASK | (s->emulation ? EC_AL_ERROR : 0));
+
+	return READ_ONCE(s->note.error) ? state == READ_ONCE(s->al.awaited) :
+					  state != READ_ONCE(s->al.requested);
+}
+
+/**
  * ec_survey_lasts() - is a survey true until @bus->changes counts?
  * @survey: result of ec_survey()
  *

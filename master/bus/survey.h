@@ -29,6 +29,7 @@ struct ec_survey {
 };
 
 bool ec_survey_is_due(const struct ec_slave *s, u64 now);
+bool ec_survey_is_off(const struct ec_slave *s, u16 status);
 bool ec_survey_lasts(const struct ec_survey *survey);
 void ec_survey(const struct ec_bus *bus, struct ec_survey *survey);
 

@@ -272,6 +272,25 @@ static bool is_mute(const struct ec_slave *s)
 		     READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED);
 }
 
+/* Another port of the host may have been closed. */
+static void take_loops(struct ec_trials *t)
+{
+	if (t->slave)
+		t->host.loops = t->slave->ports.loops;
+}
+
+/**
+ * ec_trial_look_for_lost() - close ports elsewhere that have lost their link, between long steps
+ * @t: trials, none in flight
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ */
+void ec_trial_look_for_lost(struct ec_trials *t)
+{
+	ec_ports_look_for_lost(t->bus);
+	take_loops(t);
+}
+
 /*
  * The port may have lost its link since it was seen, and the ring slaves before it: then another
  * slave than the next one of the list is at the position, or none.
@@ -287,8 +306,7 @@ static int look(struct ec_trials *t)
 
 	ec_xfer(t->bus->links, dg, 2);
 	ec_ports_close_lost(t->bus, dg[0].irq | dg[1].irq);
-	if (t->slave)
-		t->host.loops = t->slave->ports.loops;
+	take_loops(t);
 	t->mute = dg[0].err && dg[1].err;
 	t->dl = dg[0].err || dg[0].wkc != 1 ? 0 : get_unaligned_le16(dl);
 	if (!(t->dl & EC_DLS_LINK(t->port)))

@@ -97,6 +97,9 @@ struct ec_trials {
 	struct ec_behind is;
 };
 
+/* trial.c */
+void ec_trial_look_for_lost(struct ec_trials *t);
+
 /* trial_run.c */
 struct ec_dg *ec_trial_add(struct ec_trials *t, struct ec_dg dg);
 int ec_trial_run(struct ec_trials *t, u16 station);

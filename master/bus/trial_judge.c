@@ -79,6 +79,7 @@ static int eeprom_read(struct eeprom *e, u32 word)
 		if (now > e->until || (now - begin > ACCESS_NS && polls >= POLLS))
 			return -EIO;
 		usleep_range(POLL_US, 2 * POLL_US);
+		ec_trial_look_for_lost(e->t);
 		e->t->n = 0;
 		ec_trial_add(e->t, EC_FPRD(e->g->station, EC_REG_EEP_CONTROL, 14, e->reg));
 		ret = judge_run(e->t, e->g);
@@ -160,6 +161,7 @@ static int ask_by_al(struct eeprom *e, u16 *identification)
 		if (!ret && status == (EC_AL_INIT | EC_AL_ID))
 			break;
 		usleep_range(POLL_US, 2 * POLL_US);
+		ec_trial_look_for_lost(e->t);
 	}
 	if (!ret && status == (EC_AL_INIT | EC_AL_ID))
 		*identification = get_unaligned_le16(reply + EC_REG_AL_CODE - EC_REG_AL_STATUS);

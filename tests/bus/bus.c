@@ -427,3 +427,17 @@ u32 bus_log_lines(const char *words)
 	}
 	return n;
 }
+
+/**
+ * bus_judge() - compare a value with the goal of a row, and with what is reached today
+ * @test: the case
+ * @value: of this run
+ * @goal: in the row
+ * @limit: fails above it
+ * @text: of the row
+ */
+void bus_judge(struct kunit *test, u64 value, u64 goal, u64 limit, const char *text)
+{
+	bus_row(value, goal, "%s", text);
+	KUNIT_EXPECT_LE_MSG(test, value, limit, "%s", text);
+}

@@ -73,6 +73,8 @@ void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes);
 void bus_strip_names(struct bus *b, u32 index);
 void bus_request(struct bus *b, u32 position, u8 state);
 
+void bus_judge(struct kunit *test, u64 value, u64 goal, u64 limit, const char *text);
+
 #include "access.h"
 
 /* A figure of this run; bench scripts look for these lines. */

@@ -40,12 +40,6 @@ struct pinger {
 	struct completion done;
 };
 
-static void judge(struct kunit *test, u64 value, u64 goal, u64 limit, const char *text)
-{
-	bus_row(value, goal, "%s", text);
-	KUNIT_EXPECT_LE_MSG(test, value, limit, "%s", text);
-}
-
 /* Full mailboxes: @PINGS pings, @WINDOW at once. */
 static int stream(void *arg)
 {
@@ -158,7 +152,7 @@ static void idle(struct kunit *test, u32 n, u64 limit)
 		   div64_u64(8000ull * n * PINGS * FRAGMENTS * FRAGMENT, ns));
 	snprintf(text, sizeof(text),
 		 "%% of the shortest time: EoE both ways through %u slave(s), idle", n);
-	judge(test, div64_u64(ns * 100 + best - 1, best), 125, limit, text);
+	bus_judge(test, div64_u64(ns * 100 + best - 1, best), 125, limit, text);
 	eoe_down(p->w);
 }
 
@@ -181,7 +175,7 @@ static void beside_cycle(struct kunit *test, u32 n, u64 limit)
 
 	snprintf(text, sizeof(text),
 		 "1/100 cycle of 1 ms: a full mailbox of EoE each way, %u slave(s)", n);
-	judge(test, div_u64(ns, PINGS * FRAGMENTS * PERIOD_US * 10), 250, limit, text);
+	bus_judge(test, div_u64(ns, PINGS * FRAGMENTS * PERIOD_US * 10), 250, limit, text);
 	eoe_down(p->w);
 }
 
@@ -201,9 +195,9 @@ static void eoe_ping_cycle(struct kunit *test)
 	struct cyc *c = cyc_in_op(p->w->b, 0, 2);
 
 	together(test, p, 1, ask_apart, c, ALONE);
-	judge(test, div_u64(p->sum_ns, ALONE * PERIOD_US * 10), 250, PING_MEAN,
+	bus_judge(test, div_u64(p->sum_ns, ALONE * PERIOD_US * 10), 250, PING_MEAN,
 	      "1/100 cycle of 1 ms: ping by EoE, without the slave's time, mean");
-	judge(test, div_u64(p->worst_ns, PERIOD_US * 10), 300, PING_WORST,
+	bus_judge(test, div_u64(p->worst_ns, PERIOD_US * 10), 300, PING_WORST,
 	      "1/100 cycle of 1 ms: the same, worst");
 	eoe_down(p->w);
 }
@@ -234,7 +228,7 @@ static void eoe_memory(struct kunit *test)
 	bytes = used_bytes() - before;
 	bus_figure("network device of EoE, down: %llu bytes, %zu of them the master's own",
 		   div_u64(bytes, DEVICES), sizeof(struct ec_eoe_netdev));
-	judge(test, div_u64(bytes, DEVICES * 1024), 4, MEMORY_KIB,
+	bus_judge(test, div_u64(bytes, DEVICES * 1024), 4, MEMORY_KIB,
 	      "KiB of memory for the network device of a slave with EoE, without traffic");
 	ec_eoe_stop(&b->m->eoe);
 }

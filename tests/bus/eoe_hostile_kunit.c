@@ -308,7 +308,7 @@ static void hostile_mailbox_recovers(struct kunit *test)
 		hostile_mailbox(test, i + 1, kinds[i]);
 }
 
-/* Whoever has RTNL for long delays only the removal itself. */
+/* A long holder of RTNL delays only the removal itself. */
 static void hostile_rtnl_delays_no_wish(struct kunit *test)
 {
 	struct bus *b = bus_up(test, "segment seed=5\nslave x EL6614 serial=1\n"

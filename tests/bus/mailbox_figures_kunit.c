@@ -43,13 +43,6 @@ struct client {
 	struct completion done;
 };
 
-/* @value against the goal of a row, and against what is reached today */
-static void judge(struct kunit *test, u64 value, u64 goal, u64 limit, const char *text)
-{
-	bus_row(value, goal, "%s", text);
-	KUNIT_EXPECT_LE_MSG(test, value, limit, "%s", text);
-}
-
 static struct bus *drives(struct kunit *test, u32 n, u32 mbox)
 {
 	char text[160];
@@ -183,7 +176,7 @@ static void mailbox_latency_idle(struct kunit *test)
 	struct client x;
 
 	together(b, NULL, ask_apart, 1, 100, &x);
-	judge(test, div_u64(x.worst_ns, 1000), 500, LATENCY_IDLE_US,
+	bus_judge(test, div_u64(x.worst_ns, 1000), 500, LATENCY_IDLE_US,
 	      "us of bus time: SDO upload idle, 100 slaves, without the slave's time, worst");
 	KUNIT_EXPECT_LE_MSG(test, x.met, MET_IDLE, "longer than %u us", ALONE_IDLE_US);
 }
@@ -199,9 +192,9 @@ static void latency_in_cycle(struct kunit *test, u32 n, u64 mean_limit, u64 wors
 	together(b, c, ask_apart, 1, n, &x);
 	snprintf(text, sizeof(text),
 		 "1/100 cycle of 1 ms: SDO upload, %u slave(s), without the slave's time, mean", n);
-	judge(test, div_u64(x.sum_ns, REQUESTS * PERIOD_US * 10), 250, mean_limit, text);
+	bus_judge(test, div_u64(x.sum_ns, REQUESTS * PERIOD_US * 10), 250, mean_limit, text);
 	snprintf(text, sizeof(text), "1/100 cycle of 1 ms: the same, %u slave(s), worst", n);
-	judge(test, div_u64(x.worst_ns, PERIOD_US * 10), 300, worst_limit, text);
+	bus_judge(test, div_u64(x.worst_ns, PERIOD_US * 10), 300, worst_limit, text);
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
 
@@ -223,7 +216,7 @@ static void mailbox_uploads_idle(struct kunit *test)
 
 	bus_figure("100 slaves with %u uploads each, idle: %llu us, wire time of the mailboxes %llu us",
 		   UPLOADS, div_u64(ns, 1000), div_u64(wire, 1000));
-	judge(test, percent(ns, wire), 130, UPLOADS_IDLE,
+	bus_judge(test, percent(ns, wire), 130, UPLOADS_IDLE,
 	      "% of the wire time of their mailboxes: 100 slaves upload at once, idle");
 }
 
@@ -237,7 +230,7 @@ static void mailbox_uploads_cycle(struct kunit *test)
 
 	bus_figure("100 slaves with %u uploads each, cycle of 1 ms: %llu us, wire time of the mailboxes %llu us, in their share %llu us",
 		   UPLOADS, div_u64(ns, 1000), div_u64(wire, 1000), div_u64(allowed, 1000));
-	judge(test, percent(ns, allowed), 130, UPLOADS_CYCLE,
+	bus_judge(test, percent(ns, allowed), 130, UPLOADS_CYCLE,
 	      "% of what the share of the wire allows: 100 slaves upload at once, 1 ms cycle");
 	KUNIT_EXPECT_EQ(test, cyc_state(c, 0)->wc_state, 2);
 }
@@ -269,7 +262,7 @@ static void files(struct kunit *test, u32 n, bool cycle, u64 limit)
 		return;
 	}
 	snprintf(text, sizeof(text), "%% of the shortest time: FoE, 1 MiB to %u slave(s), idle", n);
-	judge(test, percent(ns, best), 125, limit, text);
+	bus_judge(test, percent(ns, best), 125, limit, text);
 }
 
 static void mailbox_foe_idle_1(struct kunit *test)
