@@ -10,6 +10,7 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 kernel=${EC_KERNEL:-6.1-rt}
 build=$PWD/build/system-$kernel
 cycles=3000
@@ -22,11 +23,14 @@ while [ $# -gt 0 ]; do
 done
 [[ $cycles =~ ^[1-9][0-9]*$ ]] || { echo "jitter-vm.sh: --cycles needs a number" >&2; exit 2; }
 
-tests/vm/kernels.sh fetch "$kernel" >&2 &&
-make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
-make -s -C lib O="$build/lib" all >&2 &&
-make -s -C tool O="$build/tool" >&2 &&
-make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib" >&2 || exit 1
+build() {
+	make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" \
+		MODDIR="$build/modules" &&
+	make -s -C lib O="$build/lib" all &&
+	make -s -C tool O="$build/tool" &&
+	make -s -C tests/bench/cycle O="$build/bench" LIB="$build/lib"
+}
+tests/vm/kernels.sh fetch "$kernel" >&2 && locked "$kernel" build >&2 || exit 1
 
 out=$(mktemp)
 trap 'rm -f "$out"' EXIT

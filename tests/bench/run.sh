@@ -23,13 +23,15 @@ for f in ${*:-*.sh}; do
 	rc=${PIPESTATUS[0]}
 	sed -n 's/^# row: //p' "$out" >>"$rows"
 	last=$(tail -n 1 "$out")
-	rm -f "$out"
 	if [[ $last =~ ^([0-9]+)\ passed,\ ([0-9]+)\ failed$ ]]; then
 		passed=$((passed + BASH_REMATCH[1])) failed=$((failed + BASH_REMATCH[2]))
 	else
+		# with what it said last, as a report shows what follows "not ok" only
 		echo "not ok $f ended with $rc"
+		tail -n 10 "$out" | sed 's/^/    /'
 		failed=$((failed + 1))
 	fi
+	rm -f "$out"
 done
 echo "== figures and their limits"
 awk '{

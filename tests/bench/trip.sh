@@ -13,22 +13,29 @@
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
+. tests/vm/places.sh
 kernel=${EC_KERNEL:-6.1-rt} all=1 trips=2000
 [ "${1:-}" != --gates ] || { all=; trips=500; shift; }
 trips=${1:-$trips}
 build=$PWD/build/system-$kernel
 [[ $trips =~ ^[1-9][0-9]*$ ]] || { echo "trip.sh: TRIPS must be a number" >&2; exit 2; }
 
-tests/vm/kernels.sh fetch "$kernel" >&2 &&
-make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" MODDIR="$build/modules" >&2 &&
-make -s -C lib O="$build/lib" all >&2 &&
-make -s -C tool O="$build/tool" >&2 &&
-make -s -C tests/apps O="$build/apps" LIB="$build/lib" >&2 || exit 1
+build() {
+	make -s -j2 modules KDIR="$(tests/vm/kernels.sh kdir "$kernel")" \
+		MODDIR="$build/modules" &&
+	make -s -C lib O="$build/lib" all &&
+	make -s -C tool O="$build/tool" &&
+	make -s -C tests/apps O="$build/apps" LIB="$build/lib"
+}
+tests/vm/kernels.sh fetch "$kernel" >&2 && locked "$kernel" build >&2 || exit 1
 
 passed=0 failed=0
 declare -A median own
 tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
+
+# ns NAME: a line "NAME N", whole: a message of the kernel may have come between
+ns() { sed -nE "s/^$1 ([0-9]+)\r?\$/\1/p" <<<"$out" | head -n 1; }
 
 # trips DEVICE [run.sh options]
 trips() {
@@ -38,9 +45,9 @@ trips() {
 		tests/bench/cycle/trip-guest.sh "$build" "$1" "$trips" 2>&1)
 	[ "$1" = virtual ] || {
 		out+=$'\n'$(tests/bench/trip.py "$tmp/wire.pcap" "$trips" 2>&1)
-		wire=$(awk '$1 == "wire_ns" { print $2 }' <<<"$out")
+		wire=$(ns wire_ns)
 	}
-	median[$1]=$(awk '$1 == "median_ns" { print $2 }' <<<"$out")
+	median[$1]=$(ns median_ns)
 	own[$1]=$((${median[$1]:-0} - ${wire:-0}))
 	if [ -n "${median[$1]}" ] && [ -n "$wire" ] && grep -qx 'lost 0' <<<"$out"; then
 		echo "# $1: $(grep _ns <<<"$out" | tr '\n' ' ')"
