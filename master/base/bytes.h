@@ -71,12 +71,21 @@ static __always_inline void ec_bytes_words(u8 *to, unsigned int to_stride, const
 	const unsigned int at_last = len - 8;
 	unsigned long at = 0, end = (unsigned long)count * to_stride;
 
-	/* an image that is as its datagrams: one distance to add. A single value may have none */
-	if (count && to_stride == from_stride) {
-		do {
+	/*
+	 * an image that is as its datagrams: one distance to add, two values a turn. A single value
+	 * may have none
+	 */
+	if (to_stride == from_stride) {
+		if (count & 1) {
+			ec_bytes_value(to, from, at_last, words);
+			at = to_stride;
+		}
+		while (at != end) {
 			ec_bytes_value(to + at, from + at, at_last, words);
 			at += to_stride;
-		} while (at != end);
+			ec_bytes_value(to + at, from + at, at_last, words);
+			at += to_stride;
+		}
 		return;
 	}
 	for (; count; count--, to += to_stride, from += from_stride)
