@@ -154,6 +154,10 @@ struct ec_bus {
 	u64 some_mailboxes_ns;
 	/** @lost_look_ns: last look for ports without link, in work that takes long as well */
 	u64 lost_look_ns;
+	/** @found: slaves that a scan reads, not in the list yet; the monitor's */
+	struct ec_slave **found;
+	/** @n_found: of these */
+	unsigned int n_found;
 	/** @line_watch: where the reading of error counters is; the monitor's */
 	struct ec_line_watch line_watch;
 	/** @vain_looks: polls in a row that found no message although an event was seen */

@@ -6,8 +6,10 @@
 #include <linux/types.h>
 
 struct ec_bus;
+struct ec_slave;
 
 void ec_ports_close_lost(struct ec_bus *bus, u16 irq);
 void ec_ports_look_for_lost(struct ec_bus *bus);
+void ec_ports_watch_found(struct ec_bus *bus, struct ec_slave **found, unsigned int n);
 
 #endif

@@ -10,6 +10,7 @@
 #include "../carry/xfer.h"
 #include "identify.h"
 #include "leave_init.h"
+#include "ports_lost.h"
 #include "scan.h"
 #include "scan_count.h"
 #include "scan_int.h"
@@ -161,24 +162,15 @@ static void plan_retries(struct scan *sc, struct ec_slave **fresh, unsigned int 
 	}
 }
 
-/* EEPROMs of the new ones: all of them at once, then up to PREOP together */
-static int read_new(struct scan *sc)
+/* EEPROMs: all of them at once, then up to PREOP together */
+static int read_eeproms(struct scan *sc, struct ec_slave **fresh, unsigned int n)
 {
-	struct ec_slave **fresh = kvcalloc(sc->n, sizeof(*fresh), GFP_KERNEL);
-	unsigned int i, n = 0;
+	unsigned int i;
 	int ret;
 
-	if (!fresh)
-		return -ENOMEM;
-	for (i = 0; i < sc->n; i++)
-		if (each_new(sc, i) && !READ_ONCE(sc->slaves[i]->note.error))
-			fresh[n++] = sc->slaves[i];
-	WRITE_ONCE(sc->bus->scan_index, sc->n - n);
 	ec_scan_sii(sc->bus, fresh, n, sc->n, sc->fresh);
-	if (!ec_links_is_up(sc->bus->links)) {
-		kvfree(fresh);
+	if (!ec_links_is_up(sc->bus->links))
 		return -ENETDOWN;
-	}
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = fresh[i];
 
@@ -202,8 +194,26 @@ static int read_new(struct scan *sc)
 	ec_leave_init_all(sc->bus, fresh, n, sc->fresh);
 	ec_identify_all(sc->bus, fresh, n);
 	plan_retries(sc, fresh, n);
-	kvfree(fresh);
 	return 0;
+}
+
+static int read_new(struct scan *sc)
+{
+	struct ec_slave **fresh = kvcalloc(sc->n, sizeof(*fresh), GFP_KERNEL);
+	unsigned int i, n = 0;
+	int ret;
+
+	if (!fresh)
+		return -ENOMEM;
+	for (i = 0; i < sc->n; i++)
+		if (each_new(sc, i) && !READ_ONCE(sc->slaves[i]->note.error))
+			fresh[n++] = sc->slaves[i];
+	WRITE_ONCE(sc->bus->scan_index, sc->n - n);
+	ec_ports_watch_found(sc->bus, fresh, n);
+	ret = read_eeproms(sc, fresh, n);
+	ec_ports_watch_found(sc->bus, NULL, 0);
+	kvfree(fresh);
+	return ret;
 }
 
 /* A known slave hangs where it did if neither its place in the ring nor its ports have changed. */
