@@ -3,7 +3,7 @@
 #include <linux/hrtimer.h>
 #include <linux/sched/signal.h>
 #include "caller.h"
-#include "desk.h"
+#include "desk_enter.h"
 
 #define SLICE_MS	20	/* between two checks whether a wait has to end */
 

@@ -9,7 +9,7 @@
 #include "../wire/fmmu.h"
 #include "../wire/regs.h"
 #include "caller.h"
-#include "desk.h"
+#include "desk_enter.h"
 #include "late.h"
 
 /**

@@ -5,6 +5,7 @@
 
 #include "claim.h"
 #include "desk.h"
+#include "desk_enter.h"
 #include "late.h"
 #include "mbox.h"
 #include "mbox_text.h"

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Mailbox of a slave: transport (box.h), queue (desk.h), and what the protocols share. */
+/* Mailbox of a slave: transport (box.h), queue (desk.h), users (desk_user.h), what protocols share. */
 #ifndef EC_MBOX_H
 #define EC_MBOX_H
 
@@ -28,7 +28,7 @@ enum ec_mbox_flag {
 };
 
 /**
- * enum ec_mbox_phase - of a user; desk.c alone changes it
+ * enum ec_mbox_phase - of a user; desk.c and desk_enter.c alone change it
  * @EC_MBOX_USER_IDLE: out of all lists
  * @EC_MBOX_USER_QUEUED: its message waits
  * @EC_MBOX_USER_SENDING: its message is being given to the slave
@@ -60,8 +60,8 @@ enum ec_mbox_phase {
  * struct ec_mbox_user - user that has a message for the slave, or waits for one
  *
  * It belongs to the user, which sets the members up to @once, and may read the results while it is
- * DONE. From ec_desk_enter() until ec_desk_leave() has returned the others are of desk.c, under the
- * lock of the transport. Nothing is allocated for it.
+ * DONE. From ec_desk_enter() until ec_desk_leave() has returned the others are of desk.c and
+ * desk_enter.c, under the lock of the transport. Nothing is allocated for it.
  */
 struct ec_mbox_user {
 	/**
@@ -114,7 +114,7 @@ struct ec_mbox_user {
  * Under the lock of the transport, except for the last two groups.
  */
 struct ec_desk {
-	/* of desk.c */
+	/* of desk.c and desk_enter.c */
 	/** @queue: users whose message waits, the oldest first */
 	struct list_head queue;
 	/** @users: users that wait for messages, the oldest first */

@@ -96,6 +96,7 @@ COMMENTS = {
     "master/clock": 0,
     "master/config": 0,
     "master/cycle": 0,
+    "master/kernel": 0,
     "master/link": 0,
     "master/mailbox": 0,
     "master/session": 0,
