@@ -28,41 +28,39 @@
 struct ec_app_request;
 struct task_struct;
 
-/**
- * struct ec_api - the application in the kernel that may have reserved a master
- * @file: stands for the open file of a process
- * @reserved: it has reserved the master, and holds this module
- * @active: its session while that is active
- * @wanted: the domains and slave configurations of its session
- * @cycle: its cycle
- * @image: data of its domains while the kernel runs the cycle
- * @busy: 1: a call exchanges process data with the cycle that the kernel runs
- * @requests: list of its requests
- * @work: work of a cyclic call that has to sleep
- * @atomic: a cyclic call was made outside of a thread, though the device needs one
- * @warned: @atomic has been logged
- * @send_cb: sends between two cycles, or NULL; see ecrt_master_callbacks()
- * @receive_cb: receives there, or NULL
- * @cb_data: for both
- * @between: thread that calls them while active
- * @between_wq: wakes it
- */
+/** struct ec_api - the application in the kernel that may have reserved a master */
 struct ec_api {
+	/** @file: stands for the open file of a process */
 	struct ec_file file;
+	/** @reserved: it has reserved the master, and holds this module */
 	bool reserved;
+	/** @active: its session while that is active */
 	struct ec_session *active;
+	/** @wanted: the domains and slave configurations of its session */
 	struct ec_wanted *wanted;
+	/** @cycle: its cycle */
 	struct ec_app_cycle cycle;
+	/** @image: data of its domains while the kernel runs the cycle */
 	u8 *image;
+	/** @busy: 1: a call exchanges process data with the cycle that the kernel runs */
 	atomic_t busy;
+	/** @requests: list of its requests */
 	struct ec_app_request *requests;
+	/** @work: work of a cyclic call that has to sleep */
 	struct work_struct work;
+	/** @atomic: a cyclic call was made outside of a thread, though the device needs one */
 	bool atomic;
+	/** @warned: @atomic has been logged */
 	bool warned;
+	/** @send_cb: sends between two cycles, or NULL; see ecrt_master_callbacks() */
 	void (*send_cb)(void *cb_data);
+	/** @receive_cb: receives there, or NULL */
 	void (*receive_cb)(void *cb_data);
+	/** @cb_data: for both */
 	void *cb_data;
+	/** @between: thread that calls them while active */
 	struct task_struct *between;
+	/** @between_wq: wakes it */
 	wait_queue_head_t between_wq;
 };
 

@@ -36,27 +36,28 @@ struct ec_ioc_buffer {
 	bool out;
 };
 
-/**
- * struct ec_ioctl - one command
- * @cmd: number; its size is what this module knows
- * @fn: handler
- * @flags: F_*
- * @known: flags of the argument that are known
- * @min: size of the argument in the oldest interface, a shorter one is refused; 0: the full size
- * @class: what ec_call_run() finds and locks
- * @at: offset in the argument: address or index of that object
- * @buffer: its @most is 0 without a buffer
- * @reserved: fields that must be zero; size 0 ends them
- */
+/** struct ec_ioctl - one command */
 struct ec_ioctl {
+	/** @cmd: number; its size is what this module knows */
 	unsigned int cmd;
+	/** @fn: handler */
 	int (*fn)(struct ec_call *call);
+	/** @flags: F_* */
 	unsigned int flags;
+	/** @known: flags of the argument that are known */
 	u32 known;
+	/**
+	 * @min: size of the argument in the oldest interface, a shorter one is refused; 0: the full
+	 * size
+	 */
 	unsigned int min;
+	/** @class: what ec_call_run() finds and locks */
 	enum ec_ioc_class class;
+	/** @at: offset in the argument: address or index of that object */
 	u16 at;
+	/** @buffer: its @most is 0 without a buffer */
 	struct ec_ioc_buffer buffer;
+	/** @reserved: fields that must be zero; size 0 ends them */
 	struct ec_reserved reserved[2];
 };
 

@@ -14,27 +14,28 @@ struct ec_master;
 struct ec_reader;
 struct ec_session;
 
-/**
- * struct ec_file - one open file
- * @master: stays while a file is open, as the module does
- * @writable: opened for writing
- * @reason: text of the last failure, under @lock
- * @lock: protects @reason
- * @waiters: callers that wait for a cycle
- * @reader: NULL, or it reads records; set once
- * @holds: it has held a sync unit of another application
- * @admitted: bits EC_ADMITTED_*: commands of the cycle that ioctl() has let through on this file
- * @rcu: frees it after the cycle has finished with @waiters
- */
+/** struct ec_file - one open file */
 struct ec_file {
+	/** @master: stays while a file is open, as the module does */
 	struct ec_master *master;
+	/** @writable: opened for writing */
 	bool writable;
+	/** @lock: protects @reason */
 	raw_spinlock_t lock;
+	/** @reason: text of the last failure, under @lock */
 	char reason[EC_UAPI_REASON];
+	/** @waiters: callers that wait for a cycle */
 	struct ec_waiters waiters;
+	/** @reader: NULL, or it reads records; set once */
 	struct ec_reader *reader;
+	/** @holds: it has held a sync unit of another application */
 	bool holds;
+	/**
+	 * @admitted: bits EC_ADMITTED_*: commands of the cycle that ioctl() has let through on this
+	 * file
+	 */
 	unsigned long admitted;
+	/** @rcu: frees it after the cycle has finished with @waiters */
 	struct rcu_head rcu;
 };
 

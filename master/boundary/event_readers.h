@@ -8,15 +8,13 @@
 
 struct ec_master;
 
-/**
- * struct ec_event_readers - readers of a master
- * @readers: the files
- * @work: wakes them
- * @woken: number of the next event when they were woken last; for the monitor only
- */
+/** struct ec_event_readers - readers of a master */
 struct ec_event_readers {
+	/** @readers: the files */
 	struct ec_readers readers;
+	/** @work: wakes them */
 	struct work_struct work;
+	/** @woken: number of the next event when they were woken last; for the monitor only */
 	u64 woken;
 };
 

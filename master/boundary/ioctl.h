@@ -16,31 +16,34 @@ struct ec_session;
 struct ec_slave;
 struct ec_startup;
 
-/**
- * struct ec_call - one command while it is carried out
- * @file: open file of the caller
- * @master: of @file
- * @arg: argument, struct ec_ioc_*, in kernel memory; its @data member is not for handlers
- * @data: buffer of the command, in kernel memory; NULL when it has none, no bytes, or too many
- * @size: bytes at @data
- * @session: what the table says: the session of @file, or the one that is shown
- * @config: slave configuration of @session
- * @domain: domain of @session
- * @slave: with a reference for the time of the command
- * @showing: in a show section
- * @user: addresses in @arg are of the process
- */
+/** struct ec_call - one command while it is carried out */
 struct ec_call {
+	/** @file: open file of the caller */
 	struct ec_file *file;
+	/** @master: of @file */
 	struct ec_master *master;
+	/**
+	 * @arg: argument, struct ec_ioc_*, in kernel memory; its @data member is not for handlers
+	 */
 	void *arg;
+	/**
+	 * @data: buffer of the command, in kernel memory; NULL when it has none, no bytes, or too
+	 * many
+	 */
 	void *data;
+	/** @size: bytes at @data */
 	u32 size;
+	/** @session: what the table says: the session of @file, or the one that is shown */
 	struct ec_session *session;
+	/** @config: slave configuration of @session */
 	struct ec_config *config;
+	/** @domain: domain of @session */
 	struct ec_domain *domain;
+	/** @slave: with a reference for the time of the command */
 	struct ec_slave *slave;
+	/** @showing: in a show section */
 	bool showing;
+	/** @user: addresses in @arg are of the process */
 	bool user;
 };
 

@@ -9,17 +9,15 @@
 struct ec_mail_tap;
 struct ec_master;
 
-/**
- * struct ec_mail_readers - readers of a master
- * @readers: the files; their lock protects @tap and @woken
- * @tap: messages, NULL: there is no reader
- * @work: wakes the readers, periodically while there is one
- * @woken: number of the next message when they were woken last
- */
+/** struct ec_mail_readers - readers of a master */
 struct ec_mail_readers {
+	/** @readers: the files; their lock protects @tap and @woken */
 	struct ec_readers readers;
+	/** @tap: messages, NULL: there is no reader */
 	struct ec_mail_tap *tap;
+	/** @work: wakes the readers, periodically while there is one */
 	struct delayed_work work;
+	/** @woken: number of the next message when they were woken last */
 	u64 woken;
 };
 

@@ -12,52 +12,48 @@
 struct ec_file;
 struct ec_reader;
 
-/**
- * struct ec_reader_kind - what is read
- * @size: bytes of a record
- * @kept: records at most at once
- * @head: number of the next record that does not exist so far
- * @copy: copy record *@at, or the oldest one after it, and set @at to the one after that; 1, 0: no
- *	new record, -EFAULT or -ERESTARTSYS
- * @free: the file is closed, and @r no longer in the list; the lock of the list is held
- */
+/** struct ec_reader_kind - what is read */
 struct ec_reader_kind {
+	/** @size: bytes of a record */
 	size_t size;
+	/** @kept: records at most at once */
 	size_t kept;
+	/** @head: number of the next record that does not exist so far */
 	u64 (*head)(const struct ec_reader *r);
+	/**
+	 * @copy: copy record *@at, or the oldest one after it, and set @at to the one after that;
+	 * 1, 0: no new record, -EFAULT or -ERESTARTSYS
+	 */
 	int (*copy)(struct ec_reader *r, u64 *at, void __user *to);
+	/** @free: the file is closed, and @r no longer in the list; the lock of the list is held */
 	void (*free)(struct ec_reader *r);
 };
 
-/**
- * struct ec_readers - readers of one kind
- * @lock: protects @list
- * @list: of them
- * @count: entries in @list; changes under @lock
- */
+/** struct ec_readers - readers of one kind */
 struct ec_readers {
+	/** @lock: protects @list */
 	struct mutex lock;
+	/** @list: of them */
 	struct list_head list;
+	/** @count: entries in @list; changes under @lock */
 	unsigned int count;
 };
 
-/**
- * struct ec_reader - one open file
- * @kind: what it reads
- * @readers: where it is in the list
- * @list: in @readers
- * @source: of the records, which stays as long as the file is in the list; of @kind
- * @lock: protects @at; one caller reads at a time
- * @at: number of the next record to read
- * @waiters: callers that wait for a record
- */
+/** struct ec_reader - one open file */
 struct ec_reader {
+	/** @kind: what it reads */
 	const struct ec_reader_kind *kind;
+	/** @readers: where it is in the list */
 	struct ec_readers *readers;
+	/** @list: in @readers */
 	struct list_head list;
+	/** @source: of the records, which stays as long as the file is in the list; of @kind */
 	const void *source;
+	/** @lock: protects @at; one caller reads at a time */
 	struct mutex lock;
+	/** @at: number of the next record to read */
 	aligned_u64 at;
+	/** @waiters: callers that wait for a record */
 	struct ec_waiters waiters;
 };
 

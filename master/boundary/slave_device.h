@@ -10,31 +10,27 @@
 struct ec_bus;
 struct ec_slave;
 
-/**
- * struct ec_slave_id - identity, of the EEPROM; all 0 while that was not readable
- * @vendor: vendor ID
- * @product: product code
- * @revision: revision number
- * @serial: serial number
- */
+/** struct ec_slave_id - identity, of the EEPROM; all 0 while that was not readable */
 struct ec_slave_id {
+	/** @vendor: vendor ID */
 	u32 vendor;
+	/** @product: product code */
 	u32 product;
+	/** @revision: revision number */
 	u32 revision;
+	/** @serial: serial number */
 	u32 serial;
 };
 
-/**
- * struct ec_slave_at - where a slave is
- * @number: device number
- * @up: that of the slave at which it hangs, 0: the main device
- * @port: of that one
- * @id: identity
- */
+/** struct ec_slave_at - where a slave is */
 struct ec_slave_at {
+	/** @number: device number */
 	u64 number;
+	/** @up: that of the slave at which it hangs, 0: the main device */
 	u64 up;
+	/** @port: of that one */
 	u8 port;
+	/** @id: identity */
 	struct ec_slave_id id;
 };
 
@@ -43,22 +39,21 @@ struct ec_slave_at {
  *
  * It holds no reference to a slave: attributes ask the list for the one with the number. The
  * work of the master has it alone, but for what is immutable.
- *
- * @dev: device of Linux
- * @bus: where its slave is; immutable, valid until the device is removed
- * @at: where the slave was in the list last; @number and @id are immutable
- * @lost: the list has no such slave
- * @rate: where its change counts; NULL: it has not changed in this run of the work
- * @ports: uevents of what hangs at its ports
- * @remover: thread that removes it
  */
 struct ec_slave_device {
+	/** @dev: device of Linux */
 	struct device dev;
+	/** @bus: where its slave is; immutable, valid until the device is removed */
 	const struct ec_bus *bus;
+	/** @at: where the slave was in the list last; @number and @id are immutable */
 	struct ec_slave_at at;
+	/** @lost: the list has no such slave */
 	bool lost;
+	/** @rate: where its change counts; NULL: it has not changed in this run of the work */
 	struct ec_uevent_rate *rate;
+	/** @ports: uevents of what hangs at its ports */
 	struct ec_uevent_rate ports[EC_MAX_PORT];
+	/** @remover: thread that removes it */
 	const struct task_struct *remover;
 };
 

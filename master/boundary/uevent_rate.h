@@ -7,15 +7,13 @@
 
 #define EC_UEVENT_RATE	32	/* uevents of a place in any second */
 
-/**
- * struct ec_uevent_rate - uevents of a place
- * @second: of the last one (ktime)
- * @now: uevents in it
- * @before: in the second before
- */
+/** struct ec_uevent_rate - uevents of a place */
 struct ec_uevent_rate {
+	/** @second: of the last one (ktime) */
 	u32 second;
+	/** @now: uevents in it */
 	u8 now;
+	/** @before: in the second before */
 	u8 before;
 };
 

@@ -10,44 +10,48 @@
 
 #define EC_DG_NO_COPY	0xffff	/* of @side_wkc: no copy was received on that link */
 
-/**
- * struct ec_dg - one acyclic datagram
- * @cmd: enum ec_cmd
- * @repeat: may be sent again when its frame is lost (reads without side
- *	effect, writes that may be executed twice)
- * @keep: the reply leaves @data unchanged; only such datagrams in flight may share @data
- * @last: of ec_xfer_train(): the next datagram is in another frame
- * @pair: the next datagram is in the same frame, so that one slave executes both
- * @first: of ec_xfer_clock(): its frame is the first clock frame of a cyclic send
- * @adp: low half of the address
- * @ado: high half of the address
- * @len: data bytes
- * @data: sent for writing commands, filled for reading ones
- * @wkc: result: working counter, of all copies together
- * @side_wkc: result: working counter of each link's copy, or %EC_DG_NO_COPY
- * @back: result: @adp of the reply (position plus slaves passed)
- * @irq: result: OR of the enabled events of the slaves passed
- * @err: result: 0, or -ETIMEDOUT (lost frame), -ENETDOWN (link is down), -ENODEV,
- *	-EINTR (caller killed), -EBUSY (the device sends nothing), -EAGAIN (it does not fit
- *	beside the cycle any more); -EINPROGRESS while there is no result
- * @sent_ns: result: when its frame left, as far as the master knows (ktime)
- */
+/** struct ec_dg - one acyclic datagram */
 struct ec_dg {
+	/** @cmd: enum ec_cmd */
 	u8 cmd;
+	/**
+	 * @repeat: may be sent again when its frame is lost (reads without side effect, writes that
+	 * may be executed twice)
+	 */
 	bool repeat : 1;
+	/**
+	 * @keep: the reply leaves @data unchanged; only such datagrams in flight may share @data
+	 */
 	bool keep : 1;
+	/** @last: of ec_xfer_train(): the next datagram is in another frame */
 	bool last : 1;
+	/** @pair: the next datagram is in the same frame, so that one slave executes both */
 	bool pair : 1;
+	/** @first: of ec_xfer_clock(): its frame is the first clock frame of a cyclic send */
 	bool first : 1;
+	/** @adp: low half of the address */
 	u16 adp;
+	/** @ado: high half of the address */
 	u16 ado;
+	/** @len: data bytes */
 	u16 len;
+	/** @data: sent for writing commands, filled for reading ones */
 	void *data;
+	/** @wkc: result: working counter, of all copies together */
 	u16 wkc;
+	/** @side_wkc: result: working counter of each link's copy, or %EC_DG_NO_COPY */
 	u16 side_wkc[EC_MAX_LINKS];
+	/** @back: result: @adp of the reply (position plus slaves passed) */
 	u16 back;
+	/** @irq: result: OR of the enabled events of the slaves passed */
 	u16 irq;
+	/**
+	 * @err: result: 0, or -ETIMEDOUT (lost frame), -ENETDOWN (link is down), -ENODEV, -EINTR
+	 * (caller killed), -EBUSY (the device sends nothing), -EAGAIN (it does not fit beside the
+	 * cycle any more); -EINPROGRESS while there is no result
+	 */
 	int err;
+	/** @sent_ns: result: when its frame left, as far as the master knows (ktime) */
 	u64 sent_ns;
 };
 

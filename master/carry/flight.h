@@ -5,13 +5,11 @@
 
 #include "carry.h"
 
-/**
- * struct ec_flight_room - limits of a frame with several posts
- * @len: bytes behind the EtherType
- * @dgrams: datagrams; 0: the first post is sent alone
- */
+/** struct ec_flight_room - limits of a frame with several posts */
 struct ec_flight_room {
+	/** @len: bytes behind the EtherType */
 	unsigned int len;
+	/** @dgrams: datagrams; 0: the first post is sent alone */
 	unsigned int dgrams;
 };
 

@@ -43,13 +43,11 @@ enum ec_post_state {
 	EC_POST_FLYING,
 };
 
-/**
- * struct ec_post_wait - a caller that sleeps until its posts have ended
- * @pending: posts that have not ended, under the lock of the posts
- * @done: completed when there is none
- */
+/** struct ec_post_wait - a caller that sleeps until its posts have ended */
 struct ec_post_wait {
+	/** @pending: posts that have not ended, under the lock of the posts */
 	unsigned int pending;
+	/** @done: completed when there is none */
 	struct completion done;
 };
 

@@ -27,57 +27,51 @@ enum ec_rider_state {
 	EC_RIDER_BACK,
 };
 
-/**
- * struct ec_rider - one datagram; it belongs to its owner while it is IDLE
- * @state: enum ec_rider_state
- * @number: bit in the masks of struct ec_riders, immutable
- * @seq: number of the frame that carries it
- * @cmd: enum ec_cmd
- * @adp: low half of the address
- * @ado: high half of the address
- * @len: data bytes
- * @data: sent; then that of the reply
- * @wkc: result: working counter
- * @back: result: @adp of the reply
- * @irq: result: OR of the enabled events of the slaves passed
- * @done: completed when the reply is received
- */
+/** struct ec_rider - one datagram; it belongs to its owner while it is IDLE */
 struct ec_rider {
+	/** @state: enum ec_rider_state */
 	atomic_t state;
+	/** @number: bit in the masks of struct ec_riders, immutable */
 	u8 number;
+	/** @seq: number of the frame that carries it */
 	u32 seq;
+	/** @cmd: enum ec_cmd */
 	u8 cmd;
+	/** @adp: low half of the address */
 	u16 adp;
+	/** @ado: high half of the address */
 	u16 ado;
+	/** @len: data bytes */
 	u16 len;
+	/** @data: sent; then that of the reply */
 	u8 data[EC_RIDER_BYTES];
+	/** @wkc: result: working counter */
 	u16 wkc;
+	/** @back: result: @adp of the reply */
 	u16 back;
+	/** @irq: result: OR of the enabled events of the slaves passed */
 	u16 irq;
+	/** @done: completed when the reply is received */
 	struct completion done;
 };
 
-/**
- * struct ec_riders - riders of a master
- * @links: way to the slaves, immutable
- * @rider: all of them, NULL: none with this number
- * @queued: mask of riders that may wait for a frame
- * @seq: number of the last frame that carried riders; written by the cycle owner
- */
+/** struct ec_riders - riders of a master */
 struct ec_riders {
+	/** @links: way to the slaves, immutable */
 	struct ec_links *links;
+	/** @rider: all of them, NULL: none with this number */
 	struct ec_rider *rider[EC_RIDERS];
+	/** @queued: mask of riders that may wait for a frame */
 	atomic_t queued;
+	/** @seq: number of the last frame that carried riders; written by the cycle owner */
 	u32 seq;
 };
 
-/**
- * struct ec_riding - riders in one frame; 0: none
- * @mask: their numbers; in the frame they are in this order
- * @seq: number of the frame
- */
+/** struct ec_riding - riders in one frame; 0: none */
 struct ec_riding {
+	/** @mask: their numbers; in the frame they are in this order */
 	u32 mask;
+	/** @seq: number of the frame */
 	u32 seq;
 };
 

@@ -8,13 +8,11 @@
 
 struct ec_links;
 
-/**
- * struct ec_capture - private part of the interface
- * @nd: the interface
- * @tap: copies of frames for it
- */
+/** struct ec_capture - private part of the interface */
 struct ec_capture {
+	/** @nd: the interface */
 	struct net_device *nd;
+	/** @tap: copies of frames for it */
 	struct ec_tap tap;
 };
 

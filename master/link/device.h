@@ -11,21 +11,19 @@
 struct ec_link;
 struct ec_links;
 
-/**
- * struct ecdev - a device a driver offers
- * @list: in the list of all devices, under the device lock
- * @name: "eth0", "sim0"..., immutable
- * @mac: immutable
- * @ops: immutable
- * @priv: for @ops, immutable
- * @link: its user, NULL: none; RCU for receivers
- */
+/** struct ecdev - a device a driver offers */
 struct ecdev {
+	/** @list: in the list of all devices, under the device lock */
 	struct list_head list;
+	/** @name: "eth0", "sim0"..., immutable */
 	char name[EC_UAPI_STRING];
+	/** @mac: immutable */
 	u8 mac[ETH_ALEN];
+	/** @ops: immutable */
 	const struct ecdev_ops *ops;
+	/** @priv: for @ops, immutable */
 	void *priv;
+	/** @link: its user, NULL: none; RCU for receivers */
 	struct ec_link __rcu *link;
 };
 

@@ -40,46 +40,46 @@ struct ec_link_stats {
 	atomic64_t not_captured;
 };
 
-/**
- * struct ec_link_rates - averages, kept by the monitor
- * @last: counters one second ago: tx frames, rx frames, tx bytes, rx bytes, lost
- * @rate: per second, averaged over 1, 10, 60 s
- * @restart: the counters have been cleared
- */
+/** struct ec_link_rates - averages, kept by the monitor */
 struct ec_link_rates {
+	/** @last: counters one second ago: tx frames, rx frames, tx bytes, rx bytes, lost */
 	u64 last[5];
+	/** @rate: per second, averaged over 1, 10, 60 s */
 	u32 rate[5][EC_UAPI_RATES];
+	/** @restart: the counters have been cleared */
 	bool restart;
 };
 
-/**
- * struct ec_link - port to the wire
- * @links: links of the master, immutable
- * @side: 0 main, 1 backup, immutable
- * @dev: attached device or NULL; changes under the access lock. Used by the
- *	owner of the bus access; other threads use it only in an RCU read section
- * @acyclic: acyclic frames in flight
- * @acyclic_ns: wire time of these frames
- * @places: limit of @acyclic
- * @keep: the cycle owner polls the device, and takes replies to the cycle from its memory
- * @up: link state as last seen by the monitor
- * @slaves: slaves that answered the last broadcast on this link
- * @al_states: OR of their AL states
- * @stats: counters
- * @rates: averages
- */
+/** struct ec_link - port to the wire */
 struct ec_link {
+	/** @links: links of the master, immutable */
 	struct ec_links *links;
+	/** @side: 0 main, 1 backup, immutable */
 	u8 side;
+	/**
+	 * @dev: attached device or NULL; changes under the access lock. Used by the owner of the
+	 * bus access; other threads use it only in an RCU read section
+	 */
 	struct ecdev *dev;
+	/** @acyclic: acyclic frames in flight */
 	atomic_t acyclic;
+	/** @acyclic_ns: wire time of these frames */
 	atomic_t acyclic_ns;
+	/** @places: limit of @acyclic */
 	unsigned int places;
+	/**
+	 * @keep: the cycle owner polls the device, and takes replies to the cycle from its memory
+	 */
 	bool keep;
+	/** @up: link state as last seen by the monitor */
 	bool up;
+	/** @slaves: slaves that answered the last broadcast on this link */
 	u32 slaves;
+	/** @al_states: OR of their AL states */
 	u32 al_states;
+	/** @stats: counters */
 	struct ec_link_stats stats;
+	/** @rates: averages */
 	struct ec_link_rates rates;
 };
 

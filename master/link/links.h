@@ -210,15 +210,13 @@ static inline u8 *ec_link_tx_get(const struct ec_link *link, struct ecdev **dev)
 	return *dev ? (*dev)->ops->tx_get((*dev)->priv) : NULL;
 }
 
-/**
- * struct ec_tx - where a frame is built and leaves
- * @link: its link, NULL: several
- * @dev: device of @link; it stays in the RCU read section
- * @sides: mask of the links
- */
+/** struct ec_tx - where a frame is built and leaves */
 struct ec_tx {
+	/** @link: its link, NULL: several */
 	struct ec_link *link;
+	/** @dev: device of @link; it stays in the RCU read section */
 	struct ecdev *dev;
+	/** @sides: mask of the links */
 	u8 sides;
 };
 

@@ -31,52 +31,57 @@ enum ec_slot_state {
 	EC_SLOT_QUARANTINE,
 };
 
-/**
- * struct ec_slot - one frame
- * @state: enum ec_slot_state
- * @index: datagram index, immutable
- * @sides: mask of the links on which it is sent
- * @back: mask of the links whose copy is received
- * @eth_len: bytes of the Ethernet frame without padding and FCS
- * @seq: sequence number in the source MAC address
- * @sent_ns: when it was sent, or cancelled (ktime)
- * @done: called in state DONE with the last copy, in any context: it owns the slot from then on;
- *	RT-safe. NULL: the owner polls @state
- * @user: for @done
- * @reply: in state DONE: received bytes behind the EtherType; in a copy, or for the cycle in
- *	the memory of the device, see struct ec_link.keep
- * @copy: memory for the copy of each link, behind the EtherType; with one link that of @frame
- * @frame: the sent Ethernet frame, or only headers of its datagrams, see ec_slot_arm(); with one
- *	link the received copy overwrites it
- */
+/** struct ec_slot - one frame */
 struct ec_slot {
+	/** @state: enum ec_slot_state */
 	atomic_t state;
+	/** @index: datagram index, immutable */
 	u8 index;
+	/** @sides: mask of the links on which it is sent */
 	u8 sides;
+	/** @back: mask of the links whose copy is received */
 	u8 back;
+	/** @eth_len: bytes of the Ethernet frame without padding and FCS */
 	u16 eth_len;
+	/** @seq: sequence number in the source MAC address */
 	u32 seq;
+	/** @sent_ns: when it was sent, or cancelled (ktime) */
 	aligned_u64 sent_ns;
+	/**
+	 * @done: called in state DONE with the last copy, in any context: it owns the slot from
+	 * then on; RT-safe. NULL: the owner polls @state
+	 */
 	void (*done)(struct ec_slot *slot);
+	/** @user: for @done */
 	void *user;
+	/**
+	 * @reply: in state DONE: received bytes behind the EtherType; in a copy, or for the cycle
+	 * in the memory of the device, see struct ec_link.keep
+	 */
 	const u8 *reply;
+	/**
+	 * @copy: memory for the copy of each link, behind the EtherType; with one link that of
+	 * @frame
+	 */
 	u8 *copy[EC_MAX_LINKS];
+	/**
+	 * @frame: the sent Ethernet frame, or only headers of its datagrams, see ec_slot_arm();
+	 * with one link the received copy overwrites it
+	 */
 	u8 frame[EC_ETH_MAX];
 };
 
-/**
- * struct ec_slots - all slots of one master
- * @slot: the slots
- * @copies: memory of the copies with a second link, else NULL
- * @hint: where the search for a free slot begins
- * @seq: sequence number of the last frame
- * @numbered: the source address of each frame has its sequence number
- */
+/** struct ec_slots - all slots of one master */
 struct ec_slots {
+	/** @slot: the slots */
 	struct ec_slot *slot;
+	/** @copies: memory of the copies with a second link, else NULL */
 	u8 *copies;
+	/** @hint: where the search for a free slot begins */
 	atomic_t hint;
+	/** @seq: sequence number of the last frame */
 	atomic_t seq;
+	/** @numbered: the source address of each frame has its sequence number */
 	bool numbered;
 };
 

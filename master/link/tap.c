@@ -15,17 +15,15 @@
 #include "tap.h"
 #include "../wire/frame.h"
 
-/**
- * struct ec_tap_frame - one frame in the ring
- * @at: when it was sent or received
- * @out: sent
- * @len: bytes of @data
- * @data: the frame from its destination address
- */
+/** struct ec_tap_frame - one frame in the ring */
 struct ec_tap_frame {
+	/** @at: when it was sent or received */
 	ktime_t at;
+	/** @out: sent */
 	bool out;
+	/** @len: bytes of @data */
 	u16 len;
+	/** @data: the frame from its destination address */
 	u8 data[EC_ETH_MAX];
 };
 

@@ -15,29 +15,27 @@
 
 struct ec_tap_frame;
 
-/**
- * struct ec_tap - copies of frames for the capture programs of an interface
- * @nd: the interface
- * @lock: protects @head, @awake and @dropped
- * @head: next to be filled, by the sender or receiver of the frame
- * @tail: next to be shown, by the worker
- * @shown: frames shown
- * @bytes: of these
- * @dropped: frames that found the ring full, or no memory
- * @awake: @work runs or is scheduled
- * @work: shows the content of the ring, periodically while a program captures
- * @ring: frames
- */
+/** struct ec_tap - copies of frames for the capture programs of an interface */
 struct ec_tap {
+	/** @nd: the interface */
 	struct net_device *nd;
+	/** @lock: protects @head, @awake and @dropped */
 	raw_spinlock_t lock;
+	/** @head: next to be filled, by the sender or receiver of the frame */
 	unsigned int head;
+	/** @tail: next to be shown, by the worker */
 	unsigned int tail;
+	/** @shown: frames shown */
 	aligned_u64 shown;
+	/** @bytes: of these */
 	aligned_u64 bytes;
+	/** @dropped: frames that found the ring full, or no memory */
 	aligned_u64 dropped;
+	/** @awake: @work runs or is scheduled */
 	bool awake;
+	/** @work: shows the content of the ring, periodically while a program captures */
 	struct delayed_work work;
+	/** @ring: frames */
 	struct ec_tap_frame *ring;
 };
 

@@ -8,13 +8,11 @@
 
 struct task_struct;
 
-/**
- * struct ec_mbox_until - when the wait of a caller has to end
- * @ns: time (ktime)
- * @cancel: NULL, or becomes true when another thread cancels the transfer
- */
+/** struct ec_mbox_until - when the wait of a caller has to end */
 struct ec_mbox_until {
+	/** @ns: time (ktime) */
 	u64 ns;
+	/** @cancel: NULL, or becomes true when another thread cancels the transfer */
 	const bool *cancel;
 };
 
@@ -25,13 +23,11 @@ static inline struct ec_mbox_until ec_mbox_until(const struct ec_mbox_limit *l)
 	return (struct ec_mbox_until){ l->end_ns ? min(ns, l->end_ns) : ns, l->cancel };
 }
 
-/**
- * struct ec_caller - user of a mailbox that sleeps
- * @user: its message, and what it waits for
- * @task: woken when @user is DONE, immutable from ec_caller_enter() on
- */
+/** struct ec_caller - user of a mailbox that sleeps */
 struct ec_caller {
+	/** @user: its message, and what it waits for */
 	struct ec_mbox_user user;
+	/** @task: woken when @user is DONE, immutable from ec_caller_enter() on */
 	struct task_struct *task;
 };
 

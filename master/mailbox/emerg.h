@@ -9,19 +9,17 @@ struct ec_emerg_ring;
 struct ec_emergency;
 struct ec_mbox;
 
-/**
- * struct ec_emerg - the kernel's side of a ring; under ec_desk.unasked_lock
- * @ring: mapped by the application; of it only @tail is read, and not trusted
- * @data: entries, mapped
- * @count: how many
- * @head: emergencies put in so far
- * @overruns: emergencies lost so far
- */
+/** struct ec_emerg - the kernel's side of a ring; under ec_desk.unasked_lock */
 struct ec_emerg {
+	/** @ring: mapped by the application; of it only @tail is read, and not trusted */
 	struct ec_emerg_ring *ring;
+	/** @data: entries, mapped */
 	u8 *data;
+	/** @count: how many */
 	u32 count;
+	/** @head: emergencies put in so far */
 	u32 head;
+	/** @overruns: emergencies lost so far */
 	u32 overruns;
 };
 

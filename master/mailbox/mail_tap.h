@@ -17,17 +17,15 @@ union ec_mail_place {
 	u32 word[sizeof(struct ec_mail) / sizeof(u32)];
 };
 
-/**
- * struct ec_mail_tap - copies of the messages of a master; there is one while it has a reader
- * @lock: protects @head and @place against other writers
- * @head: number of the next message
- * @rcu: frees it after the last writer
- * @place: of message n: n modulo EC_MAIL_PLACES
- */
+/** struct ec_mail_tap - copies of the messages of a master; there is one while it has a reader */
 struct ec_mail_tap {
+	/** @lock: protects @head and @place against other writers */
 	raw_spinlock_t lock;
+	/** @head: number of the next message */
 	atomic64_t head;
+	/** @rcu: frees it after the last writer */
 	struct rcu_head rcu;
+	/** @place: of message n: n modulo EC_MAIL_PLACES */
 	union ec_mail_place place[EC_MAIL_PLACES];
 };
 

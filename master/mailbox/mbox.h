@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* Mailbox of a slave: transport (box.h), queue (desk.h), users (desk_user.h), what protocols share. */
+/* Mailbox of a slave: transport, queue, its users, and what the protocols share. */
 #ifndef EC_MBOX_H
 #define EC_MBOX_H
 
@@ -212,48 +212,46 @@ struct ec_mbox {
 	struct ec_desk desk;
 };
 
-/**
- * struct ec_mbox_buf - buffers of one exchange
- * @tx: message behind the mailbox header
- * @rx: answer behind the mailbox header
- */
+/** struct ec_mbox_buf - buffers of one exchange */
 struct ec_mbox_buf {
+	/** @tx: message behind the mailbox header */
 	u8 tx[EC_MBOX_MAX];
+	/** @rx: answer behind the mailbox header */
 	u8 rx[EC_MBOX_MAX];
 };
 
-/**
- * struct ec_mbox_limit - time limits of a transfer
- * @timeout_ms: per message, 0: the protocol's default
- * @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes
- * @end_ns: time (ktime) until which all of its messages have to be exchanged, 0: unlimited
- * @patient: a reply that is late is waited for as well, %EC_MBOX_LATE_MS more
- * @cancel: NULL, or becomes true when another thread cancels the transfer
- */
+/** struct ec_mbox_limit - time limits of a transfer */
 struct ec_mbox_limit {
+	/** @timeout_ms: per message, 0: the protocol's default */
 	u32 timeout_ms;
+	/** @patient: a reply that is late is waited for as well, %EC_MBOX_LATE_MS more */
 	bool patient;
+	/** @begin_ns: time (ktime) until which it waits for its protocol, 0: as long as it takes */
 	u64 begin_ns;
+	/**
+	 * @end_ns: time (ktime) until which all of its messages have to be exchanged, 0: unlimited
+	 */
 	u64 end_ns;
+	/** @cancel: NULL, or becomes true when another thread cancels the transfer */
 	const bool *cancel;
 };
 
-/**
- * struct ec_mbox_request - a message to the slave that has an answer
- * @type: enum ec_mbox_type
- * @first: of a transfer: replies to earlier ones are discarded
- * @late: the next transfer begins when the reply to this message has come, however late
- * @limit: for the answer; @timeout_ms is not 0
- * @rx: takes each message of @type: 0, EC_MORE and -errno end the wait, EC_STALE
- *	continues it, EC_WAIT continues it with a new time limit
- * @ctx: for @rx
- */
+/** struct ec_mbox_request - a message to the slave that has an answer */
 struct ec_mbox_request {
+	/** @type: enum ec_mbox_type */
 	u8 type;
+	/** @first: of a transfer: replies to earlier ones are discarded */
 	bool first;
+	/** @late: the next transfer begins when the reply to this message has come, however late */
 	bool late;
+	/** @limit: for the answer; @timeout_ms is not 0 */
 	struct ec_mbox_limit limit;
+	/**
+	 * @rx: takes each message of @type: 0, EC_MORE and -errno end the wait, EC_STALE continues
+	 * it, EC_WAIT continues it with a new time limit
+	 */
 	int (*rx)(void *ctx, const u8 *rx, size_t len);
+	/** @ctx: for @rx */
 	void *ctx;
 };
 

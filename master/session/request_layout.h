@@ -11,15 +11,13 @@
 struct ec_requests;
 struct ec_session;
 
-/**
- * struct ec_request_spec - a request to be made by activation
- * @config: of the slave
- * @kind: EC_REQUEST_*
- * @size: bytes of its data at most
- */
+/** struct ec_request_spec - a request to be made by activation */
 struct ec_request_spec {
+	/** @config: of the slave */
 	u32 config;
+	/** @kind: EC_REQUEST_* */
 	u32 kind;
+	/** @size: bytes of its data at most */
 	u32 size;
 };
 

@@ -15,17 +15,18 @@ struct ec_requests;
 
 #define EC_TIMEOUT_LOG_NS	(10ULL * NSEC_PER_SEC)
 
-/**
- * struct ec_timeout_log - cycle timeouts in the log; under sessions->lock
- * @logged: cycle timeouts that the log has counted, as sessions->links->access.timeouts counts them
- * @since_ns: last send before the logged timeout
- * @next_ns: no other timeout is logged before
- * @open: the timeout is logged, its end is not
- */
+/** struct ec_timeout_log - cycle timeouts in the log; under sessions->lock */
 struct ec_timeout_log {
+	/**
+	 * @logged: cycle timeouts that the log has counted, as sessions->links->access.timeouts
+	 * counts them
+	 */
 	u32 logged;
+	/** @since_ns: last send before the logged timeout */
 	u64 since_ns;
+	/** @next_ns: no other timeout is logged before */
 	u64 next_ns;
+	/** @open: the timeout is logged, its end is not */
 	bool open;
 };
 
@@ -36,63 +37,67 @@ static inline const char *ec_timeouts_text(const struct ec_timeout_log *l)
 			    " cycle timeout(s) since activation";
 }
 
-/**
- * struct ec_count_notes - counters as reported by events; under sessions->lock
- * @count: counters at the last check: cycles skipped, frames lost, frames late
- * @more: since the last event, of each
- * @next_ns: no other event before, of each
- * @timeouts: cycle timeouts, as struct ec_timeout_log @logged
- * @since_ns: last send before the timeout that was reported last, 0: the cycle has resumed
- */
+/** struct ec_count_notes - counters as reported by events; under sessions->lock */
 struct ec_count_notes {
+	/** @count: counters at the last check: cycles skipped, frames lost, frames late */
 	u64 count[3];
+	/** @more: since the last event, of each */
 	u32 more[3];
+	/** @next_ns: no other event before, of each */
 	u64 next_ns[3];
+	/** @timeouts: cycle timeouts, as struct ec_timeout_log @logged */
 	u32 timeouts;
+	/**
+	 * @since_ns: last send before the timeout that was reported last, 0: the cycle has resumed
+	 */
 	u64 since_ns;
 };
 
-/**
- * struct ec_session - under sessions->lock
- * @sessions: of the master
- * @owner_pid: process that reserved the master, in the initial namespace
- * @owner_comm: its command, printable
- * @wanted: slave configurations and domains
- * @timeout_log: cycle timeouts of the application in the log
- * @notes: its counters in the events
- * @configs_seen: changes of the slaves before the status of the configurations was written
- * @configs_ns: when that was (ktime)
- * @cycle: its cycle, with its owner
- * @ref_config: configuration whose slave is the reference clock, or
- *	EC_UAPI_NONE32
- * @specs: requests to be made by activation; a deactivation sets it and all that follows to zero
- * @n_specs: entries in @specs
- * @request_bytes: bytes of their data and of emergencies
- * @requests: executes them while active, or NULL
- * @ending: the slaves go to PREOP while the application still cycles
- * @raised: reference clock without configuration that was taken to OP, or NULL
- * @preset: initial image, for the time of an activation; NULL: zeros
- * @handles: after a takeover by an application in the kernel: the candidate session that it has
- *	configured, to which its handles belong; or NULL
- */
+/** struct ec_session - under sessions->lock */
 struct ec_session {
+	/** @sessions: of the master */
 	struct ec_sessions *sessions;
+	/** @owner_pid: process that reserved the master, in the initial namespace */
 	pid_t owner_pid;
+	/** @owner_comm: its command, printable */
 	char owner_comm[TASK_COMM_LEN];
+	/** @wanted: slave configurations and domains */
 	struct ec_wanted wanted;
+	/** @timeout_log: cycle timeouts of the application in the log */
 	struct ec_timeout_log timeout_log;
+	/** @notes: its counters in the events */
 	struct ec_count_notes notes;
+	/**
+	 * @configs_seen: changes of the slaves before the status of the configurations was written
+	 */
 	u32 configs_seen;
+	/** @configs_ns: when that was (ktime) */
 	u64 configs_ns;
+	/** @cycle: its cycle, with its owner */
 	struct ec_cycle cycle;
+	/** @ref_config: configuration whose slave is the reference clock, or EC_UAPI_NONE32 */
 	u32 ref_config;
+	/**
+	 * @specs: requests to be made by activation; a deactivation sets it and all that follows to
+	 * zero
+	 */
 	struct ec_request_spec *specs;
+	/** @n_specs: entries in @specs */
 	unsigned int n_specs;
+	/** @request_bytes: bytes of their data and of emergencies */
 	size_t request_bytes;
+	/** @requests: executes them while active, or NULL */
 	struct ec_requests *requests;
+	/** @ending: the slaves go to PREOP while the application still cycles */
 	bool ending;
+	/** @raised: reference clock without configuration that was taken to OP, or NULL */
 	struct ec_slave *raised;
+	/** @preset: initial image, for the time of an activation; NULL: zeros */
 	const void *preset;
+	/**
+	 * @handles: after a takeover by an application in the kernel: the candidate session that it
+	 * has configured, to which its handles belong; or NULL
+	 */
 	struct ec_session *handles;
 };
 

@@ -13,17 +13,15 @@
 struct ec_cycles;
 struct ec_session;
 
-/**
- * struct ec_next - settings of a candidate that become valid when it gets the master
- * @interval_us: of its cycle, 0: not set
- * @phase: its first application time other than 0
- * @time: its last application time
- * @at_ns: when it has set @time (ktime), 0: never
- */
+/** struct ec_next - settings of a candidate that become valid when it gets the master */
 struct ec_next {
+	/** @interval_us: of its cycle, 0: not set */
 	u32 interval_us;
+	/** @phase: its first application time other than 0 */
 	aligned_u64 phase;
+	/** @time: its last application time */
 	aligned_u64 time;
+	/** @at_ns: when it has set @time (ktime), 0: never */
 	aligned_u64 at_ns;
 };
 

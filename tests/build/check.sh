@@ -165,6 +165,9 @@ t "a function with the name of another file is noticed" \
 t "no static function of master/ has the name of another" tests/build/style.py statics
 t "a static function with the name of another is noticed" rule_notices statics \
 	'static int f(void)\n{\n}\nstatic int f(int a)\n{\n}' 'f() is also in'
+t "members are described where they are declared" tests/build/style.py members
+t "members that are described above their structure are noticed" rule_notices members \
+	'/**\n * struct a - sum\n * @b: one\n */\nstruct a {\n\tint b;\n};' 'struct a are described'
 t "checkpatch reports nothing" tests/build/style.py checkpatch
 t "checkpatch notices a space before a bracket" \
 	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE

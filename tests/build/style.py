@@ -10,6 +10,8 @@ names      a KUnit case is named <area>_<condition>_<expected>: in tests/unit th
            of the file; no articles, no words that texts.py replaces; bats tests likewise
 globals    a function of master/ that other files call is named after its file, the first word of
            the file's name, or a structure of its layer; ec_ioc_ is followed by the command
+members    a structure of the layers IN_PLACE describes each member where it is declared, not above:
+           who adds one sees whether it is described
 statics    no two static functions of a module have the same name: a trace shows nothing else of
            them. One that stands twice begins with the name of its file: log_take()
 
@@ -181,6 +183,21 @@ def globals_(args):
                 yield f"{name}:1: {m[1]}() is not named after it"
 
 
+IN_PLACE = ("link", "carry", "mailbox", "session", "boundary")
+ABOVE = re.compile(r"^/\*\*\n(?:(?!\*/)[^\n]*\n)*? \* @\w[^:\n]*:(?:(?!\*/).)*?\*/\n(struct \w+) \{",
+                   re.M | re.S)
+
+
+def members(args):
+    for name, path in files(args, (".c", ".h")):
+        if not args and not name.startswith(tuple(f"master/{layer}/" for layer in IN_PLACE)):
+            continue
+        text = path.read_text()
+        for m in ABOVE.finditer(text):
+            number = text.count("\n", 0, m.start(1)) + 1
+            yield f"{name}:{number}: members of {m[1]} are described above it, not in place"
+
+
 STATIC = re.compile(r"^static\b[^=;{}()]*\b(\w+)\((?=[^;]*?\)[^;=]*?\n\{)", re.M)
 MODULES = ("master/", "devices/sim/", "devices/intel/", "devices/", "lib/", "tool/")
 
@@ -200,8 +217,8 @@ def statics(args):
             yield f"{found[0]}: {function}() is also in {', '.join(found[1:])}"
 
 
-RULES = {"globals": globals_, "statics": statics, "names": names, "spdx": spdx, "lines": lines,
-         "kernel-doc": kernel_doc, "checkpatch": checkpatch}
+RULES = {"globals": globals_, "statics": statics, "members": members, "names": names, "spdx": spdx,
+         "lines": lines, "kernel-doc": kernel_doc, "checkpatch": checkpatch}
 
 
 def main():
