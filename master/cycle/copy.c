@@ -6,33 +6,29 @@
 #include "../config/domain.h"
 #include "copy.h"
 
-/**
- * struct step - a copy, prepared
- * @domain: of the inputs, its working counter says whether they are valid
- * @to_domain: of the outputs
- * @from: bit in the image
- * @to: bit in the image
- * @bits: how many
- * @last: byte in the memory of last values
- */
+/** struct step - a copy, prepared */
 struct step {
+	/** @domain: of the inputs, its working counter says whether they are valid */
 	u32 domain;
+	/** @to_domain: of the outputs */
 	u32 to_domain;
+	/** @from: bit in the image */
 	u32 from;
+	/** @to: bit in the image */
 	u32 to;
+	/** @bits: how many */
 	u32 bits;
+	/** @last: byte in the memory of last values */
 	u32 last;
 };
 
-/**
- * struct ec_copying - the copies of an active cycle; of the cycle owner
- * @n: entries in @steps
- * @last: last valid values, behind @steps
- * @steps: copies
- */
+/** struct ec_copying - the copies of an active cycle; of the cycle owner */
 struct ec_copying {
+	/** @n: entries in @steps */
 	unsigned int n;
+	/** @last: last valid values, behind @steps */
 	u8 *last;
+	/** @steps: copies */
 	struct step steps[];
 };
 

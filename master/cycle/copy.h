@@ -10,13 +10,11 @@
 struct ec_copying;
 struct ec_wanted;
 
-/**
- * struct ec_copies - the copies an application has set; under the lock of the configuration
- * @list: copies, or NULL
- * @n: entries in @list
- */
+/** struct ec_copies - the copies an application has set; under the lock of the configuration */
 struct ec_copies {
+	/** @list: copies, or NULL */
 	struct ec_ioc_copy *list;
+	/** @n: entries in @list */
 	unsigned int n;
 };
 

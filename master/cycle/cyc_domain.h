@@ -6,37 +6,35 @@
 #include <linux/types.h>
 #include "../base/events.h"
 
-/**
- * struct ec_cyc_domain - received data of a domain
- * @expected: working counter if every slave processes its datagrams that does so now
- * @spare: as in its datagrams
- * @send: number of the newest send of which data were received
- * @wkc: sum of the working counters of that send
- * @partial: how many of these are not the expected ones, even if their sum is
- * @age: sends of the domain since @send
- * @max_age: data that are older are stale, 0: none are
- * @stale: age of the oldest stale data received, for the log
- * @stale_logged: @stale was logged; for the monitor only
- * @image: image to which the offsets of its datagrams refer
- * @seen: working counter and its state of the last receive
- * @noted: the counter of the last event about it
- * @noted_state: its state
- * @rate: of these events
- */
+/** struct ec_cyc_domain - received data of a domain */
 struct ec_cyc_domain {
+	/** @image: image to which the offsets of its datagrams refer */
 	u8 *image;
+	/** @expected: working counter if every slave processes its datagrams that does so now */
 	u32 expected;
+	/** @spare: as in its datagrams */
 	u32 spare;
+	/** @send: number of the newest send of which data were received */
 	u32 send;
+	/** @wkc: sum of the working counters of that send */
 	u32 wkc;
+	/** @age: sends of the domain since @send */
 	u32 age;
+	/** @max_age: data that are older are stale, 0: none are */
 	u32 max_age;
+	/** @stale: age of the oldest stale data received, for the log */
 	u32 stale;
+	/** @stale_logged: @stale was logged; for the monitor only */
 	bool stale_logged;
+	/** @partial: how many working counters are not the expected ones, even if @wkc is */
 	u32 partial;
+	/** @seen: working counter and its state of the last receive */
 	u32 seen;
+	/** @noted: the counter of the last event about it */
 	u32 noted;
+	/** @noted_state: its state */
 	u32 noted_state;
+	/** @rate: of these events */
 	struct ec_event_rate rate;
 };
 

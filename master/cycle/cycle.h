@@ -23,42 +23,38 @@ struct ec_waiters;
 
 #define EC_CYCLE_PRIORITY	50	/* SCHED_FIFO, when none is configured */
 
-/**
- * struct ec_cyc_flight - a frame of the cycle in flight
- * @slot: frame
- * @send: number of the send it belongs to
- * @first: first datagram of the layout that it may carry
- * @count: datagrams from @first on; it carries those of domains in @queued
- * @queued: domains of that send, bit n: domain n
- * @missed: a receive has not found its reply
- * @in_time: mask of the links whose copy a receive before the next send has found
- * @direct: domains sent from struct ec_cycle.direct, bit n: domain n
- * @clocks: clock datagrams before them
- * @riding: riders behind them
- */
+/** struct ec_cyc_flight - a frame of the cycle in flight */
 struct ec_cyc_flight {
+	/** @slot: frame */
 	struct ec_slot *slot;
+	/** @send: number of the send it belongs to */
 	u32 send;
+	/** @first: first datagram of the layout that it may carry */
 	u16 first;
+	/** @count: datagrams from @first on; it carries those of domains in @queued */
 	u16 count;
+	/** @queued: domains of that send, bit n: domain n */
 	u64 queued;
+	/** @missed: a receive has not found its reply */
 	bool missed;
+	/** @in_time: mask of the links whose copy a receive before the next send has found */
 	u8 in_time;
+	/** @direct: domains sent from struct ec_cycle.direct, bit n: domain n */
 	u64 direct;
+	/** @clocks: clock datagrams before them */
 	struct ec_dc_flight clocks;
+	/** @riding: riders behind them */
 	struct ec_riding riding;
 };
 
 #define EC_CYC_FRAMES	128	/* in flight at most */
 #define EC_CYC_SENDS	128	/* remembered; the age of data is at most that */
 
-/**
- * struct ec_cycle_report - the last cycle that has ended
- * @info: its result of EC_IOC_CYCLE_STATS
- * @status: and its figures
- */
+/** struct ec_cycle_report - the last cycle that has ended */
 struct ec_cycle_report {
+	/** @info: its result of EC_IOC_CYCLE_STATS */
 	struct ec_ioc_cycle_stats info;
+	/** @status: and its figures */
 	struct ec_status_cycle status;
 };
 

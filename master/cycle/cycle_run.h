@@ -28,74 +28,76 @@ struct ec_cycle_slow {
 
 /**
  * struct ec_cycle_thread - @cycle, @outputs and sizes are immutable; what a cycle changes
- *	belongs to the thread, or to the interrupt while @timed
- * @cycle: active cycle; its session ends the thread before it is freed
- * @ops: reports to higher layers
- * @task: thread
- * @outputs: areas that are taken from the application
- * @n_outputs: entries in @outputs
- * @always: domains of each cycle, bit n: domain n
- * @slow: the others
- * @n_slow: entries in @slow
- * @bytes: of the image of all domains
- * @stride: distance of two buffers in the exchange
- * @next_ns: schedule of the next cycle (ktime)
- * @epoch_ns: initial application time less ktime, ns
- * @lock: application time; synchronizes the cycle to the reference clock
- * @front: output buffer that the cycle holds
- * @given: @front is from the application, and its outputs are still valid
- * @ahead: outputs of @front are not in the image
- * @steady: cycles in a row whose working counters were complete, up to STEADY
- * @back: input buffer that the cycle holds
- * @fed: the application has given outputs at least once
- * @unfed: cycles without new outputs in a row
- * @stalls: rate of the events of output stalls
- * @stall_told: the present output stall is an event
- * @adopt: another application is to get the buffers; cleared when it has them
- * @adopted: completed then
- * @timer: runs cycles in its interrupt
- * @timed: @timer runs the cycles; until it is false the thread does not touch what they use
- * @polled: the interrupt requests that the thread wakes callers of poll()
- * @ended: the last cycle was run in the interrupt
- * @stopped: by @panic
- * @end_ns: end of the last cycle (ktime)
- * @tight: cycles in a row that ended in the second half of their period
- * @in_thread: cycles that have to run in the thread
- * @panic: notifier of a kernel panic, which stops @timer
+ * belongs to the thread, or to the interrupt while @timed
  */
 struct ec_cycle_thread {
+	/** @cycle: active cycle; its session ends the thread before it is freed */
 	struct ec_cycle *cycle;
+	/** @ops: reports to higher layers */
 	const struct ec_cycle_ops *ops;
+	/** @task: thread */
 	struct task_struct *task;
+	/** @outputs: areas that are taken from the application */
 	struct ec_domain_area *outputs;
+	/** @n_outputs: entries in @outputs */
 	unsigned int n_outputs;
+	/** @always: domains of each cycle, bit n: domain n */
 	u64 always;
+	/** @slow: the others */
 	struct ec_cycle_slow slow[EC_MAX_DOMAINS];
+	/** @n_slow: entries in @slow */
 	unsigned int n_slow;
+	/** @bytes: of the image of all domains */
 	u32 bytes;
+	/** @stride: distance of two buffers in the exchange */
 	u32 stride;
+	/** @next_ns: schedule of the next cycle (ktime) */
 	u64 next_ns;
+	/** @epoch_ns: initial application time less ktime, ns */
 	u64 epoch_ns;
+	/** @lock: application time; synchronizes the cycle to the reference clock */
 	struct ec_pll lock;
+	/** @front: output buffer that the cycle holds */
 	u8 front;
+	/** @given: @front is from the application, and its outputs are still valid */
 	bool given;
+	/** @ahead: outputs of @front are not in the image */
 	bool ahead;
+	/** @steady: cycles in a row whose working counters were complete, up to STEADY */
 	u32 steady;
+	/** @back: input buffer that the cycle holds */
 	u8 back;
+	/** @fed: the application has given outputs at least once */
 	bool fed;
+	/** @unfed: cycles without new outputs in a row */
 	u32 unfed;
+	/** @stalls: rate of the events of output stalls */
 	struct ec_event_rate stalls;
+	/** @stall_told: the present output stall is an event */
 	bool stall_told;
+	/** @adopt: another application is to get the buffers; cleared when it has them */
 	bool adopt;
+	/** @adopted: completed then */
 	struct completion adopted;
+	/** @timer: runs cycles in its interrupt */
 	struct hrtimer timer;
+	/**
+	 * @timed: @timer runs the cycles; until it is false the thread does not touch what they use
+	 */
 	bool timed;
+	/** @polled: the interrupt requests that the thread wakes callers of poll() */
 	bool polled;
+	/** @ended: the last cycle was run in the interrupt */
 	bool ended;
+	/** @stopped: by @panic */
 	bool stopped;
+	/** @end_ns: end of the last cycle (ktime) */
 	u64 end_ns;
+	/** @tight: cycles in a row that ended in the second half of their period */
 	u32 tight;
+	/** @in_thread: cycles that have to run in the thread */
 	u32 in_thread;
+	/** @panic: notifier of a kernel panic, which stops @timer */
 	struct notifier_block panic;
 };
 

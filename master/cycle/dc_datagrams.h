@@ -60,13 +60,11 @@ struct ec_dc_datagrams {
 	u64 lead;
 };
 
-/**
- * struct ec_dc_flight - the clock datagrams of a frame in flight
- * @dgrams: as from ec_dc_datagrams_wanted()
- * @time: time that was sent in them, ns
- */
+/** struct ec_dc_flight - the clock datagrams of a frame in flight */
 struct ec_dc_flight {
+	/** @dgrams: as from ec_dc_datagrams_wanted() */
 	u32 dgrams;
+	/** @time: time that was sent in them, ns */
 	u64 time;
 };
 

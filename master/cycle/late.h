@@ -10,34 +10,31 @@ struct ec_access;
 
 #define EC_SCHEDULE_GAPS	15
 
-/**
- * struct ec_schedule - when the application is expected to send; of the cycle
- *	owner
- * @due_ns: when the last send was due (ktime)
- * @last_ns: when it was
- * @interval_ns: time between two sends, configured or measured
- * @sends: sends so far, up to the end of the measurement
- * @gaps: the last times between two sends while it is measured, ns
- * @n_gaps: such times so far
- * @block_ns: begin of the sends whose mean is checked next (ktime)
- * @before_ns: begin of the sends before, 0: none
- * @n_block: sends since @block_ns
- * @far: gaps in a row that are far from @interval_ns, to the same side
- * @far_side: 1: longer, -1: shorter
- * @mean_side: the same of the last mean, 0: near
- */
+/** struct ec_schedule - when the application is expected to send; of the cycle owner */
 struct ec_schedule {
+	/** @due_ns: when the last send was due (ktime) */
 	u64 due_ns;
+	/** @last_ns: when it was */
 	u64 last_ns;
+	/** @interval_ns: time between two sends, configured or measured */
 	u32 interval_ns;
+	/** @sends: sends so far, up to the end of the measurement */
 	u32 sends;
+	/** @gaps: the last times between two sends while it is measured, ns */
 	u32 gaps[EC_SCHEDULE_GAPS];
+	/** @block_ns: begin of the sends whose mean is checked next (ktime) */
 	u64 block_ns;
+	/** @before_ns: begin of the sends before, 0: none */
 	u64 before_ns;
+	/** @n_block: sends since @block_ns */
 	u32 n_block;
+	/** @far: gaps in a row that are far from @interval_ns, to the same side */
 	u8 far;
+	/** @far_side: 1: longer, -1: shorter */
 	s8 far_side;
+	/** @mean_side: as @far_side, of the last mean, 0: near */
 	s8 mean_side;
+	/** @n_gaps: times in @gaps so far */
 	u32 n_gaps;
 };
 

@@ -11,53 +11,57 @@ struct ec_wanted;
 
 /**
  * struct ec_cyc_dgram - one datagram of the cyclic layout, immutable in use but for @wrote
- *	@before, and the best copy
- * @domain: index
- * @cmd: LRD, LWR or LRW
- * @own_frame: shares no frame with datagrams of other domains
- * @holes: @n_copies areas do not cover it: clear it first
- * @solid: one piece of the image has the same bytes as the whole datagram
- * @repeats: so many frames with it are sent in a cycle
- * @best_ok: if there are several, the best copy of send @best_send is complete
- * @best: its working counter
- * @best_send: number of that send
- * @wrote: low half of the number of the last send before its inputs were last written
- * @before: the same without what incomplete replies of that receive have written
- * @logical: logical address
- * @len: bytes
- * @expected: working counter if every slave processes it that has to now: slaves of optional
- *	groups may be absent; written by counts.c while the cycle runs
- * @spare: so much more is complete as well: of slaves of such groups that are not yet in OP
- * @full: working counter with all slaves
- * @first_copy: first area that is copied into it, in struct ec_layout.areas
- * @n_copies: how many
- * @first_input: first of its inputs there
- * @n_plain: inputs that were sent with their last value
- * @n_whole: these, and inputs that replace outputs in the datagram
- * @n_inputs: these, and inputs of which other datagrams have a part
+ * @before, and the best copy
  */
 struct ec_cyc_dgram {
+	/** @domain: index */
 	u16 domain;
+	/** @cmd: LRD, LWR or LRW */
 	u8 cmd;
+	/** @own_frame: shares no frame with datagrams of other domains */
 	bool own_frame : 1;
+	/** @holes: @n_copies areas do not cover it: clear it first */
 	bool holes : 1;
+	/** @solid: one piece of the image has the same bytes as the whole datagram */
 	bool solid : 1;
+	/** @best_ok: if there are several, the best copy of send @best_send is complete */
 	bool best_ok : 1;
+	/** @repeats: so many frames with it are sent in a cycle */
 	u8 repeats;
+	/** @best: its working counter */
 	u16 best;
+	/** @best_send: number of that send */
 	u32 best_send;
+	/** @wrote: low half of the number of the last send before its inputs were last written */
 	u16 wrote;
+	/** @before: as @wrote, without what incomplete replies of that receive have written */
 	u16 before;
+	/** @logical: logical address */
 	u32 logical;
+	/** @len: bytes */
 	u16 len;
+	/**
+	 * @expected: working counter if every slave processes it that has to now: slaves of
+	 * optional groups may be absent; written by counts.c while the cycle runs
+	 */
 	u16 expected;
+	/**
+	 * @spare: so much more is complete as well: of slaves of such groups that are not yet in OP
+	 */
 	u16 spare;
+	/** @full: working counter with all slaves */
 	u16 full;
+	/** @first_copy: first area that is copied into it, in struct ec_layout.areas */
 	u32 first_copy;
+	/** @n_copies: areas that are copied into it */
 	u16 n_copies;
+	/** @n_plain: inputs that were sent with their last value */
 	u16 n_plain;
+	/** @n_whole: @n_plain, and inputs that replace outputs in the datagram */
 	u16 n_whole;
+	/** @n_inputs: @n_whole, and inputs of which other datagrams have a part */
 	u16 n_inputs;
+	/** @first_input: first of its inputs in struct ec_layout.areas */
 	u32 first_input;
 };
 
@@ -84,60 +88,54 @@ static inline bool ec_cyc_from_image(const struct ec_cyc_dgram *d)
 
 /**
  * struct ec_cyc_area - process data to copy into or out of a datagram: values of one
- *	size at equal distances, as slaves of a kind in a row have them
- * @offset: byte in the image
- * @pos: byte in the datagram
- * @len: bytes of a value
- * @count: values
- * @offset_stride: from one to the next in the image, bytes
- * @pos_stride: in the datagram
- * @cut: number in struct ec_layout.cuts, for inputs of several datagrams
+ * size at equal distances, as slaves of a kind in a row have them
  */
 struct ec_cyc_area {
+	/** @offset: byte in the image */
 	u32 offset;
+	/** @pos: byte in the datagram */
 	u16 pos;
+	/** @len: bytes of a value */
 	u16 len;
+	/** @count: values */
 	u16 count;
+	/** @offset_stride: from one to the next in the image, bytes */
 	u16 offset_stride;
+	/** @pos_stride: in the datagram */
 	u16 pos_stride;
+	/** @cut: number in struct ec_layout.cuts, for inputs of several datagrams */
 	u16 cut;
 };
 
-/**
- * struct ec_cyc_cut - inputs that are larger than a datagram
- * @offset: byte in the image
- * @len: bytes
- * @parts: datagrams that have a part of them
- * @have: parts received
- * @send: number of the send they belong to
- */
+/** struct ec_cyc_cut - inputs that are larger than a datagram */
 struct ec_cyc_cut {
+	/** @offset: byte in the image */
 	u32 offset;
+	/** @len: bytes */
 	u32 len;
+	/** @parts: datagrams that have a part of them */
 	u16 parts;
+	/** @have: parts received */
 	u16 have;
+	/** @send: number of the send they belong to */
 	u32 send;
 };
 
-/**
- * struct ec_cyc_share - what a slave of an optional group adds to a working counter
- * @config: its configuration
- * @dgram: number of the datagram
- * @wkc: what it adds
- */
+/** struct ec_cyc_share - what a slave of an optional group adds to a working counter */
 struct ec_cyc_share {
+	/** @config: its configuration */
 	const struct ec_config *config;
+	/** @dgram: number of the datagram */
 	u16 dgram;
+	/** @wkc: what it adds */
 	u16 wkc;
 };
 
-/**
- * struct ec_cyc_wire - frames, and how long they occupy the wire
- * @frames: how many
- * @ns: at 100 Mbit/s, preamble, padding, FCS and gap included
- */
+/** struct ec_cyc_wire - frames, and how long they occupy the wire */
 struct ec_cyc_wire {
+	/** @frames: how many */
 	u32 frames;
+	/** @ns: at 100 Mbit/s, preamble, padding, FCS and gap included */
 	u32 ns;
 };
 

@@ -8,32 +8,30 @@
 
 /**
  * struct ec_stretch - a piece of a domain's logical addresses that becomes one
- *	datagram, or LRD plus LWR
- * @start: first byte, from the domain's base
- * @end: behind the last one
- * @first: first of its FMMUs in struct ec_logical.refs
- * @last: behind the last one
+ * datagram, or LRD plus LWR
  */
 struct ec_stretch {
+	/** @start: first byte, from the domain's base */
 	u32 start;
+	/** @end: behind the last one */
 	u32 end;
+	/** @first: first of its FMMUs in struct ec_logical.refs */
 	unsigned int first;
+	/** @last: behind the last one */
 	unsigned int last;
 };
 
-/**
- * struct ec_logical - the FMMUs of a domain in the order of their addresses
- * @refs: FMMUs; those with an unknown place in the ring stand alone
- * @n: entries in @refs
- * @stretches: what becomes datagrams
- * @n_stretches: entries in @stretches
- * @separate: LRD and LWR instead of LRW
- */
+/** struct ec_logical - the FMMUs of a domain in the order of their addresses */
 struct ec_logical {
+	/** @refs: FMMUs; those with an unknown place in the ring stand alone */
 	struct ec_domain_fmmu *refs;
+	/** @n: entries in @refs */
 	unsigned int n;
+	/** @stretches: what becomes datagrams */
 	struct ec_stretch *stretches;
+	/** @n_stretches: entries in @stretches */
 	unsigned int n_stretches;
+	/** @separate: LRD and LWR instead of LRW */
 	bool separate;
 };
 

@@ -10,26 +10,26 @@ struct ec_cycle;
 
 #define EC_PLL_PAST	8	/* a frame may be in flight for that many cycles */
 
-/**
- * struct ec_pll - time of a cycle; the thread's own
- * @follow: the cycle is synchronized to the reference clock, not only to its own timer
- * @phase: begin of a cycle after the grid of the SYNC signals, ns
- * @time: application time of the last cycle, ns: a point of that grid
- * @seen: send of the last frame that has brought a time (ktime)
- * @past: schedules of the last cycles and their application times
- * @n_past: cycles so far
- * @pi: controller
- */
+/** struct ec_pll - time of a cycle; the thread's own */
 struct ec_pll {
+	/** @follow: the cycle is synchronized to the reference clock, not only to its own timer */
 	bool follow;
+	/** @phase: begin of a cycle after the grid of the SYNC signals, ns */
 	u32 phase;
+	/** @time: application time of the last cycle, ns: a point of that grid */
 	u64 time;
+	/** @seen: send of the last frame that has brought a time (ktime) */
 	u64 seen;
+	/** @past: the last cycles */
 	struct {
+		/** @past.due: schedule */
 		u64 due;
+		/** @past.time: application time */
 		u64 time;
 	} past[EC_PLL_PAST];
+	/** @n_past: cycles so far */
 	u32 n_past;
+	/** @pi: controller */
 	struct ec_dc_lock pi;
 };
 

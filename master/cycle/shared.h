@@ -10,29 +10,31 @@
 
 /**
  * struct ec_shared - memory mapped by the application; after the session it stays
- *	while a mapping exists
- * @kref: session and mappings
- * @image: process image of all domains
- * @image_size: bytes, multiple of the page size
- * @status: status pages
- * @requests: struct ec_request_area and what it names, or NULL
- * @request_size: bytes, likewise
- * @exchange: struct ec_exchange and its buffers; NULL: the application runs the
- *	cycle and maps the image
- * @exchange_size: bytes, multiple of the page size
- * @bytes: of all of them
- * @mapped: of the master, where @bytes are counted
+ * while a mapping exists
  */
 struct ec_shared {
+	/** @kref: session and mappings */
 	struct kref kref;
+	/** @image: process image of all domains */
 	u8 *image;
+	/** @image_size: bytes, multiple of the page size */
 	size_t image_size;
+	/**
+	 * @exchange: struct ec_exchange and its buffers; NULL: the application runs the cycle and
+	 * maps the image
+	 */
 	void *exchange;
+	/** @exchange_size: bytes, multiple of the page size */
 	size_t exchange_size;
+	/** @status: status pages */
 	struct ec_status *status;
+	/** @requests: struct ec_request_area and what it names, or NULL */
 	u8 *requests;
+	/** @request_size: bytes, multiple of the page size */
 	size_t request_size;
+	/** @bytes: of all this memory */
 	size_t bytes;
+	/** @mapped: of the master, where @bytes are counted */
 	atomic_long_t *mapped;
 };
 

@@ -27,108 +27,118 @@ struct ec_unit_place {
 #define EC_UNIT_TAKE	2
 #define EC_UNIT_HOLDER	4	/* it has another holder, or none any more */
 
-/**
- * struct ec_cyc_unit - a sync unit while active
- * @what: as configured; immutable
- * @domains: bit n: domain n; immutable
- * @feeds: those with outputs; immutable
- * @run: EC_UNIT_RUN_*; of the cycle owner, as are all below up to @rate
- * @sends: EC_UNIT_SENDS_* of its outputs
- * @without: what is sent while it has no authority
- * @authority: the outputs of the application are sent
- * @leased: outputs were given once, so the lease runs
- * @ended: the lease has ended
- * @same: receives in a row in which it was complete, while it has failed
- * @off: receives in a row in which a slave was not in OP
- * @waits: receives since it was complete, while all is stopped because of it
- * @unfed: cycles since all of @feeds were given
- * @fed: domains given since
- * @faults: failures, and ends of the lease
- * @reported: state in the last event
- * @rate: of these events
- * @wish: EC_UNIT_GIVE, EC_UNIT_TAKE, EC_UNIT_HOLDER: commands for the cycle owner
- * @op: all its slaves are in OP, but for those of groups that are absent; of the monitor
- * @down: its slaves are to be in SAFEOP; the cycle owner sets it, a command clears it
- * @holder: open file of another application that gives its outputs, or NULL; under the lock of the
- *	configuration, as is @back
- * @held: it has one; of the cycle owner
- * @bytes: of its domains; immutable, as is @buffers
- * @buffers: three buffers for outputs of a holder, or NULL: it is not offered
- * @word: as struct ec_exchange @outputs
- * @front: buffer that the cycle has
- * @back: buffer that the holder has
- */
+/** struct ec_cyc_unit - a sync unit while active */
 struct ec_cyc_unit {
+	/** @what: as configured; immutable */
 	struct ec_ioc_unit what;
+	/** @domains: bit n: domain n; immutable */
 	u64 domains;
+	/** @feeds: those with outputs; immutable */
 	u64 feeds;
+	/** @run: EC_UNIT_RUN_*; of the cycle owner, as are all below up to @rate */
 	u8 run;
+	/** @sends: EC_UNIT_SENDS_* of its outputs */
 	u8 sends;
+	/** @without: what is sent while it has no authority */
 	u8 without;
+	/** @authority: the outputs of the application are sent */
 	bool authority;
+	/** @leased: outputs were given once, so the lease runs */
 	bool leased;
+	/** @ended: the lease has ended */
 	bool ended;
+	/** @same: receives in a row in which it was complete, while it has failed */
 	u32 same;
+	/** @off: receives in a row in which a slave was not in OP */
 	u32 off;
+	/** @waits: receives since it was complete, while all is stopped because of it */
 	u32 waits;
+	/** @unfed: cycles since all of @feeds were given */
 	u32 unfed;
+	/** @fed: domains given since */
 	u64 fed;
+	/** @faults: failures, and ends of the lease */
 	u32 faults;
+	/** @reported: state in the last event */
 	u32 reported;
+	/** @rate: of these events */
 	struct ec_event_rate rate;
+	/** @wish: EC_UNIT_GIVE, EC_UNIT_TAKE, EC_UNIT_HOLDER: commands for the cycle owner */
 	atomic_t wish;
+	/**
+	 * @op: all its slaves are in OP, but for those of groups that are absent; of the monitor
+	 */
 	bool op;
+	/** @down: its slaves are to be in SAFEOP; the cycle owner sets it, a command clears it */
 	bool down;
+	/**
+	 * @holder: open file of another application that gives its outputs, or NULL; under the lock
+	 * of the configuration, as is @back
+	 */
 	const void *holder;
+	/** @held: it has one; of the cycle owner */
 	bool held;
+	/** @bytes: of its domains; immutable, as is @buffers */
 	u32 bytes;
+	/** @buffers: three buffers for outputs of a holder, or NULL: it is not offered */
 	u8 *buffers;
+	/** @word: as struct ec_exchange @outputs */
 	u32 word;
+	/** @front: buffer that the cycle has */
 	u32 front;
+	/** @back: buffer that the holder has */
 	u32 back;
 };
 
-/**
- * struct ec_cyc_units - the units of an active cycle
- * @places: areas of each domain; immutable, as are the next four
- * @areas: all areas
- * @of_config: unit of each slave configuration, EC_NO_UNIT: none
- * @queue: runs @alarm
- * @alarm: takes slaves to SAFEOP, or to OP again
- * @seen: bits EC_UNIT_SEEN_* of each slave configuration; under the lock of the configuration
- * @wished: a unit has a wish
- * @image: sent instead of that of the application, for domains in @replaced; of the cycle owner,
- *	as are the next six but for @looked and @repeated
- * @replaced: domains whose outputs are not those of the application, bit n: domain n
- * @used: domains of the application
- * @stopped: a unit with EC_UNIT_POLICY_STOP has failed: index + 1, 0: none
- * @holders: units that another application holds
- * @bad: exchanges in a row in which a domain was not complete
- * @calm: all units are complete and there is nothing to report: only what is not steady, a wish or
- *	@looked can change that
- * @looked: a slave has left OP or has reached it; of the monitor
- * @repeated: domains whose frames are sent at least twice, three times, and so on; immutable
- * @n: entries in @unit
- * @unit: units
- */
+/** struct ec_cyc_units - the units of an active cycle */
 struct ec_cyc_units {
+	/** @places: areas of each domain; immutable, as are the next four */
 	struct ec_unit_place places[EC_MAX_DOMAINS];
+	/** @areas: all areas */
 	struct ec_domain_area *areas;
+	/** @of_config: unit of each slave configuration, EC_NO_UNIT: none */
 	u8 *of_config;
+	/** @queue: runs @alarm */
 	struct workqueue_struct *queue;
+	/** @alarm: takes slaves to SAFEOP, or to OP again */
 	struct work_struct *alarm;
+	/**
+	 * @seen: bits EC_UNIT_SEEN_* of each slave configuration; under the lock of the
+	 * configuration
+	 */
 	u8 *seen;
+	/** @wished: a unit has a wish */
 	atomic_t wished;
+	/** @looked: a slave has left OP or has reached it; of the monitor */
 	bool looked;
+	/**
+	 * @repeated: domains whose frames are sent at least twice, three times, and so on;
+	 * immutable
+	 */
 	u64 repeated[EC_UNIT_REPEATS];
+	/**
+	 * @image: sent instead of that of the application, for domains in @replaced; of the cycle
+	 * owner, as are the next six
+	 */
 	u8 *image;
+	/** @replaced: domains whose outputs are not those of the application, bit n: domain n */
 	aligned_u64 replaced;
+	/** @used: domains of the application */
 	u64 used;
+	/** @stopped: a unit with EC_UNIT_POLICY_STOP has failed: index + 1, 0: none */
 	u32 stopped;
+	/** @holders: units that another application holds */
 	u32 holders;
+	/** @bad: exchanges in a row in which a domain was not complete */
 	u32 bad[EC_MAX_DOMAINS];
+	/**
+	 * @calm: all units are complete and there is nothing to report: only what is not steady, a
+	 * wish or @looked can change that
+	 */
 	bool calm;
+	/** @n: entries in @unit */
 	unsigned int n;
+	/** @unit: units */
 	struct ec_cyc_unit unit[];
 };
 

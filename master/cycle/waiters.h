@@ -23,21 +23,19 @@ struct ec_sleeper {
 	struct task_struct *task;
 };
 
-/**
- * struct ec_waiters - callers of one open file, which frees this after an RCU
- *	grace period
- * @wq: entries of poll(), and readers of events; under PREEMPT_RT not for
- *	hard interrupts
- * @adding: poll() calls that are about to add an entry to @wq
- * @sleeping: callers that sleep
- * @lock: for @sleepers
- * @sleepers: &struct ec_sleeper, callers of EC_IOC_WAIT
- */
+/** struct ec_waiters - callers of one open file, which frees this after an RCU grace period */
 struct ec_waiters {
+	/**
+	 * @wq: entries of poll(), and readers of events; under PREEMPT_RT not for hard interrupts
+	 */
 	wait_queue_head_t wq;
+	/** @adding: poll() calls that are about to add an entry to @wq */
 	atomic_t adding;
+	/** @sleeping: callers that sleep */
 	atomic_t sleeping;
+	/** @lock: for @sleepers */
 	raw_spinlock_t lock;
+	/** @sleepers: &struct ec_sleeper, callers of EC_IOC_WAIT */
 	struct list_head sleepers;
 };
 

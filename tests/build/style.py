@@ -183,7 +183,7 @@ def globals_(args):
                 yield f"{name}:1: {m[1]}() is not named after it"
 
 
-IN_PLACE = ("link", "carry", "mailbox", "session", "boundary")
+IN_PLACE = ("link", "carry", "mailbox", "cycle", "session", "boundary")
 ABOVE = re.compile(r"^/\*\*\n(?:(?!\*/)[^\n]*\n)*? \* @\w[^:\n]*:(?:(?!\*/).)*?\*/\n(struct \w+) \{",
                    re.M | re.S)
 
