@@ -62,6 +62,8 @@ t "another direction of a command is noticed" notices "EC_IOC_DEBUG number" \
 t "a command that is removed is noticed" notices "EC_IOC_RESCAN" '/#define EC_IOC_RESCAN/d'
 t "another value of a constant is noticed" notices "EC_CAUSE_LOST is" \
 	's/(EC_CAUSE_LOST[ \t]+)3/\199/'
+t "an array of structures in a command is noticed" notices "ec_ioc_debug.more is an array" \
+	's/(	__u32 level;.*)/\1\n	struct ec_ioc_address more[2];/'
 t "a structure may grow" accepts 's/(	__u32 level;.*)/\1\n	__u32 more;/'
 t "a flag may be added" accepts 's/(EC_SEND_FLAG_ALL[ \t]+)63/\1127/'
 t "a command may be added" accepts \
