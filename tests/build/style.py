@@ -12,6 +12,7 @@ globals    a function of master/ that other files call is named after its file, 
            the file's name, or a structure of its layer; ec_ioc_ is followed by the command
 members    a structure of the layers IN_PLACE describes each member where it is declared, not above:
            who adds one sees whether it is described
+reach      a case of tests/bus reaches members of struct ec_master by access.h, and no other way
 statics    no two static functions of a module have the same name: a trace shows nothing else of
            them. One that stands twice begins with the name of its file: log_take()
 
@@ -198,6 +199,17 @@ def members(args):
             yield f"{name}:{number}: members of {m[1]} are described above it, not in place"
 
 
+REACH = re.compile(r"\bb->m->\w+")
+
+
+def reach(args):
+    for name, path in files(args, (".c", ".h")):
+        if args or (name.startswith("tests/bus/") and not path.stem.startswith("access")):
+            text = path.read_text()
+            for m in REACH.finditer(text):
+                yield f"{name}:{text.count(chr(10), 0, m.start()) + 1}: {m[0]}, not by access.h"
+
+
 STATIC = re.compile(r"^static\b[^=;{}()]*\b(\w+)\((?=[^;]*?\)[^;=]*?\n\{)", re.M)
 MODULES = ("master/", "devices/sim/", "devices/intel/", "devices/", "lib/", "tool/")
 
@@ -217,8 +229,8 @@ def statics(args):
             yield f"{found[0]}: {function}() is also in {', '.join(found[1:])}"
 
 
-RULES = {"globals": globals_, "statics": statics, "members": members, "names": names, "spdx": spdx,
-         "lines": lines, "kernel-doc": kernel_doc, "checkpatch": checkpatch}
+RULES = {"globals": globals_, "statics": statics, "members": members, "names": names, "reach": reach,
+         "spdx": spdx, "lines": lines, "kernel-doc": kernel_doc, "checkpatch": checkpatch}
 
 
 def main():

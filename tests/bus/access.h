@@ -59,6 +59,12 @@ static inline struct ec_slave_devices *bus_slave_devices(const struct bus *b)
 	return &b->m->slave_devices;
 }
 
+/* the network devices of slaves with EoE */
+static inline struct ec_eoe *bus_eoe(const struct bus *b)
+{
+	return &b->m->eoe;
+}
+
 /* open files that read events */
 static inline u32 bus_readers(const struct bus *b)
 {

@@ -47,7 +47,7 @@ static struct border *begin(struct kunit *test, enum ec_border_mode mode, const 
 	u32 i;
 
 	KUNIT_ASSERT_NOT_NULL(test, t);
-	b->m->bus.border.mode = mode;
+	bus_table(b)->border.mode = mode;
 	for (i = 0; i < N; i++)
 		t->info[i] = bus_slave(b, i)->info;
 	if (plugged)
@@ -175,9 +175,9 @@ static void expect_kept(struct border *t, u32 kept)
 	u32 lines = bus_log_lines("stays closed despite its link: "), trials;
 
 	wait_kept(t, kept);
-	trials = t->c->b->m->bus.trials;
+	trials = bus_table(t->c->b)->trials;
 	cyc_run(t->c, 4000);
-	KUNIT_EXPECT_GT(test, t->c->b->m->bus.trials, trials);
+	KUNIT_EXPECT_GT(test, bus_table(t->c->b)->trials, trials);
 	KUNIT_EXPECT_EQ(test, bus_log_lines("stays closed despite its link: ") - lines, 1u);
 	KUNIT_EXPECT_EQ(test, bus_n_slaves(t->c->b), (u32)N);
 	KUNIT_EXPECT_EQ(test, bus_esc(t->c->b, HUB)->mem[EC_REG_DL_LOOPS] >> 2 & 3,
@@ -397,8 +397,8 @@ static void border_ends_with_session(struct kunit *test)
 	for (i = 0; i < 5000 && bus_n_slaves(b) == N; i++)
 		msleep(1);
 	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), N + 2u);
-	KUNIT_EXPECT_TRUE(test, list_empty(&b->m->bus.border.found));
-	KUNIT_EXPECT_EQ(test, b->m->bus.border.n_signs, 0u);
+	KUNIT_EXPECT_TRUE(test, list_empty(&bus_table(b)->border.found));
+	KUNIT_EXPECT_EQ(test, bus_table(b)->border.n_signs, 0u);
 }
 
 /* The module is unloaded while a device is kept: nothing is left closed. */

@@ -315,20 +315,20 @@ static void hostile_rtnl_delays_no_wish(struct kunit *test)
 			       "slave y EL6614 serial=2\n", 2);
 	u64 t0;
 
-	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	ec_eoe_start(bus_eoe(b), bus_table(b), NULL, true);
 	eoe_await(test, "eoe0n1", true);
 	eoe_await(test, "eoe0n2", true);
 	rtnl_lock();
-	KUNIT_EXPECT_EQ(test, ec_eoe_wish(&b->m->eoe, bus_slave(b, 0)->device, EC_EOE_WISH_OFF), 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_wish(bus_eoe(b), bus_slave(b, 0)->device, EC_EOE_WISH_OFF), 0);
 	msleep(300);		/* the work waits for RTNL */
 	t0 = ktime_get_ns();
-	KUNIT_EXPECT_EQ(test, ec_eoe_wish(&b->m->eoe, bus_slave(b, 1)->device, EC_EOE_WISH_OFF), 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_wish(bus_eoe(b), bus_slave(b, 1)->device, EC_EOE_WISH_OFF), 0);
 	KUNIT_EXPECT_LE(test, ktime_get_ns() - t0, (u64)NSEC_PER_MSEC);
 	KUNIT_EXPECT_NOT_NULL(test, eoe_find("eoe0n1"));
 	rtnl_unlock();
 	eoe_await(test, "eoe0n1", false);
 	eoe_await(test, "eoe0n2", false);
-	ec_eoe_stop(&b->m->eoe);
+	ec_eoe_stop(bus_eoe(b));
 }
 
 /* Several slaves are lost at once: each device gets its own back, those that are down go. */
@@ -342,7 +342,7 @@ static void hostile_loss_of_many_mixes_no_device(struct kunit *test)
 	struct net_device *nds[ARRAY_SIZE(names)];
 	u32 i;
 
-	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	ec_eoe_start(bus_eoe(b), bus_table(b), NULL, true);
 	for (i = 0; i < ARRAY_SIZE(names); i++) {
 		nds[i] = eoe_await(test, names[i], true);
 		KUNIT_ASSERT_NOT_NULL(test, nds[i]);
@@ -363,7 +363,7 @@ static void hostile_loss_of_many_mixes_no_device(struct kunit *test)
 				i + 1);
 	}
 	eoe_await(test, names[4], true);
-	ec_eoe_stop(&b->m->eoe);
+	ec_eoe_stop(bus_eoe(b));
 	for (i = 0; i < ARRAY_SIZE(names); i++)
 		KUNIT_EXPECT_NULL_MSG(test, eoe_find(names[i]), "%s", names[i]);
 }

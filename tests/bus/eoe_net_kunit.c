@@ -102,10 +102,10 @@ static void net_wish_stays(struct kunit *test)
 	struct bus *b = bus_up(test, SEGMENT, 2);
 	struct net_device *nd;
 
-	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, false);
+	ec_eoe_start(bus_eoe(b), bus_table(b), NULL, false);
 	msleep(200);
 	KUNIT_EXPECT_NULL(test, eoe_find("eoe0a5"));
-	KUNIT_EXPECT_EQ(test, ec_eoe_wish(&b->m->eoe, bus_slave(b, 1)->device, EC_EOE_WISH_ON), 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_wish(bus_eoe(b), bus_slave(b, 1)->device, EC_EOE_WISH_ON), 0);
 	nd = eoe_await(test, "eoe0a5", true);
 	KUNIT_ASSERT_NOT_NULL(test, nd);
 	eoe_set_up(nd, true);
@@ -115,9 +115,9 @@ static void net_wish_stays(struct kunit *test)
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
 	KUNIT_EXPECT_TRUE(test, eoe_await_carrier(nd, true));
 	KUNIT_EXPECT_PTR_EQ(test, eoe_find("eoe0a5"), nd);
-	KUNIT_EXPECT_EQ(test, ec_eoe_wish(&b->m->eoe, bus_slave(b, 1)->device, EC_EOE_WISH_OFF), 0);
+	KUNIT_EXPECT_EQ(test, ec_eoe_wish(bus_eoe(b), bus_slave(b, 1)->device, EC_EOE_WISH_OFF), 0);
 	eoe_await(test, "eoe0a5", false);
-	ec_eoe_stop(&b->m->eoe);
+	ec_eoe_stop(bus_eoe(b));
 }
 
 /* Twins have names by position; a name that is taken is no reason to have none. */
@@ -133,11 +133,11 @@ static void net_names(struct kunit *test)
 	taken->netdev_ops = &none;
 	KUNIT_ASSERT_EQ(test, register_netdev(taken), 0);
 	snprintf(last, sizeof(last), "eoe0d%llu", bus_slave(b, 2)->device);
-	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	ec_eoe_start(bus_eoe(b), bus_table(b), NULL, true);
 	eoe_await(test, last, true);
 	eoe_await(test, "eoe0s0", true);
 	eoe_await(test, "eoe0s1", true);
-	ec_eoe_stop(&b->m->eoe);
+	ec_eoe_stop(bus_eoe(b));
 	unregister_netdev(taken);
 	free_netdev(taken);
 }
@@ -175,7 +175,7 @@ static void net_lost_and_down(struct kunit *test)
 	eoe_await(test, "eoe0a5", false);
 	bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
 	eoe_await(test, "eoe0a5", true);
-	ec_eoe_stop(&b->m->eoe);
+	ec_eoe_stop(bus_eoe(b));
 	KUNIT_EXPECT_NULL(test, eoe_find("eoe0a5"));
 }
 

@@ -110,7 +110,7 @@ struct eoe_wire *eoe_up(struct kunit *test, const char *text, u32 slaves, const 
 	struct bus *b = bus_up(test, text, slaves);
 
 	remove_wires();
-	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	ec_eoe_start(bus_eoe(b), bus_table(b), NULL, true);
 	return eoe_wire_new(b, 1, name);
 }
 
@@ -118,7 +118,7 @@ struct eoe_wire *eoe_up(struct kunit *test, const char *text, u32 slaves, const 
 void eoe_down(struct eoe_wire *w)
 {
 	remove_wires();
-	ec_eoe_stop(&w->b->m->eoe);
+	ec_eoe_stop(bus_eoe(w->b));
 }
 
 void eoe_send(struct eoe_wire *w, const u8 *frame, u32 len)

@@ -280,7 +280,7 @@ static void etg1500_switch_joins_slaves(struct kunit *test)
 	u16 result;
 
 	KUNIT_ASSERT_EQ(test, ec_eoe_set_ip(&bus_slave(b, 1)->mbox, &ip, &result), 0);
-	ec_eoe_start(&b->m->eoe, &b->m->bus, NULL, true);
+	ec_eoe_start(bus_eoe(b), bus_table(b), NULL, true);
 	nd[0] = port(test, "eoe0a5");
 	nd[1] = port(test, "eoe0a6");
 	rtnl_lock();
@@ -301,7 +301,7 @@ static void etg1500_switch_joins_slaves(struct kunit *test)
 	for (i = 0; i < 2; i++)
 		netdev_rx_handler_unregister(nd[i]);
 	rtnl_unlock();
-	ec_eoe_stop(&b->m->eoe);
+	ec_eoe_stop(bus_eoe(b));
 }
 
 static struct kunit_case cases[] = {

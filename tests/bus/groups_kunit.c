@@ -531,7 +531,7 @@ static void groups_pinned_and_serial(struct kunit *test)
 	struct bus *b = t->c->b;
 
 	/* else the one with another serial number stays outside, see border_kunit.c */
-	b->m->bus.border.mode = EC_BORDER_OPEN;
+	bus_table(b)->border.mode = EC_BORDER_OPEN;
 	add_fixed(t);
 	t->group = add_group(t, "tool", EC_GROUP_BY_ID, 6, t->hub, 1, 0);
 	t->head = add_drive(t, t->group, 0, 0);

@@ -21,7 +21,7 @@ static void identify_late_reply_taken(struct kunit *test)
 	u64 begin = ktime_get_ns(), ms;
 	struct bus *b = bus_up(test, text, N);
 	struct ec_slave *s = bus_slave(b, X);
-	u32 scans = b->m->bus.scan_count, other = 0;
+	u32 scans = bus_table(b)->scan_count, other = 0;
 
 	bus_idle(b);
 	KUNIT_EXPECT_LT(test, ktime_get_ns() - begin, 250 * NSEC_PER_MSEC);
@@ -37,7 +37,7 @@ static void identify_late_reply_taken(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(bus_esc(b, X)->mem + EC_REG_AL_STATUS),
 			EC_AL_PREOP);
 	KUNIT_EXPECT_EQ(test, other, 0u);
-	KUNIT_EXPECT_EQ(test, b->m->bus.scan_count, scans);
+	KUNIT_EXPECT_EQ(test, bus_table(b)->scan_count, scans);
 }
 
 /* A request that stands costs no frames. */
