@@ -133,6 +133,18 @@ def members_of_ops():
     return count
 
 
+def pages():
+    """pages that do not name the layers as they are"""
+    with open(os.path.join(top, "CONTRIBUTING.md")) as f:
+        text = f.read().split("from the bottom:")[-1].split("itself.")[0]
+    with open(os.path.join(top, "Documentation/architecture.rst")) as f:
+        table = f.read().split("\nlayer ", 1)[-1].split("\n\n", 1)[0]
+    found = {"CONTRIBUTING.md": re.findall(r"`(\w+)`", text),
+             "architecture.rst": re.findall(r"^``(\w+)``", table, re.M)}
+    return ["%s has: %s" % (p, ", ".join(names)) for p, names in found.items()
+            if names != ORDER[:-1]]
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -158,6 +170,8 @@ def main():
     for ring in rings:
         print("circle of %d: %s" % (len(ring), " ".join(ring)))
     print("layers: %s" % ", ".join(ORDER))
+    wrong = pages()
+    print("".join("page: %s\n" % line for line in wrong), end="")
     print("references down: %d" % down)
     every = inc + sym + declares(home, "master/**/*.h", "lib/ecrt/*.h")
     most = {name: rooms(every, lambda f, name=name: layer(f) == name) for name in ORDER}
@@ -168,7 +182,8 @@ def main():
         for ring in found:
             print("%s: circle of %d rooms: %s" % (name, len(ring),
                                                   " ".join(map(os.path.basename, ring))))
-    results = [("includes up", len(up_inc), MOST_UP_INCLUDES),
+    results = [("pages with other layers", len(wrong), 0),
+               ("includes up", len(up_inc), MOST_UP_INCLUDES),
                ("symbols up", len(up_sym), MOST_UP_SYMBOLS),
                ("members of ops", members_of_ops(), MOST_OPS),
                ("files of the largest circle", largest, MOST_IN_CIRCLE)]

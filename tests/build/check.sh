@@ -119,9 +119,16 @@ comment_noticed() {
 		grep -x "$tmp/comment.c:5: no file no-such.md; write: a clause of .*" <<<"$out"
 }
 
+name_noticed() {
+	printf '``ec_access_room()``, ``ec_no_such()``\n' >"$tmp/page.rst"
+	out=$(tests/build/texts.py "$tmp/page.rst") && return 1
+	[ "$out" = "$tmp/page.rst:1: no source has ec_no_such" ]
+}
+
 t "texts for users and comments have the terms of the glossary" tests/build/texts.py
 t "another term is noticed" words_noticed
 t "another term in a comment and a page that does not exist are noticed" comment_noticed
+t "a function of a page that no source has is noticed" name_noticed
 
 # the archive of the kernel's sources, as level uml; the headers lack the script
 checkpatch() {

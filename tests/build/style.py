@@ -229,8 +229,9 @@ def statics(args):
             yield f"{found[0]}: {function}() is also in {', '.join(found[1:])}"
 
 
-RULES = {"globals": globals_, "statics": statics, "members": members, "names": names, "reach": reach,
-         "spdx": spdx, "lines": lines, "kernel-doc": kernel_doc, "checkpatch": checkpatch}
+RULES = {"globals": globals_, "statics": statics, "members": members, "names": names,
+         "reach": reach, "spdx": spdx, "lines": lines, "kernel-doc": kernel_doc,
+         "checkpatch": checkpatch}
 
 
 def main():

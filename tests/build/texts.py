@@ -8,7 +8,7 @@ lines, reasons, output, help) for wordings that were replaced.
 
 A second pass reads the comments alone of the folders in COMMENTS, where hits are limited. A
 comment of any source names only a page that exists: it cites a clause of ETG.1000, or
-Documentation/.
+Documentation/. A page names only functions and structures that a source has.
 usage: texts.py [FILE...]      default: all of them
 """
 import re
@@ -105,6 +105,8 @@ COMMENTS = {
     "tool/sim": 0,
 }
 SOURCES = ("master", "devices", "lib", "tool", "include", "examples", "tests")
+NAME = re.compile(r"\b(?:ec|ecdev|ecrt|ect)_\w+\b(?![*.<])")
+OF_IGH = {"ec_foe_error_t"}
 PAGE = re.compile(r"[\w./-]*\w\.(?:md|rst)\b")
 
 STRING = re.compile(r'"((?:\\.|[^"\\\n])*)"')
@@ -223,6 +225,18 @@ def check_comments(paths, used, whole):
     return bad
 
 
+def missing_names(paths):
+    """names in pages that no source has, each in literal text"""
+    known = {w for path in sources() for w in re.findall(r"\w+", path.read_text())}
+    for path in paths:
+        text = path.read_text()
+        for m in re.finditer(r"``[^`]*``", text):
+            for name in NAME.findall(m.group()):
+                if name not in known and name not in OF_IGH:
+                    yield (f"{name_of(path)}:{text.count(chr(10), 0, m.start()) + 1}: no source "
+                           f"has {name}")
+
+
 def main():
     args = [Path(a).resolve() for a in sys.argv[1:]]
     bad, used, count = [], set(), 0
@@ -231,6 +245,7 @@ def main():
         bad += hits(name_of(path), readable(path), used)
     bad += check_comments([p for p in args or sources() if p.suffix in (".c", ".h")], used,
                           not args)
+    bad += missing_names([p for p in args or corpus() if p.suffix == ".rst"])
     if not args:
         bad += [f"{name}: '{found}' is allowed but not there" for name, found in ALLOWED
                 if (name, found) not in used]
