@@ -177,7 +177,7 @@ t "members that are described above their structure are noticed" rule_notices me
 	'/**\n * struct a - sum\n * @b: one\n */\nstruct a {\n\tint b;\n};' 'struct a are described'
 t "cases reach into the master by one file" tests/build/style.py reach
 t "a case that reaches into the master is noticed" \
-	rule_notices reach 'static int f(struct bus *b)\n{\n\treturn b->m->index;\n}' 'not by access.h'
+	rule_notices reach 'static int f(struct bus *b) { return b->m->index; }' 'not by access.h'
 t "checkpatch reports nothing" tests/build/style.py checkpatch
 t "checkpatch notices a space before a bracket" \
 	rule_notices checkpatch '// SPDX-License-Identifier: GPL-2.0-only\nint a [3];' BRACKET_SPACE

@@ -185,8 +185,8 @@ def globals_(args):
 
 
 IN_PLACE = ("link", "carry", "mailbox", "cycle", "session", "boundary")
-ABOVE = re.compile(r"^/\*\*\n(?:(?!\*/)[^\n]*\n)*? \* @\w[^:\n]*:(?:(?!\*/).)*?\*/\n(struct \w+) \{",
-                   re.M | re.S)
+ABOVE = re.compile(r"^/\*\*\n(?:(?!\*/)[^\n]*\n)*? \* @\w[^:\n]*:(?:(?!\*/).)*?\*/\n"
+                   r"(struct \w+) \{", re.M | re.S)
 
 
 def members(args):
