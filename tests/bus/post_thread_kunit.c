@@ -113,8 +113,20 @@ static void post_thread_of_paused_machine_not_reported(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, lines(b), l0 + 1);
 }
 
+/* Above all programs without a priority, below each cycle that has one of 2 or more. */
+static void post_thread_has_fifo_1(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
+	const struct task_struct *task = READ_ONCE(bus_carry(b)->thread);
+
+	KUNIT_ASSERT_NOT_NULL(test, task);
+	KUNIT_EXPECT_EQ(test, task->policy, (unsigned int)SCHED_FIFO);
+	KUNIT_EXPECT_EQ(test, task->rt_priority, 1u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(post_thread_rests),
+	KUNIT_CASE(post_thread_has_fifo_1),
 	KUNIT_CASE(post_thread_starved_reported),
 	KUNIT_CASE(post_thread_at_rest_not_reported),
 	KUNIT_CASE(post_thread_of_paused_machine_not_reported),
