@@ -86,6 +86,7 @@ ALLOWED = {
 # folder: hits that are left in its comments. They only go down
 COMMENTS = {
     "lib": 0,
+    "lib/bus": 0,
     "lib/ecrt": 0,
     "lib/tools": 0,
     "master": 0,

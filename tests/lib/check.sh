@@ -262,6 +262,12 @@ tools_header_compiles() {	# COMPILER STANDARD LANGUAGE
 		$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only -
 }
 
+# --- libethercat-bus ---
+bus_names() {
+	$CC -std=gnu11 $warn $san -I"$top/include" -o "$o/bus-names" bus_names.c \
+		"$top"/lib/bus/{names,table}.c && "$o/bus-names"
+}
+
 demo_builds() {
 	$MAKE -s -C ../apps O="$o/apps" LIB="$o/lib" CFLAGS="-O2 -Werror" all &&
 	"$o/apps/demo" --help >/dev/null
@@ -325,6 +331,7 @@ done
 for std in c++11 c++20; do
 	t "ethercat-tools.h compiles as $std" tools_header_compiles $CXX $std c++
 done
+t "names of slaves and values" bus_names
 t "demo builds" demo_builds
 for std in c99 c11; do
 	t "examples build as $std" examples_build $std
