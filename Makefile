@@ -22,6 +22,10 @@ KMAKE = $(MAKE) -C $(KDIR) M=$(MODDIR) $(KFLAGS)
 
 all: modules lib tool examples mini
 
+# libethercat-bus and 'ethercat bus' need libyaml; all the rest builds without it
+YAML := $(shell echo '\#include <yaml.h>' | $(CC) -E - >/dev/null 2>&1 && echo y)
+NO_YAML = no yaml.h: built without libethercat-bus; install libyaml-dev for it
+
 # Modules are built in a copy: several kernels side by side, a clean clone.
 MODSRC = Kbuild $(wildcard master/*.[ch] master/Kbuild master/*/*.[ch] \
 	 devices/*.[ch] devices/Kbuild devices/sim/*.[ch] devices/sim/Kbuild \
@@ -50,6 +54,7 @@ modules: headers sync
 lib:
 	$(MAKE) -C lib
 	$(MAKE) -C lib/tools
+	$(if $(YAML),$(MAKE) -C lib/bus,@echo "$(NO_YAML)" >&2)
 
 tool:
 	$(MAKE) -C tool
@@ -117,6 +122,7 @@ install-modules: modules
 install-lib:
 	$(MAKE) -C lib prefix=$(PREFIX) install
 	$(MAKE) -C lib/tools prefix=$(PREFIX) install
+	$(if $(YAML),$(MAKE) -C lib/bus prefix=$(PREFIX) install)
 
 install-tool:
 	$(MAKE) -C tool prefix=$(PREFIX) install
@@ -142,6 +148,7 @@ uninstall:
 	done
 	$(MAKE) -C lib prefix=$(PREFIX) uninstall
 	$(MAKE) -C lib/tools prefix=$(PREFIX) uninstall
+	$(MAKE) -C lib/bus prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool prefix=$(PREFIX) uninstall
 	$(MAKE) -C tool/sim prefix=$(PREFIX) uninstall
 	$(MAKE) -C operation prefix=$(PREFIX) uninstall
@@ -162,6 +169,7 @@ clean:
 	rm -rf $(BUILD)
 	$(MAKE) -C lib clean
 	$(MAKE) -C lib/tools clean
+	$(MAKE) -C lib/bus clean
 	$(MAKE) -C tool clean
 	$(MAKE) -C tool/sim clean
 	$(MAKE) -C examples clean

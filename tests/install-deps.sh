@@ -32,7 +32,7 @@ for group; do
 	case $group in
 	# gcc-12 as well: the headers of Debian 12's kernels ask for it by its name
 	build)	p="gcc gcc-12 g++ ccache make libc6-dev pkg-config bc bison flex libelf-dev pahole
-		   sparse kmod cpio xz-utils zstd git" ;;
+		   sparse kmod cpio xz-utils zstd git libyaml-dev" ;;
 	vm)	p="qemu-system-x86 busybox-static cpio kmod xz-utils zstd bats tcpdump
 		   iproute2 ethtool tshark procps psmisc python3 xxd udev systemd" ;;
 	capture) p="tcpdump iproute2 tshark" ;;
@@ -40,7 +40,7 @@ for group; do
 	uml)	p="xz-utils python3"
 		[ "$release" != 12 ] || p="$p linux-source-6.1" ;;
 	python)	p="python3-venv" ;;
-	json)	p="gojq" ;;
+	json)	p="gojq python3-jsonschema python3-yaml" ;;
 	doc)	p="python3-sphinx" ;;
 	cmake)	p="cmake" ;;
 	# any cargo does that is new enough, Debian's "cargo" is not

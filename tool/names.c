@@ -66,35 +66,21 @@ int cmd_lookup(const char *text, const struct cmd **found)
 /* the long option that @word, without "--", nearly is, or NULL */
 const char *opt_nearest(const char *word)
 {
-	size_t least = strlen(word) < 3 ? 0 : strlen(word) < 6 ? 1 : 2;
 	const char *nearest = NULL;
 
-	for (const struct opt *o = opts; o->letter; o++) {
-		size_t n = text_typos(word, o->name);
-
-		if (n <= least && (!nearest || n < least)) {
-			least = n;
-			nearest = o->name;
-		}
-	}
+	for (const struct opt *o = opts; o->letter; o++)
+		nearest = text_nearer(word, nearest, o->name);
 	return nearest;
 }
 
 /* Prints that no command is called @text, and which one is nearly; returns 1. */
 int cmd_unknown(const char *text)
 {
-	/* one slip in up to 5 letters, two in more */
-	size_t least = strlen(text) < 3 ? 0 : strlen(text) < 6 ? 1 : 2;
 	const char *nearest = NULL;
 
-	for (const struct cmd *const *c = cmds; *c; c++) {
-		size_t n = text_typos(text, (*c)->name);
-
-		if (exists(*c) && n <= least && (!nearest || n < least)) {
-			least = n;
-			nearest = (*c)->name;
-		}
-	}
+	for (const struct cmd *const *c = cmds; *c; c++)
+		if (exists(*c))
+			nearest = text_nearer(text, nearest, (*c)->name);
 	if (!nearest)
 		return usage_error("unknown command '%s'", text);
 	return usage_error("unknown command '%s'; did you mean '%s'?", text, nearest);

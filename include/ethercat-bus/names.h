@@ -36,7 +36,7 @@ struct ecb_entry_name {
  * @to: result, for %ECB_WORD bytes
  * @text: any bytes up to a 0, or NULL
  *
- * Letters become lower case, whatever else than a-z and 0-9 becomes one "_" between words. A word
+ * Letters become lower case, anything else than a-z and 0-9 becomes one "_" between words. A word
  * has at most 56 characters, so that a number fits behind it.
  *
  * Context: Any thread.
@@ -49,9 +49,9 @@ size_t ecb_name_word(char *to, const char *text);
  * @slaves: slaves in the order of the bus
  * @count: how many
  *
- * The name is the word of the order number, otherwise of the name, otherwise of the group, otherwise
- * "slave". The second one of the same name gets "_2", and so on. A name that @name has already is
- * kept.
+ * The name is the word of the order number, otherwise of the name, otherwise of the group,
+ * otherwise "slave". The second one of the same name gets "_2", and so on.
+ * A name that @name has already is kept.
  *
  * Context: Any thread. The memory that it needs is freed before it returns.
  * Return: 0, -EEXIST: two of the kept names are equal, or -ENOMEM.
@@ -64,9 +64,9 @@ int ecb_name_slaves(struct ecb_slave_name *slaves, size_t count);
  * @count: how many
  *
  * The name is the word of the text; without text it is x6000_01, index and subindex. Entries of the
- * same name are called PDO.ENTRY with the word of their PDO; a PDO without name is x1a00. If they are
- * equal even then, the second one gets "_2", and so on. The name of a gap is "". A name that @name
- * has already is kept.
+ * same name are called PDO.ENTRY with the word of their PDO; a PDO without name is x1a00. If they
+ * are equal even then, the second one gets "_2", and so on.
+ * The name of a gap is "". A name that @name has already is kept.
  *
  * Context: Any thread. The memory that it needs is freed before it returns.
  * Return: 0, -EEXIST: two of the kept names are equal, or -ENOMEM.

@@ -36,8 +36,8 @@ ECB_API size_t ecb_name_word(char *to, const char *text)
 }
 
 /*
- * The name becomes one that no other seat has. A seat's value is the number from which on a free one
- * is searched: "_3" is not searched again for each of 65,535 equal names.
+ * The name becomes one that no other seat has. A seat's value is the number from which on a free
+ * one is searched: "_3" is not searched again for each of 65,535 equal names.
  */
 static void take(struct table *t, char *name, size_t size)
 {

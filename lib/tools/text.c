@@ -123,6 +123,25 @@ size_t text_typos(const char *a, const char *b)
 }
 
 /**
+ * text_nearer() - which of two names a mistyped word is nearer to
+ * @word: as typed
+ * @nearest: name that was found before, or NULL
+ * @name: candidate
+ *
+ * A name may have one slip in up to 5 letters, two in more, none in up to 2.
+ *
+ * Return: @name, otherwise @nearest.
+ */
+const char *text_nearer(const char *word, const char *nearest, const char *name)
+{
+	size_t len = strlen(word), n = text_typos(word, name);
+
+	if (n > (len < 3 ? 0 : len < 6 ? 1 : 2) || (nearest && n >= text_typos(word, nearest)))
+		return nearest;
+	return name;
+}
+
+/**
  * text_duration() - a duration as "3.1 s", "12 min" or "5 h"
  * @ns: duration
  * @buf: result

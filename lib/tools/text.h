@@ -12,6 +12,7 @@ bool text_harmless(const unsigned char *p, int n);
 void text_clean(char *s, size_t size);
 void string_clean(char *s, size_t size);
 size_t text_typos(const char *a, const char *b);
+const char *text_nearer(const char *word, const char *nearest, const char *name);
 const char *text_duration(uint64_t ns, char *buf, size_t size);
 struct ect_behind;
 const char *text_behind(const struct ect_behind *b, char *buf, size_t size);

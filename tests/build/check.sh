@@ -211,6 +211,7 @@ t "ec_master exports ecrt.h" exports_ecrt
 flags="-O2 -Wall -Wextra -Werror"
 t "library without a warning" make -s -C lib O="$tmp/lib" CFLAGS="$flags" all
 t "library of the tools without a warning" make -s -C lib/tools O="$tmp/libtools" CFLAGS="$flags" all
+t "library of bus files without a warning" make -s -C lib/bus O="$tmp/libbus" CFLAGS="$flags" all
 t "tool without a warning" make -s -C tool O="$tmp/tool" CFLAGS="$flags"
 t "simulator without a warning" make -s -C tool/sim O="$tmp/sim" CFLAGS="$flags"
 t "demo without a warning" make -s -C tests/apps O="$tmp/apps" LIB="$tmp/lib" CFLAGS="$flags" all
@@ -258,6 +259,13 @@ expected() {
 	.$prefix/lib/pkgconfig/libethercat-tools.pc
 	.$prefix/include/ethercat-tools.h
 	$(cd include && printf ".$prefix/include/%s\n" ethercat-tools/*.h)
+	.$prefix/lib/libethercat-bus.a
+	.$prefix/lib/libethercat-bus.so
+	.$prefix/lib/libethercat-bus.so.1
+	.$prefix/lib/libethercat-bus.so.1.0.0
+	.$prefix/lib/pkgconfig/libethercat-bus.pc
+	.$prefix/include/ethercat-bus.h
+	$(cd include && printf ".$prefix/include/%s\n" ethercat-bus/*.h)
 	./usr/local/lib/udev/rules.d/60-ethercat.rules
 	.$prefix/share/bash-completion/completions/ethercat
 	.$prefix/share/man/man8/ethercat.8

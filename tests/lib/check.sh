@@ -263,9 +263,50 @@ tools_header_compiles() {	# COMPILER STANDARD LANGUAGE
 }
 
 # --- libethercat-bus ---
+bus_map() { sed -n 's/^\t\t\(ecb_[a-z0-9_]*\);/\1/p' "$top/lib/bus/libethercat-bus.map" | sort; }
+
+bus_declared() {
+	echo '#include "ethercat-bus.h"' | $CC -E -P -I"$top/include" - | tr '\n' ' ' |
+		grep -o 'ecb_[a-z0-9_]*([^(){};]*) *;' | grep -o '^[a-z0-9_]*' | sort
+}
+
+bus_exported() {
+	readelf -W --dyn-syms "$o/bus/libethercat-bus.so.1" |
+		awk '$7 != "UND" && sub(/@@LIBETHERCAT_BUS_1$/, "", $8) && $8 ~ /^ecb_/ {
+			print $8 }' | sort
+}
+
+bus_described() {
+	diff <(bus_map) <(sed -n 's/^ \* \(ecb_[a-z0-9_]*\)() - .*/\1/p' \
+		"$top"/include/ethercat-bus/*.h | sort)
+}
+
+bus_packaged() {
+	diff <(bus_map) <(sed -n 's/^ \(ecb_[a-z0-9_]*\)@LIBETHERCAT_BUS_1 .*/\1/p' \
+		"$top/debian/libethercat-bus1.symbols")
+}
+
+bus_needs() {
+	readelf -d "$o/bus/libethercat-bus.so.1" |
+		grep -q 'SONAME.*\[libethercat-bus\.so\.1\]' &&
+	! readelf -d "$o/bus/libethercat-bus.so.1" | grep NEEDED |
+		grep -v 'libc\.so\|ld-linux\|libyaml-0\.so\.2'
+}
+
+bus_header_compiles() {	# COMPILER STANDARD LANGUAGE
+	echo '#include <ethercat-bus.h>' |
+		$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only -
+}
+
 bus_names() {
 	$CC -std=gnu11 $warn $san -I"$top/include" -o "$o/bus-names" bus_names.c \
 		"$top"/lib/bus/{names,table}.c && "$o/bus-names"
+}
+
+bus_file() {
+	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" -o "$o/bus-file" \
+		bus_file.c "$top"/lib/bus/*.c "$top/lib/tools/text.c" -lyaml &&
+		"$o/bus-file" "$here"/../busfile/*.yaml
 }
 
 demo_builds() {
@@ -331,7 +372,22 @@ done
 for std in c++11 c++20; do
 	t "ethercat-tools.h compiles as $std" tools_header_compiles $CXX $std c++
 done
+t "libethercat-bus builds" $MAKE -s -C "$top/lib/bus" O="$o/bus" CFLAGS="-O2 -Werror" all
+t "ethercat-bus.h declares what the map has" diff <(bus_map) <(bus_declared)
+t "each function of libethercat-bus is described" bus_described
+t "libethercat-bus exports them and nothing else" diff <(bus_map) <(bus_exported)
+t "the package of libethercat-bus has them" bus_packaged
+! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees with libethercat-bus" \
+	gensymbols libethercat-bus1 bus/libethercat-bus.so.1.0.0
+t "soname of libethercat-bus; it needs libc and libyaml only" bus_needs
 t "names of slaves and values" bus_names
+t "bus files" bus_file
+for std in c99 c17; do
+	t "ethercat-bus.h compiles as $std" bus_header_compiles $CC $std c
+done
+for std in c++11 c++20; do
+	t "ethercat-bus.h compiles as $std" bus_header_compiles $CXX $std c++
+done
 t "demo builds" demo_builds
 for std in c99 c11; do
 	t "examples build as $std" examples_build $std

@@ -11,6 +11,7 @@ set -u
 export LC_ALL=C
 cd "$(dirname "$0")/../.." || exit 1
 packages="ethercat-tools ethercat-dkms libethercat1 libethercat-dev libethercat-tools1 libethercat-tools-dev ethercat-doc"
+packages="$packages libethercat-bus1 libethercat-bus-dev"
 passed=0 failed=0
 suite=${1:-bookworm}
 root=$(tests/packages/root.sh "$suite") || exit 1

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+/* The memory of a bus: taken piece by piece up to a limit, freed at once. */
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "fields.h"
+#include "internal.h"
+#include "../tools/text.h"
+
+struct chunk {
+	struct chunk *next;
+	size_t used;
+	size_t size;
+	uint64_t data[];
+};
+
+#define CHUNK	65536u
+
+void *ecb_alloc(struct whole *w, size_t size)
+{
+	struct chunk *c = w->chunks;
+	void *at;
+
+	size = (size + 7) & ~(size_t)7;
+	if (!c || c->size - c->used < size) {
+		size_t room = size > CHUNK ? size : CHUNK;
+
+		errno = ENOMEM;
+		if (size > ECB_MEMORY_MAX || w->used + room > ECB_MEMORY_MAX)
+			return NULL;
+		c = calloc(1, sizeof(*c) + room);
+		if (!c)
+			return NULL;
+		c->size = room;
+		c->next = w->chunks;
+		w->chunks = c;
+		w->used += room;
+	}
+	at = (char *)c->data + c->used;
+	c->used += size;
+	return at;
+}
+
+const char *ecb_copy(struct whole *w, const char *text, size_t len)
+{
+	char *to = ecb_alloc(w, len + 1);
+
+	if (to)
+		memcpy(to, text, len);
+	return to;
+}
+
+void ecb_defaults(const struct type *type, void *item)
+{
+	for (size_t i = 0; i < type->count; i++) {
+		const struct field *f = &type->fields[i];
+
+		if (f->def && f->kind == K_REAL)
+			*(double *)((char *)item + f->at) = (double)f->def;
+		else if (f->def)
+			scalar_set(f, (char *)item + f->at, f->def);
+	}
+}
+
+struct list {
+	void **items;
+	size_t count;
+};
+
+void *ecb_append(struct whole *w, void *list, const struct type *type)
+{
+	struct list *l = list;
+	void *item = ecb_alloc(w, type->size);
+
+	if (!item)
+		return NULL;
+	/* full: 0, 1, 2, 4, 8... items */
+	if (!(l->count & (l->count - 1))) {
+		size_t room = l->count ? 2 * l->count : 1;
+		void **grown = ecb_alloc(w, room * sizeof(*grown));
+
+		if (!grown)
+			return NULL;
+		if (l->count)
+			memcpy(grown, l->items, l->count * sizeof(*grown));
+		l->items = grown;
+	}
+	ecb_defaults(type, item);
+	l->items[l->count++] = item;
+	return item;
+}
+
+ECB_API struct ecb_bus *ecb_bus_new(void)
+{
+	struct whole *w = calloc(1, sizeof(*w));
+
+	if (!w)
+		return NULL;
+	w->bus.ethercat = ECB_VERSION;
+	return &w->bus;
+}
+
+ECB_API void ecb_bus_free(struct ecb_bus *bus)
+{
+	struct whole *w = (struct whole *)bus;
+	struct chunk *c, *next;
+
+	if (!w)
+		return;
+	for (c = w->chunks; c; c = next) {
+		next = c->next;
+		free(c);
+	}
+	free(w);
+}
+
+ECB_API const char *ecb_bus_text(struct ecb_bus *bus, const char *text)
+{
+	char clean[TEXT_MAX + 1];
+	size_t len = text ? strlen(text) : 0;
+
+	errno = 0;
+	if (!len)
+		return NULL;
+	if (len > TEXT_MAX)
+		len = TEXT_MAX;
+	/* bytes that are no UTF-8 are Latin-1 in many EEPROMs; the file is UTF-8 */
+	for (size_t i = 0, step; i < len; i += step) {
+		const unsigned char *p = (const unsigned char *)text + i;
+		int n = utf8_len(p, len - i);
+
+		step = n ? (size_t)n : 1;
+		memcpy(clean + i, p, step);
+		if (!n || !text_harmless(p, n))
+			memset(clean + i, '?', step);
+	}
+	return ecb_copy((struct whole *)bus, clean, len);
+}
+
+ECB_API struct ecb_master *ecb_master_add(struct ecb_bus *bus)
+{
+	return ecb_append((struct whole *)bus, &bus->masters, &type_master);
+}
+
+ECB_API struct ecb_slave *ecb_slave_add(struct ecb_bus *bus, struct ecb_master *master)
+{
+	return ecb_append((struct whole *)bus, &master->slaves, &type_slave);
+}
+
+ECB_API struct ecb_pdo *ecb_pdo_add(struct ecb_bus *bus, struct ecb_slave *slave)
+{
+	return ecb_append((struct whole *)bus, &slave->pdos, &type_pdo);
+}
+
+ECB_API struct ecb_entry *ecb_entry_add(struct ecb_bus *bus, struct ecb_pdo *pdo)
+{
+	return ecb_append((struct whole *)bus, &pdo->entries, &type_entry);
+}
+
+ECB_API int ecb_bus_finish(struct ecb_bus *bus, const char *file, struct ecb_error *error)
+{
+	return ecb_rules((struct whole *)bus, file ? file : "bus", error);
+}
