@@ -23,7 +23,9 @@ KMAKE = $(MAKE) -C $(KDIR) M=$(MODDIR) $(KFLAGS)
 all: modules lib tool examples mini
 
 # libethercat-bus and 'ethercat bus' need libyaml; all the rest builds without it
-YAML := $(shell echo '\#include <yaml.h>' | $(CC) -E - >/dev/null 2>&1 && echo y)
+hash := \#
+YAML := $(shell printf '$(hash)include <yaml.h>\nint main(void) { yaml_get_version_string(); }' | \
+	$(CC) $(LDFLAGS) -x c -o /dev/null - -lyaml 2>/dev/null && echo y)
 NO_YAML = no yaml.h: built without libethercat-bus; install libyaml-dev for it
 
 # Modules are built in a copy: several kernels side by side, a clean clone.

@@ -9,6 +9,7 @@
 #define ETHERCAT_BUS_H
 
 #include "ethercat-bus/bus.h"
+#include "ethercat-bus/compare.h"
 #include "ethercat-bus/file.h"
 #include "ethercat-bus/names.h"
 

@@ -39,6 +39,7 @@ const struct opt opts[] = {
 	{ 'D', "dry-run", NULL, "check only, change nothing" },
 	{ 'i', "file", "FILE", "EEPROM image of a file instead of a slave; - for stdin" },
 	{ 'x', "decode", NULL, "what the bytes mean" },
+	{ 'Z', "whole", NULL, "all that is known" },
 	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
@@ -77,6 +78,7 @@ static const struct option longs[] = {
 	{ "dry-run", no_argument, NULL, 'D' },
 	{ "file", required_argument, NULL, 'i' },
 	{ "decode", no_argument, NULL, 'x' },
+	{ "whole", no_argument, NULL, 'Z' },
 	{ "follow", no_argument, NULL, 'F' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
@@ -279,6 +281,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'x':
 		t->decode = true;
+		return 0;
+	case 'Z':
+		t->whole = true;
 		return 0;
 	case 'R':
 		t->retry = true;

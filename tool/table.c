@@ -5,7 +5,7 @@
 #define ALIAS(n, of) \
 	static const struct cmd cmd_##n = { .name = #n, .alias_of = of, .opts = "" }
 
-extern const struct cmd cmd_alias, cmd_config, cmd_crc, cmd_cstruct, cmd_cycle, cmd_data,
+extern const struct cmd cmd_alias, cmd_bus, cmd_config, cmd_crc, cmd_cstruct, cmd_cycle, cmd_data,
 	cmd_datagram, cmd_dc, cmd_debug, cmd_device, cmd_devices, cmd_diag, cmd_domains,
 	cmd_download, cmd_emergencies, cmd_eoe, cmd_eoe_addif, cmd_eoe_delif, cmd_firmware,
 	cmd_foe_read, cmd_foe_write, cmd_graph, cmd_help, cmd_ip, cmd_latch, cmd_log, cmd_mailbox,
@@ -22,6 +22,7 @@ ALIAS(sdo_write, "download");
 
 const struct cmd *const cmds[] = {
 	&cmd_alias,
+	&cmd_bus,
 	&cmd_config,
 	&cmd_crc,
 	&cmd_cstruct,

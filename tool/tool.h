@@ -55,6 +55,7 @@
  * @dry_run: --dry-run
  * @file: --file, NULL when not given
  * @decode: --decode
+ * @whole: --whole
  */
 struct tool {
 	struct list masters;
@@ -90,6 +91,7 @@ struct tool {
 	bool dry_run;
 	const char *file;
 	bool decode;
+	bool whole;
 };
 
 /**

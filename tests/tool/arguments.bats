@@ -171,8 +171,9 @@ for o in d["options"]:
 	[ "$(ls "$d/usr/share/man/man8" | grep -c '^ethercat-.*[.]8$')" = \
 		"$(ls "$HERE/../../tool/man" | wc -l)" ]
 	[ -f "$d/usr/share/man/man8/ethercat-sdo_upload.8" ]
-	# the library is a package of its own
+	# the libraries are packages of their own
 	make -s -C "$HERE/../../lib/tools" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d/lib" prefix= install
+	make -s -C "$HERE/../../lib/bus" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d/lib" prefix= install
 	LD_LIBRARY_PATH=$d/lib/lib "$d/usr/bin/ethercat" version
 	rm -r "$d/lib"
 	[ -z "$(readelf -d "$d/usr/bin/ethercat" | grep RUNPATH)" ]

@@ -92,6 +92,12 @@ _ethercat()
 			states)	w="INIT PREOP BOOT SAFEOP OP" ;;
 			graph)	w="DC CRC" ;;
 			units)	w="take" ;;
+			bus)
+				case $prev in
+				bus) w="save check diff show schema" ;;
+				*) _ethercat_files
+				   return ;;
+				esac ;;
 			why)	w=$(_ethercat_values position "$master") ;;
 			crc)	w="reset" ;;
 			debug)	w="0 1 2" ;;

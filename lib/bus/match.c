@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+#include <errno.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "match.h"
+#include "table.h"
+
+#define WORK_MAX	(16u << 20)	/* pairs that are compared; beyond it only in order */
+
+static int side_init(struct side *s, const struct ecb_master *m)
+{
+	struct table names;
+	struct seat *seat;
+
+	s->slaves = m->slaves;
+	s->count = m->slave_count;
+	s->peer = malloc((s->count + 1) * sizeof(*s->peer));
+	s->parent = malloc((s->count + 1) * sizeof(*s->parent));
+	if (!s->peer || !s->parent || table_init(&names, s->count + 1))
+		return -ENOMEM;
+	for (size_t i = 0; i < s->count; i++) {
+		s->peer[i] = s->parent[i] = NO_SLAVE;
+		seat = s->slaves[i]->parent ? table_find(&names, s->slaves[i]->parent) : NULL;
+		if (seat && seat->key)
+			s->parent[i] = seat->value;
+		seat = table_find(&names, s->slaves[i]->name);
+		seat->key = s->slaves[i]->name;
+		seat->value = i;
+	}
+	table_free(&names);
+	return 0;
+}
+
+void match_free(struct match *m)
+{
+	free(m->a.peer);
+	free(m->a.parent);
+	free(m->b.peer);
+	free(m->b.parent);
+}
+
+static void join(struct match *m, size_t a, size_t b)
+{
+	m->a.peer[a] = b;
+	m->b.peer[b] = a;
+}
+
+static bool same_sign(const struct ecb_slave *a, const struct ecb_slave *b, unsigned int step)
+{
+	switch (step) {
+	case 0:
+		return a->alias && a->alias == b->alias;
+	case 1:
+		return a->identification && a->identification == b->identification;
+	case 2:
+		return a->serial && a->serial == b->serial && same_identity(a, b);
+	default:
+		return !strcmp(a->name, b->name) && same_identity(a, b);
+	}
+}
+
+/* slaves with a sign of their own, wherever they are */
+static void by_signs(struct match *m, bool by_name)
+{
+	for (unsigned int step = 0; step < (by_name ? 4 : 3); step++)
+		for (size_t i = 0; i < m->a.count; i++) {
+			const struct ecb_slave *a = m->a.slaves[i];
+			size_t k = 0;
+
+			if (m->a.peer[i] != NO_SLAVE || !same_sign(a, a, step))
+				continue;
+			/* most often it is in its place */
+			if (i < m->b.count && m->b.peer[i] == NO_SLAVE &&
+			    same_sign(a, m->b.slaves[i], step))
+				k = i;
+			while (k < m->b.count && (m->b.peer[k] != NO_SLAVE ||
+						  !same_sign(a, m->b.slaves[k], step)))
+				k++;
+			if (k < m->b.count)
+				join(m, i, k);
+		}
+}
+
+/* those without peer */
+static size_t left(const struct side *s, size_t *to)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < s->count; i++)
+		if (s->peer[i] == NO_SLAVE)
+			to[n++] = i;
+	return n;
+}
+
+/* too many for a table: the next one of the same identity */
+static void greedy(struct match *m, const size_t *a, size_t n, const size_t *b, size_t k)
+{
+	size_t from = 0;
+
+	for (size_t i = 0; i < n; i++)
+		for (size_t j = from; j < k && j < from + 256; j++)
+			if (same_identity(m->a.slaves[a[i]], m->b.slaves[b[j]])) {
+				join(m, a[i], b[j]);
+				from = j + 1;
+				break;
+			}
+}
+
+/* the longest common sequence of identities */
+static int in_order(struct match *m, const size_t *a, size_t n, const size_t *b, size_t k)
+{
+	uint16_t *len, *row;
+	size_t i = 0, j = 0;
+
+#define SAME(x, y)	same_identity(m->a.slaves[a[x]], m->b.slaves[b[y]])
+	while (n && k && SAME(0, 0)) {
+		join(m, *a++, *b++);
+		n--;
+		k--;
+	}
+	while (n && k && SAME(n - 1, k - 1))
+		join(m, a[--n], b[--k]);
+	if (n && k > WORK_MAX / n) {
+		greedy(m, a, n, b, k);
+		return 0;
+	}
+	len = calloc((n + 1) * (k + 1), sizeof(*len));
+	if (!len)
+		return -ENOMEM;
+	for (i = n; i--;) {
+		row = len + i * (k + 1);
+		for (j = k; j--;)
+			row[j] = SAME(i, j) ? row[k + 1 + j + 1] + 1 :
+				row[j + 1] > row[k + 1 + j] ? row[j + 1] : row[k + 1 + j];
+	}
+	for (i = j = 0; i < n && j < k;) {
+		row = len + i * (k + 1);
+		if (SAME(i, j))
+			join(m, a[i++], b[j++]);
+		else if (row[j + 1] > row[k + 1 + j])
+			j++;
+		else
+			i++;
+	}
+	free(len);
+	return 0;
+#undef SAME
+}
+
+size_t match_parent(const struct side *s, size_t i, unsigned int *port)
+{
+	size_t p = i;
+
+	do {
+		*port = s->slaves[p]->port;
+		p = s->parent[p];
+	} while (p != NO_SLAVE && s->peer[p] == NO_SLAVE);
+	return p;
+}
+
+/* another device at the port of one that is missing; without ports in the next place */
+static void by_place(struct match *m)
+{
+	for (size_t i = 0; i < m->a.count; i++) {
+		size_t k = i ? m->a.peer[i - 1] + 1 : 0, pa, pb;
+		unsigned int port_a, port_b;
+
+		if (m->a.peer[i] != NO_SLAVE || (i && m->a.peer[i - 1] == NO_SLAVE) ||
+		    k >= m->b.count || m->b.peer[k] != NO_SLAVE)
+			continue;
+		pa = match_parent(&m->a, i, &port_a);
+		pb = match_parent(&m->b, k, &port_b);
+		if (port_a == ECB_NONE8 ||
+		    (pa != NO_SLAVE && m->a.peer[pa] == pb && port_a == port_b))
+			join(m, i, k);
+	}
+}
+
+int match_slaves(struct match *m, const struct ecb_master *a, const struct ecb_master *b,
+		 bool by_name)
+{
+	size_t *rest, n, k, work = 0;
+	int ret;
+
+	memset(m, 0, sizeof(*m));
+	if (side_init(&m->a, a) || side_init(&m->b, b))
+		return -ENOMEM;
+	rest = malloc((m->a.count + m->b.count + 1) * sizeof(*rest));
+	if (!rest)
+		return -ENOMEM;
+	by_signs(m, by_name);
+	n = left(&m->a, rest);
+	k = left(&m->b, rest + n);
+	ret = in_order(m, rest, n, rest + n, k);
+	/* the same device elsewhere */
+	n = left(&m->a, rest);
+	k = left(&m->b, rest + n);
+	for (size_t i = 0; i < n; i++)
+		for (size_t j = 0; j < k && work < WORK_MAX; j++, work++)
+			if (m->b.peer[rest[n + j]] == NO_SLAVE &&
+			    same_identity(m->a.slaves[rest[i]], m->b.slaves[rest[n + j]])) {
+				join(m, rest[i], rest[n + j]);
+				break;
+			}
+	by_place(m);
+	free(rest);
+	return ret;
+}

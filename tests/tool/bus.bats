@@ -1,0 +1,121 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+
+load common
+
+setup() {
+	f=$BATS_TEST_TMPDIR/bus.yaml
+	ethercat bus save --whole "$f"
+}
+
+@test "bus save writes the bus to stdout or to a file, which is equal to the bus" {
+	golden bus_save bus save
+	[ "$(ethercat bus save "$BATS_TEST_TMPDIR/short.yaml")" = \
+		"$BATS_TEST_TMPDIR/short.yaml: 3 slave(s)" ]
+	[ "$(ethercat bus check "$BATS_TEST_TMPDIR/short.yaml")" = "no difference, 3 slave(s)" ]
+	diff -u "$HERE/golden/bus_save_whole.txt" <(sed 1d "$f")
+	ethercat bus check "$f"
+	ethercat bus save -j | json '"name: el7201" in d["text"]'
+}
+
+@test "bus save keeps an existing file unless -f is given" {
+	echo mine >"$BATS_TEST_TMPDIR/mine"
+	run ethercat bus save "$BATS_TEST_TMPDIR/mine"
+	[ "$status" -eq 1 ]
+	[[ $output == *"mine exists; -f overwrites it" ]]
+	[ "$(cat "$BATS_TEST_TMPDIR/mine")" = mine ]
+	ethercat bus save -f "$BATS_TEST_TMPDIR/mine"
+	ethercat bus check "$BATS_TEST_TMPDIR/mine"
+	run ethercat bus save /dev/full
+	[ "$status" -eq 1 ]
+}
+
+# the difference that a change of the file makes, without the name of the file
+differs() {	# differs SED EXPECTED
+	sed "$1" "$f" >"$BATS_TEST_TMPDIR/changed"
+	run ethercat bus check "$BATS_TEST_TMPDIR/changed"
+	[ "$status" -eq 1 ]
+	[ "${lines[0]#"$BATS_TEST_TMPDIR/"}" = "$2" ]
+	[ "${lines[1]}" = "1 difference(s)" ]
+}
+
+@test "bus check names each difference once, with cause and remedy" {
+	differs 's/0x07d83052/0x07d83999/' "changed:10: slave 'el2008' exchanged: expected EL2008, vendor 0x00000002, product 0x07d83999, found EL2008, vendor 0x00000002, product 0x07d83052; install the expected device, or change vendor and product in the file"
+	differs 's/0x00100000/0x00200000/' "changed:10: slave 'el2008' revision differs: expected 0x00200000, found 0x00100000; if this revision is right, set revision, or revision_rule: at_least, in the file"
+	differs 's/alias: 1001/alias: 1002/' "changed:10: slave 'el2008' alias differs: expected 1002, found 1001; write the alias with 'ethercat alias', or change it in the file"
+	differs '/parent: el2008/{n;s/1/2/}' "changed:29: slave 'el7201' moved: expected port 2 of 'el2008', found port 1 of 'el2008'; connect it to port 2 of 'el2008', or change parent and port in the file"
+	differs 's/0x6000:11/0x6000:12/' "changed:46: slave 'el7201' pdos 0x1a00 entries 1 object differs: expected 0x6000:12, found 0x6000:11; change the slave, or the file"
+	differs '/index: 0x1601/,/channel_2/d' "slave 'el2008' pdos 0x1601 extra: a PDO; map and assign PDOs as in the file, or change the file"
+}
+
+@test "bus check: one slave more or less is one difference" {
+	sed '/name: el2008/,/channel_2.output/d; s/parent: el2008/parent: ek1100/' "$f" \
+		>"$BATS_TEST_TMPDIR/less"
+	run ethercat bus check "$BATS_TEST_TMPDIR/less"
+	[ "$status" -eq 1 ]
+	[ "$output" = "slave 'el2008' extra: EL2008, vendor 0x00000002, product 0x07d83052, at port 1 of 'ek1100'; remove it from the bus, or add it to the file
+1 difference(s)" ]
+	sed 's/parent: el2008/parent: more/' "$f" >"$BATS_TEST_TMPDIR/more"
+	sed -i '/- name: el7201/i\      - {name: more, vendor: 5, product: 6, parent: el2008, port: 1}' \
+		"$BATS_TEST_TMPDIR/more"
+	run ethercat bus check "$BATS_TEST_TMPDIR/more"
+	[ "$status" -eq 1 ]
+	[ "${lines[0]#"$BATS_TEST_TMPDIR/"}" = "more:29: slave 'more' missing: vendor 0x00000005, product 0x00000006, at port 1 of 'el2008'; connect it to port 1 of 'el2008', or remove it from the file" ]
+	[ "${lines[1]}" = "1 difference(s)" ]
+	ethercat bus check -j "$BATS_TEST_TMPDIR/more" |
+		json '[(x["kind"], x["line"]) for x in d["differences"]] == [("missing", 29)]'
+}
+
+@test "bus diff compares two files, names included" {
+	[ "$(ethercat bus diff "$f" "$f")" = "no difference, 3 slave(s)" ]
+	sed 's/name: position/name: actual/' "$f" >"$BATS_TEST_TMPDIR/b"
+	run ethercat bus diff "$f" "$BATS_TEST_TMPDIR/b"
+	[ "$status" -eq 1 ]
+	[ "${lines[0]#"$BATS_TEST_TMPDIR/"}" = \
+		"bus.yaml:46: slave 'el7201' pdos 0x1a00 entries 1 name differs: expected position, found actual" ]
+}
+
+@test "bus show shows slaves as a tree with the names of values" {
+	diff -u "$HERE/golden/bus_show.txt" <(ethercat bus show "$f")
+	ethercat bus show -j "$f" |
+		json 'd["masters"][0]["slaves"][2]["values"][0]["name"] == "el7201.controlword"'
+}
+
+@test "bus refuses a file with its line and exits with 2" {
+	sed -i 's/vendor/vender/' "$f"
+	for verb in "check $f" "diff $f $f" "show $f"; do
+		run ethercat bus $verb
+		[ "$status" -eq 2 ]
+		[[ $output == *"bus.yaml:7:9: unknown key 'vender' of a slave; did you mean 'vendor'?" ]]
+	done
+	run ethercat bus check /nonexistent
+	[ "$status" -eq 2 ]
+	[[ $output == *"/nonexistent: No such file or directory" ]]
+	for verb in chek "check" "diff $f" "schema x"; do
+		run ethercat bus $verb
+		[ "$status" -eq 2 ]
+	done
+}
+
+@test "the JSON Schema accepts each example and the file of bus save, and refuses typos" {
+	ethercat bus schema >"$BATS_TEST_TMPDIR/schema.json"
+	python3 - "$BATS_TEST_TMPDIR/schema.json" "$f" "$HERE"/../busfile/*.yaml <<-'END'
+		import json, sys
+		import jsonschema, yaml
+		schema = json.load(open(sys.argv[1]))
+		jsonschema.Draft7Validator.check_schema(schema)
+		v = jsonschema.Draft7Validator(schema)
+		assert len(sys.argv) >= 4
+		for name in sys.argv[2:]:
+		    bus = yaml.safe_load(open(name))
+		    assert not list(v.iter_errors(bus)), (name, list(v.iter_errors(bus)))
+		    bus["masters"][0]["slaves"][0]["vender"] = 2
+		    assert list(v.iter_errors(bus)), name
+		    del bus["masters"][0]["slaves"][0]["vender"]
+		    del bus["masters"][0]["slaves"][0]["vendor"]
+		    assert list(v.iter_errors(bus)), name
+	END
+	for x in "$HERE"/../busfile/*.yaml; do
+		ethercat bus show "$x" >/dev/null
+	done
+}

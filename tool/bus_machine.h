@@ -1,0 +1,22 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* The selected masters as a bus of libethercat-bus. */
+#ifndef EC_TOOL_BUS_MACHINE_H
+#define EC_TOOL_BUS_MACHINE_H
+
+#include "../include/ethercat-bus.h"
+#include "dev.h"
+
+/**
+ * struct bus_wish - what is read of a machine
+ * @pdos: PDOs and their entries
+ * @serial: serial numbers
+ */
+struct bus_wish {
+	bool pdos;
+	bool serial;
+};
+
+/* 0 with @bus, to be freed with ecb_bus_free(), or 1 after printing the error */
+int bus_of_machine(const struct tool *t, const struct bus_wish *wish, struct ecb_bus **bus);
+
+#endif
