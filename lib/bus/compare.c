@@ -54,6 +54,12 @@ static void print(const struct field *f, const void *from, char *buf, size_t siz
 		snprintf(buf, size, "none");
 }
 
+/* also beyond what is printed of them */
+static bool same_bytes(const struct ecb_bytes *a, const struct ecb_bytes *b)
+{
+	return a->size == b->size && (!a->size || !memcmp(a->data, b->data, a->size));
+}
+
 static void compare_scalars(struct comparison *c, const struct field *f, const char *path,
 			    const void *a, const void *b)
 {
@@ -64,10 +70,7 @@ static void compare_scalars(struct comparison *c, const struct field *f, const c
 		return;
 	print(f, x, expected, sizeof(expected));
 	print(f, y, found, sizeof(found));
-	if (!strcmp(expected, found) && (f->kind != K_BYTES ||
-	    (((const struct ecb_bytes *)x)->size == ((const struct ecb_bytes *)y)->size &&
-	     !memcmp(((const struct ecb_bytes *)x)->data, ((const struct ecb_bytes *)y)->data,
-		     ((const struct ecb_bytes *)x)->size))))
+	if (!strcmp(expected, found) && (f->kind != K_BYTES || same_bytes(x, y)))
 		return;
 	snprintf(key, sizeof(key), "%s%s", path, f->key);
 	differ(c, ECB_VALUE_DIFFERS, key, a, expected, b, found, remedy_of(f));

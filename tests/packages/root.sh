@@ -24,7 +24,8 @@ fi
 # newest one of its backports
 first=linux-headers-$(tests/vm/kernels.sh release $kernel)
 second="${backports:+-t $backports }linux-headers-amd64"
-packages="build-essential debhelper dh-dkms dkms fakeroot iproute2 kmod lintian man-db pkg-config
+packages="build-essential debhelper dh-dkms dkms fakeroot iproute2 kmod libyaml-dev lintian
+	man-db pkg-config
 	python3-sphinx systemd systemd-sysv udev $first"
 root=$cache/roots/packages-$suite
 layout="2 $packages $second"

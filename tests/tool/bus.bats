@@ -53,11 +53,11 @@ differs() {	# differs SED EXPECTED
 		>"$BATS_TEST_TMPDIR/less"
 	run ethercat bus check "$BATS_TEST_TMPDIR/less"
 	[ "$status" -eq 1 ]
-	[ "$output" = "slave 'el2008' extra: EL2008, vendor 0x00000002, product 0x07d83052, at port 1 of 'ek1100'; remove it from the bus, or add it to the file
-1 difference(s)" ]
+	[ "${lines[0]}" = "slave 'el2008' extra: EL2008, vendor 0x00000002, product 0x07d83052, at port 1 of 'ek1100'; remove it from the bus, or add it to the file" ]
+	[ "${lines[1]}" = "1 difference(s)" ]
 	sed 's/parent: el2008/parent: more/' "$f" >"$BATS_TEST_TMPDIR/more"
-	sed -i '/- name: el7201/i\      - {name: more, vendor: 5, product: 6, parent: el2008, port: 1}' \
-		"$BATS_TEST_TMPDIR/more"
+	line='{name: more, vendor: 5, product: 6, parent: el2008, port: 1}'
+	sed -i "/- name: el7201/i\\      - $line" "$BATS_TEST_TMPDIR/more"
 	run ethercat bus check "$BATS_TEST_TMPDIR/more"
 	[ "$status" -eq 1 ]
 	[ "${lines[0]#"$BATS_TEST_TMPDIR/"}" = "more:29: slave 'more' missing: vendor 0x00000005, product 0x00000006, at port 1 of 'el2008'; connect it to port 1 of 'el2008', or remove it from the file" ]
