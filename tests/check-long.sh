@@ -6,13 +6,13 @@
 # of tests/system on all kernels, among them one that reports data races and one that reports wrong
 # use of memory, locks and DMA; with a native network card of three models, also behind an IOMMU,
 # the files that the card matters to; a million cycles of it, also while its cable is pulled;
-# 600,000 cycles beside readers of events; the packages of Debian 12 and 13; README's two commands
-# in a fresh root of Debian 13; a reboot and a suspend with both kinds of device; all benchmarks,
+# 600,000 cycles beside readers of events; 10,000,000 inputs of the reader of bus files; the
+# packages of Debian 12 and 13; README's two commands in a fresh root of Debian 13; a reboot and a suspend with both kinds of device; all benchmarks,
 # the cycle also with the legacy interrupt of the card. The last line is "N passed, N failed";
 # results with their date are in Documentation/results.rst.
 #
-# usage: check-long.sh [ports|groups|without|uml-debug|nic-MODEL|iommu-MODEL|cycles|flaps|events|
-#	packages|packages-13|check-13|reboot|bench|bench-legacy|KERNEL...]
+# usage: check-long.sh [ports|groups|without|bus-files|uml-debug|nic-MODEL|iommu-MODEL|cycles|
+#	flaps|events|packages|packages-13|check-13|reboot|bench|bench-legacy|KERNEL...]
 
 set -u
 export LC_ALL=C
@@ -42,6 +42,7 @@ run() {
 	bench-legacy) EC_INTERRUPT=legacy tests/bench/cycle.sh ;;
 	reboot) tests/reboot/run.sh {generic,native}{,+off,+kexec,+suspend} ;;
 	without) tests/class-a/try.sh ;;
+	bus-files) make -s -C tests/fuzz check names=fuzz_bus INPUTS=10000000 ;;
 	ports) EC_UML_TIMEOUT=3000 EC_UML_ARGS=random_kunit.runs=80 tests/uml/run.sh bus_random ;;
 	groups) EC_UML_TIMEOUT=3000 EC_UML_ARGS=groups_random_kunit.runs=100 \
 		tests/uml/run.sh bus_groups_random ;;
@@ -51,7 +52,7 @@ run() {
 }
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
-for k in ${*:-ports groups without uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan \
+for k in ${*:-ports groups without bus-files uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan \
 	6.1-kasan nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages \
 	packages-13 check-13 reboot bench bench-legacy}; do
 	echo "=== $k"
