@@ -7,9 +7,10 @@
 # use of memory, locks and DMA; with a native network card of three models, also behind an IOMMU,
 # the files that the card matters to; a million cycles of it, also while its cable is pulled;
 # 600,000 cycles beside readers of events; 10,000,000 inputs of the reader of bus files; the
-# packages of Debian 12 and 13; README's two commands in a fresh root of Debian 13; a reboot and a suspend with both kinds of device; all benchmarks,
-# the cycle also with the legacy interrupt of the card. The last line is "N passed, N failed";
-# results with their date are in Documentation/results.rst.
+# packages of Debian 12 and 13; README's two commands in a fresh root of Debian 13; a reboot and a
+# suspend with both kinds of device; all benchmarks, the cycle also with the legacy interrupt of the
+# card. The last line is "N passed, N failed"; results with their date are in
+# Documentation/results.rst.
 #
 # usage: check-long.sh [ports|groups|without|bus-files|uml-debug|nic-MODEL|iommu-MODEL|cycles|
 #	flaps|events|packages|packages-13|check-13|reboot|bench|bench-legacy|KERNEL...]
