@@ -32,6 +32,8 @@ struct ecb_difference {
 	const char *remedy;	/* with %ECB_COMPARE_MACHINE, otherwise "" */
 };
 
+typedef void (*ecb_difference_fn)(void *ctx, const struct ecb_difference *d);
+
 /**
  * ecb_compare() - find the differences between two buses
  * @expected: bus, of a file for example
@@ -48,7 +50,7 @@ struct ecb_difference {
  * Return: number of differences, or -ENOMEM.
  */
 long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found, unsigned int flags,
-		 void (*fn)(void *ctx, const struct ecb_difference *d), void *ctx);
+		 ecb_difference_fn fn, void *ctx);
 
 #ifdef __cplusplus
 }

@@ -8,7 +8,7 @@
 
 struct comparison {
 	unsigned int flags;
-	void (*fn)(void *ctx, const struct ecb_difference *d);
+	ecb_difference_fn fn;
 	void *ctx;
 	long count;
 	uint32_t master;
@@ -296,8 +296,7 @@ static int compare_masters(struct comparison *c, const struct ecb_master *a,
 }
 
 ECB_API long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found,
-			 unsigned int flags,
-			 void (*fn)(void *ctx, const struct ecb_difference *d), void *ctx)
+			 unsigned int flags, ecb_difference_fn fn, void *ctx)
 {
 	struct comparison c = { .flags = flags, .fn = fn, .ctx = ctx, .slave = "" };
 	const struct ecb_bus *sides[] = { expected, found };
