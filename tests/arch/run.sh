@@ -9,23 +9,9 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 out=$PWD/build/arch
 mkdir -p "$out" || exit 1
-passed=0 failed=0
+. tests/t.sh
 compilers="i686-linux-gnu arm-linux-gnueabihf aarch64-linux-gnu s390x-linux-gnu"
 warn="-O2 -Wall -Wextra -Werror"
-
-t() {	# t NAME COMMAND...
-	local name=$1 log
-
-	shift
-	if log=$("$@" 2>&1); then
-		echo "ok: $name"
-		passed=$((passed + 1))
-	else
-		printf '%s\n' "$log" | tail -n 40 | sed 's/^/# /'
-		echo "FAILED: $name"
-		failed=$((failed + 1))
-	fi
-}
 
 # --- structures --------------------------------------------------------------
 # An object for each structure, as large as it.

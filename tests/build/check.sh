@@ -12,21 +12,7 @@ kernel=${EC_KERNEL:-6.1-rt}
 tmp=$(mktemp -d "${TMPDIR:-/tmp}/ec-build.XXXXXX")
 trap 'rm -rf "$tmp"' EXIT
 root=$tmp/root
-passed=0 failed=0
-
-t() {	# t NAME COMMAND...
-	local name=$1 out
-
-	shift
-	if out=$("$@" 2>&1); then
-		echo "ok: $name"
-		passed=$((passed + 1))
-	else
-		printf '%s\n' "$out" | tail -n 40 | sed 's/^/# /'
-		echo "FAILED: $name"
-		failed=$((failed + 1))
-	fi
-}
+. tests/t.sh
 
 tests/install-deps.sh doc cmake >&2 || exit 1
 tests/vm/kernels.sh fetch "$kernel" >&2 || exit 1

@@ -12,21 +12,7 @@ export LC_ALL=C
 rows=tests/class-a/rows.py
 tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
-passed=0 failed=0
-
-t() {	# t NAME COMMAND...
-	local name=$1 out
-
-	shift
-	if out=$("$@" 2>&1); then
-		echo "ok - class A: $name"
-		passed=$((passed + 1))
-	else
-		echo "not ok - class A: $name"
-		sed 's/^/# /' <<<"$out"
-		failed=$((failed + 1))
-	fi
-}
+. tests/t.sh
 
 # noticed SED FINDING: the rows with this change are refused; else the check could not fail
 noticed() {

@@ -14,20 +14,7 @@ cd "$here" || exit 1
 : "${CC:=gcc}" "${CXX:=g++}" "${MAKE:=make}"
 warn="-Wall -Wextra -Wpedantic -Werror"
 san="-fsanitize=address,undefined -fno-sanitize-recover=all -g -O1"
-passed=0 failed=0
-
-t() {	# t NAME COMMAND...
-	local name=$1 out
-	shift
-	if out=$("$@" 2>&1); then
-		echo "ok - $name"
-		passed=$((passed + 1))
-	else
-		echo "not ok - $name"
-		printf '%s\n' "$out" | sed 's/^/# /'
-		failed=$((failed + 1))
-	fi
-}
+. "$top/tests/t.sh"
 
 # with each macro used, and with all numbers and sizes looked at
 header_compiles() {	# header_compiles COMPILER STANDARD LANGUAGE

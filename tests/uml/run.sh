@@ -45,18 +45,20 @@ cp "$kernel" "$dir/vmlinux" || exit 2
 limit=${EC_UML_TIMEOUT:-300}
 start=$(date +%s.%N)
 # uml_dir keeps UML's sockets out of the home folder.  timeout kills the whole
-# process group: UML has several host processes.
-# The subshell swallows bash's remark on how it ended.
+# process group: UML has several host processes. They also end when this shell is killed.
+# Bash's remark on how they ended is swallowed.
 ulimit -c 0
+exec 4>&2 2>/dev/null
 (
-	timeout -s KILL "$limit" setarch -R "$dir/vmlinux" mem=512M log_buf_len=4M \
+	exec setpriv --pdeathsig KILL timeout -s KILL "$limit" \
+		setpriv --pdeathsig KILL setarch -R "$dir/vmlinux" mem=512M log_buf_len=4M \
 		time-travel=inf-cpu time-travel-start=1800000000 kunit.filter_glob="$filter" \
 		kunit_shutdown=halt kmemleak.verbose=1 uml_dir="$dir/" \
 		con=null con0=fd:0,fd:1 panic=-1 loglevel=8 \
 		${EC_UML_ARGS-} </dev/null >"$log" 2>&1
-	exit $?
-) 2>/dev/null
+)
 rc=$?
+exec 2>&4 4>&-
 [ $rc != 137 ] || echo "EC-UML-HANG" >>"$log"
 took=$(echo "$(date +%s.%N) - $start" | bc)
 
