@@ -279,6 +279,31 @@ struct ec_ioc_cycle {
 /* bit of struct ec_ioc_cycle.dc; with _SYNC_SLAVES, without _SYNC_REF */
 #define EC_CYCLE_DC_FOLLOW	256U	/* phase-locked to the reference clock */
 
+/*
+ * The application leaves its active session, whose cycle the kernel runs without an output stall,
+ * to the master: the cycle continues without it, with the current outputs, and no application
+ * takes the session over. EC_IOC_OUTPUT sets its outputs, EC_IOC_END_DETACHED ends it.
+ */
+struct ec_ioc_detach {
+	__u32 flags;
+	__u32 reserved;
+};
+
+#define EC_OUTPUT_FLAG_HOLD	1	/* no lease: until it is set again, or the session ends */
+#define EC_OUTPUT_LEASE_MAX_MS	86400000
+
+/* set outputs of such a session; they become zero when the lease ends */
+struct ec_ioc_output {
+	__u32 flags;		/* EC_OUTPUT_FLAG_HOLD */
+	__u32 domain;		/* in */
+	__u32 bit;		/* in: the first one, in the domain */
+	__u32 bits;		/* in: 1..64 */
+	__u64 value;		/* in: bit 0 is the first one */
+	__u64 device;		/* in: number of the device whose outputs they are */
+	__u32 lease_ms;		/* in: 1..EC_OUTPUT_LEASE_MAX_MS; 0 with EC_OUTPUT_FLAG_HOLD */
+	__u32 reserved;
+};
+
 /* exchange the domain in every @division-th cycle of the kernel */
 struct ec_ioc_division {
 	__u32 flags;

@@ -120,6 +120,8 @@ struct ec_ioc_master {
 	__u32 links_up;		/* bit n: device n has a link */
 	__u32 reserved;
 	char owner[EC_UAPI_STRING];	/* application that has reserved the master, or empty */
+	__u32 left;		/* detached by EC_IOC_DETACH: EC_IOC_OUTPUT works */
+	__u32 reserved2;
 };
 
 /* a port of a slave */

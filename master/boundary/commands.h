@@ -6,7 +6,7 @@
  */
 CMD(EC_IOC_VERSION, ec_ioc_version, 0)
 CMD(EC_IOC_REASON, ec_ioc_reason, 0)
-CMD(EC_IOC_MASTER, ec_ioc_master, 0)
+CMD(EC_IOC_MASTER, ec_ioc_master, 0, OLDEST(ec_ioc_master, owner))
 CMD(EC_IOC_DEVICE, ec_ioc_device, 0)
 CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), RSV2(ec_ioc_slave),
 	OLDEST(ec_ioc_slave, dc_odd))
@@ -94,6 +94,7 @@ CMD(EC_IOC_DEBUG, ec_ioc_debug, F_WRITE)
 CMD(EC_IOC_RESET, ec_ioc_reset, F_WRITE)
 CMD(EC_IOC_CYCLE_RESET, ec_ioc_cycle_reset, F_WRITE)
 CMD(EC_IOC_END_DETACHED, ec_ioc_end_detached, F_WRITE)
+CMD(EC_IOC_OUTPUT, ec_ioc_output, F_WRITE, RSV1(ec_ioc_output), FLAGS(EC_OUTPUT_FLAG_HOLD))
 CMD(EC_IOC_DEVICE_USE, ec_ioc_device_use, F_WRITE, RSV1(ec_ioc_device_use))
 CMD(EC_IOC_RESERVE, ec_ioc_reserve, F_WRITE)
 CMD(EC_IOC_RELEASE, ec_ioc_release, F_WRITE)
@@ -139,6 +140,7 @@ CMD(EC_IOC_SC_REPLAY, ec_ioc_sc_replay, F_WRITE, CONFIG(ec_ioc_sc_replay), RSV1(
 CMD(EC_IOC_HOLD, ec_ioc_hold, F_WRITE, SESSION, RSV1(ec_ioc_hold), FLAGS(EC_HOLD_FLAG_RESUME))
 CMD(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
 	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, true, false))
+CMD(EC_IOC_DETACH, ec_ioc_detach, F_WRITE, SESSION, RSV1(ec_ioc_detach))
 CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE)
 CMD(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE, SESSION)
 CMD(EC_IOC_DOMAIN_OFFSET, ec_ioc_domain_offset, F_WRITE, SESSION)

@@ -7,6 +7,7 @@
 #include "ioctl.h"
 #include "master.h"
 #include "../session/activate.h"
+#include "../session/detached.h"
 #include "../session/reserve.h"
 #include "../session/session.h"
 #include "../session/session_attach.h"
@@ -40,6 +41,10 @@ int ec_ioc_refuse_reserved(struct ec_call *call)
 		return ec_refuse(call, -EBUSY,
 				 "master %u is reserved by %s; stop that application first", index,
 				 who);
+	if (ec_detached_runs(&call->master->sessions))
+		return ec_refuse(call, -EBUSY,
+				 "master %u runs without an application ('ethercat run'); end that with 'ethercat stop'",
+				 index);
 	if (READ_ONCE(ss->session))
 		return ec_refuse(call, -EBUSY,
 				 "master %u has a detached session; end it with 'ethercat release'",

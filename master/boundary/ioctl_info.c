@@ -140,6 +140,7 @@ static void session_info(struct ec_call *call, const struct ec_session *s, struc
 	i->active = s->wanted.active;
 	i->session = !s->cycle.owner ? EC_SESSION_DETACHED :
 		     s->wanted.active ? EC_SESSION_ACTIVE : EC_SESSION_RESERVED;
+	i->left = !!s->detached;
 	i->config_count = s->wanted.n_configs;
 	i->domain_count = s->wanted.n_domains;
 	if (!s->wanted.active)

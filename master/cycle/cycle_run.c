@@ -174,7 +174,7 @@ static void feed(struct ec_cycle_thread *t)
 		if (unlikely(t->stall_told))
 			ec_event(t->cycle->base, EC_EVENT_OUTPUTS, t->unfed);
 		t->stall_told = false;
-		t->fed = true;
+		t->fed = !READ_ONCE(t->kept);
 		t->unfed = 0;
 		if (st->state != EC_CYCLE_STATE_RUNNING)
 			WRITE_ONCE(st->state, EC_CYCLE_STATE_RUNNING);
@@ -216,6 +216,25 @@ void ec_cycle_run_deal(struct ec_cycle_thread *t)
 	memcpy(ec_cycle_run_buffer(t, n) + 1, t->cycle->shared->image, t->bytes);
 	if (t->cycle->units)
 		ec_units_overlay(t->cycle, (u8 *)(ec_cycle_run_buffer(t, n) + 1));
+}
+
+/**
+ * ec_cycle_run_give() - give outputs in the place of an application
+ * @c: active cycle after ec_cycle_thread_keep()
+ * @buffer: number of the output buffer that the caller has, changes
+ * @image: of all domains
+ *
+ * Context: Process. One caller at a time.
+ */
+void ec_cycle_run_give(struct ec_cycle *c, u32 *buffer, const u8 *image)
+{
+	struct ec_cycle_thread *t = c->thread;
+	struct ec_exchange_buffer *b = ec_cycle_run_buffer(t, *buffer);
+
+	b->fed = ~0ULL;
+	memcpy(b + 1, image, t->bytes);
+	*buffer = buffer_index(xchg(&ec_cycle_run_exchange(t)->outputs,
+				    *buffer | EC_EXCHANGE_NEW));
 }
 
 /* The previous application may have exited at any point: the next one gets all buffers again. */

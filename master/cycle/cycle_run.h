@@ -69,6 +69,8 @@ struct ec_cycle_thread {
 	u8 back;
 	/** @fed: the application has given outputs at least once */
 	bool fed;
+	/** @kept: the master gives the outputs, when some are set */
+	bool kept;
 	/** @unfed: cycles without new outputs in a row */
 	u32 unfed;
 	/** @stalls: rate of the events of output stalls */
@@ -130,6 +132,7 @@ static inline struct task_struct *ec_cycle_thread_task(const struct ec_cycle *c)
 	return c->thread ? c->thread->task : NULL;
 }
 
+void ec_cycle_run_give(struct ec_cycle *c, u32 *buffer, const u8 *image);
 void ec_cycle_run_deal(struct ec_cycle_thread *t);
 bool ec_cycle_run_once(struct ec_cycle_thread *t, bool entered);
 void ec_cycle_run_wake(struct ec_cycle *c, bool atomic);

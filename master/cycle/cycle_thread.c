@@ -231,17 +231,8 @@ bool ec_cycle_thread_ended(const struct ec_cycle *c)
 	return c->thread && !(smp_load_acquire(&c->cycles->run) & 1);
 }
 
-/**
- * ec_cycle_thread_adopt() - another application gets the exchange
- * @c: active cycle without an application
- *
- * Its output buffer gets the present image, outputs and inputs. No buffer that the
- * previous application has given is used any more.
- *
- * Context: Process, lock of the configuration held. Sleeps until the next cycle has begun.
- * Return: 0; -ETIMEDOUT the cycle does not run.
- */
-int ec_cycle_thread_adopt(struct ec_cycle *c)
+/* Let the thread deal the buffers again, with the present outputs in that of the application. */
+static int redeal(struct ec_cycle *c)
 {
 	struct ec_cycle_thread *t = c->thread;
 	u32 limit_ms = 2 * c->setup.kernel.period_ns / (u32)NSEC_PER_MSEC + ADOPT_MS;
@@ -254,7 +245,55 @@ int ec_cycle_thread_adopt(struct ec_cycle *c)
 			return -ETIMEDOUT;
 		/* still set: the completion was that of an earlier call that has timed out */
 	} while (smp_load_acquire(&t->adopt));
-	WRITE_ONCE(ec_cycle_run_status(t)->takeovers, ec_cycle_run_status(t)->takeovers + 1);
+	return 0;
+}
+
+/**
+ * ec_cycle_thread_adopt() - another application gets the exchange
+ * @c: active cycle without an application
+ *
+ * Its output buffer gets the present image, outputs and inputs. No buffer that the
+ * previous application has given is used any more.
+ *
+ * Context: Process, lock of the configuration held. Sleeps until the next cycle has begun.
+ * Return: 0; -ETIMEDOUT the cycle does not run.
+ */
+int ec_cycle_thread_adopt(struct ec_cycle *c)
+{
+	int ret = redeal(c);
+	struct ec_status_cycle *st = ec_cycle_run_status(c->thread);
+
+	lockdep_assert_held(c->wanted->lock);
+	if (!ret)
+		WRITE_ONCE(st->takeovers, st->takeovers + 1);
+	return ret;
+}
+
+/**
+ * ec_cycle_thread_keep() - the master gives the outputs from now on
+ * @c: active cycle whose application has no mapped memory
+ * @buffer: result: number of its output buffer, for ec_cycle_run_give()
+ * @image: result: the outputs that are sent, of all domains
+ *
+ * Cycles without new outputs are not counted as missed any more.
+ *
+ * Context: Process, lock of the configuration held. Sleeps until the next cycle has begun.
+ * Return: 0; -ETIMEDOUT the cycle does not run.
+ */
+int ec_cycle_thread_keep(struct ec_cycle *c, u32 *buffer, u8 *image)
+{
+	struct ec_cycle_thread *t = c->thread;
+	int ret;
+
+	lockdep_assert_held(c->wanted->lock);
+	WRITE_ONCE(t->kept, true);
+	ret = redeal(c);
+	if (ret) {
+		WRITE_ONCE(t->kept, false);
+		return ret;
+	}
+	*buffer = min_t(u32, ec_cycle_run_exchange(t)->app_output, EC_EXCHANGE_BUFFERS - 1);
+	memcpy(image, ec_cycle_run_buffer(t, *buffer) + 1, t->bytes);
 	return 0;
 }
 

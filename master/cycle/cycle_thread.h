@@ -11,6 +11,7 @@ void ec_cycle_thread_start(struct ec_cycle *c);
 void ec_cycle_thread_stop(struct ec_cycle *c);
 bool ec_cycle_thread_ended(const struct ec_cycle *c);
 int ec_cycle_thread_adopt(struct ec_cycle *c);
+int ec_cycle_thread_keep(struct ec_cycle *c, u32 *buffer, u8 *image);
 void ec_cycle_thread_outputs(const struct ec_cycle *c, u8 *image, u32 offset, u32 size);
 
 #endif

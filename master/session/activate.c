@@ -14,6 +14,7 @@
 #include "activate.h"
 #include "clear.h"
 #include "clocks.h"
+#include "detached.h"
 #include "ref_clock.h"
 #include "request.h"
 #include "request_layout.h"
@@ -273,6 +274,7 @@ int ec_session_deactivate(struct ec_session *s)
 	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.active)
 		return -EINVAL;
+	ec_detached_end(s);
 	ec_cycle_set_active(ss->cycles, NULL);
 	ec_cycle_thread_stop(&s->cycle);
 	ec_session_note_counts(s, false, true);

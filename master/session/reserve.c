@@ -14,11 +14,15 @@
 #include "session_slave.h"
 #include "../clock/dc_app.h"
 
-/* One application at a time; a candidate may prepare the takeover of a detached session. */
+/*
+ * One application at a time; a candidate may prepare the takeover of a detached session, unless
+ * that was left to the master.
+ */
 static bool is_taken(const struct ec_sessions *ss)
 {
 	lockdep_assert_held(&ss->lock);
-	return ss->paused || ss->candidate || (ss->session && ss->session->cycle.owner);
+	return ss->paused || ss->candidate ||
+	       (ss->session && (ss->session->cycle.owner || ss->session->detached));
 }
 
 /*

@@ -10,6 +10,7 @@
 #include "../cycle/cycle.h"
 #include "sessions.h"
 
+struct ec_detached;
 struct ec_request_spec;
 struct ec_requests;
 
@@ -99,6 +100,8 @@ struct ec_session {
 	 * has configured, to which its handles belong; or NULL
 	 */
 	struct ec_session *handles;
+	/** @detached: the application has left the session to the master; or NULL */
+	struct ec_detached *detached;
 };
 
 static inline struct ec_session *ec_cycle_session(struct ec_cycle *c)

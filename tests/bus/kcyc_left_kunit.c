@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* A session that its application has left to the master, and outputs that commands set. */
+#include "kcyc.h"
+#include "master/bus/slave.h"
+#include "master/session/reserve.h"
+
+static int detach(struct bus *b)
+{
+	struct ec_ioc_detach i = { 0 };
+
+	return ec_ioc(&b->app, EC_IOC_DETACH, &i);
+}
+
+/* All in OP, then the application leaves. */
+static struct kcyc *left(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+
+	KUNIT_ASSERT_EQ_MSG(test, detach(a->c->b), 0, "%s", a->c->b->app.reason);
+	return a;
+}
+
+/* Output @channel of a slave, 32 bits. */
+static struct ec_ioc_output output(struct kcyc *a, u32 slave, u32 channel, u32 value)
+{
+	return (struct ec_ioc_output){
+		.bit = 8 * kcyc_place(a, slave, 0, channel), .bits = 32, .value = value,
+		.device = bus_slave(a->c->b, slave)->device, .lease_ms = 500,
+	};
+}
+
+static int set(struct kcyc *a, struct ec_ioc_output o)
+{
+	return ec_ioc(&a->c->b->app, EC_IOC_OUTPUT, &o);
+}
+
+static void master_info(struct bus *b, struct ec_ioc_master *i)
+{
+	*i = (struct ec_ioc_master){ 0 };
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_MASTER, i), 0);
+}
+
+static bool in_op(struct bus *b)
+{
+	return bus_esc(b, 0)->mem[EC_REG_AL_STATUS] == EC_AL_OP &&
+	       bus_esc(b, 1)->mem[EC_REG_AL_STATUS] == EC_AL_OP;
+}
+
+/* The application is gone, cycles go on, no application gets the session. */
+static void left_session_continues(struct kunit *test)
+{
+	struct kcyc *a = left(test);
+	struct bus *b = a->c->b;
+	struct ec_ioc_master i;
+	u64 frames = bus_frames(b);
+
+	KUNIT_EXPECT_EQ(test, kcyc_wait(a, 1000), -EPERM);
+	bus_end(b);
+	msleep(2000);
+	KUNIT_EXPECT_GE(test, bus_frames(b) - frames, 1999ull);
+	KUNIT_EXPECT_TRUE(test, in_op(b));
+	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 0ll);
+	master_info(b, &i);
+	KUNIT_EXPECT_EQ(test, i.session, (u32)EC_SESSION_DETACHED);
+	KUNIT_EXPECT_EQ(test, i.left, 1u);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->takeovers, 0u);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_RESERVE, NULL), -EBUSY);
+	KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "'ethercat stop'"), "%s",
+				  b->app.reason);
+	KUNIT_EXPECT_NULL(test, bus_candidate(b));
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	/* and it can be had again */
+	a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	kcyc_until_op(a);
+}
+
+/* A lease ends to the millisecond, a value without one stays, others are not touched. */
+static void left_leases_end(struct kunit *test)
+{
+	struct kcyc *a = left(test);
+	struct bus *b = a->c->b;
+	struct ec_ioc_output o = output(a, 1, KCYC_CHANNELS, 43);
+
+	o.flags = EC_OUTPUT_FLAG_HOLD;
+	o.lease_ms = 0;
+	KUNIT_ASSERT_EQ_MSG(test, set(a, output(a, 0, 1, 42)), 0, "%s", b->app.reason);
+	KUNIT_ASSERT_EQ(test, set(a, o), 0);
+	/* the process that has set it may be gone */
+	bus_end(b);
+	msleep(490);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 43ll);
+	msleep(30);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 0ll);
+	msleep(5000);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 43ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 0ll);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, 0ull);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->state, EC_CYCLE_STATE_RUNNING);
+	/* with a lease instead; then the session ends in the middle of it */
+	KUNIT_EXPECT_EQ(test, set(a, output(a, 1, KCYC_CHANNELS, 44)), 0);
+	msleep(520);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 0ll);
+	o = output(a, 0, 1, 45);
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
+	msleep(1000);
+	KUNIT_EXPECT_EQ(test, set(a, o), -EINVAL);
+}
+
+/* Each set begins the lease anew, and its last value counts. */
+static void left_lease_is_renewed(struct kunit *test)
+{
+	struct kcyc *a = left(test);
+	u32 i;
+
+	for (i = 1; i <= 10; i++) {
+		KUNIT_ASSERT_EQ(test, set(a, output(a, 0, 1, i)), 0);
+		msleep(300);
+		KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), (s64)i);
+	}
+	msleep(300);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 0ll);
+}
+
+/* Inputs, other slaves, bits beyond the outputs, values that do not fit. */
+static void left_refuses_wrong_outputs(struct kunit *test)
+{
+	struct kcyc *a = left(test);
+	struct ec_ioc_output o = output(a, 0, 1, 42);
+
+#define REFUSED(ret, ...) do { \
+	struct ec_ioc_output x = o; \
+	__VA_ARGS__; \
+	KUNIT_EXPECT_EQ(test, set(a, x), ret); \
+} while (0)
+	REFUSED(-ENOENT, x.device = bus_slave(a->c->b, 1)->device);
+	REFUSED(-ENOENT, x.device = 0);
+	REFUSED(-ENOENT, x.domain = 1);
+	REFUSED(-ENOENT, x.bit = 8 * kcyc_place(a, 0, 1, 1));
+	REFUSED(-ENOENT, x.bit = 8 * kcyc_place(a, 0, 0, KCYC_CHANNELS) + 1);
+	REFUSED(-ENOENT, x.bit = ~0u);
+	REFUSED(-EINVAL, x.bits = 0);
+	REFUSED(-EINVAL, x.bits = 65);
+	REFUSED(-EINVAL, x.bits = 5);
+	REFUSED(-EINVAL, x.lease_ms = 0);
+	REFUSED(-EINVAL, x.flags = EC_OUTPUT_FLAG_HOLD);
+	REFUSED(-EINVAL, x.lease_ms = EC_OUTPUT_LEASE_MAX_MS + 1);
+	REFUSED(-EOPNOTSUPP, x.flags = 2);
+	REFUSED(0, x.value = 42);
+	/* a part of what has a lease */
+	REFUSED(-EBUSY, x.bits = 8);
+	REFUSED(-EBUSY, x.bit += 31; x.bits = 1; x.value = 1);
+	REFUSED(0, x.bit += 32; x.value = 7);
+	msleep(20);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 2), 7ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 0ll);
+}
+
+/* Who may leave, and whose outputs are set. */
+static void left_only_by_its_application(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .stall_cycles = 10 });
+	struct bus *b = a->c->b;
+	struct ec_shared *sh = kcyc_shared(a);
+
+	KUNIT_EXPECT_EQ(test, set(a, output(a, 0, 1, 42)), -EPERM);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "those of an application"));
+	KUNIT_EXPECT_EQ(test, detach(b), -EINVAL);
+	KUNIT_EXPECT_NOT_NULL(test, strstr(b->app.reason, "stall_cycles 0"));
+	bus_end(b);
+	KUNIT_EXPECT_EQ(test, detach(b), -EPERM);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+	KUNIT_EXPECT_EQ(test, detach(b), -EINVAL);
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	/* memory that a process has mapped */
+	sh = kcyc_shared(a);
+	ec_shared_get(sh);
+	KUNIT_EXPECT_EQ(test, detach(b), -EBUSY);
+	ec_shared_put(sh);
+	KUNIT_EXPECT_EQ(test, detach(b), 0);
+	/* the handle of a session that is no longer its own */
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EPERM);
+}
+
+/* What was detached when its application exited is the session of others. */
+static void left_is_not_detached_by_exit(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
+	struct ec_ioc_master i;
+
+	bus_end(a->c->b);
+	master_info(a->c->b, &i);
+	KUNIT_EXPECT_EQ(test, i.session, (u32)EC_SESSION_DETACHED);
+	KUNIT_EXPECT_EQ(test, i.left, 0u);
+	KUNIT_EXPECT_EQ(test, set(a, output(a, 0, 1, 42)), -EPERM);
+}
+
+/* The value that is held is sent to a slave that returns; a lease has ended meanwhile. */
+static void left_values_while_slave_is_gone(struct kunit *test)
+{
+	struct kcyc *a = left(test);
+	struct bus *b = a->c->b;
+	struct ec_ioc_output o = output(a, 1, 1, 43);
+
+	KUNIT_EXPECT_EQ(test, set(a, output(a, 1, 2, 44)), 0);
+	o.flags = EC_OUTPUT_FLAG_HOLD;
+	o.lease_ms = 0;
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	bus_command(b, "off s2");
+	msleep(3000);
+	KUNIT_EXPECT_EQ(test, set(a, o), -ENOENT);
+	bus_command(b, "on s2");
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 43ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 0ll);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(left_session_continues),
+	KUNIT_CASE(left_leases_end),
+	KUNIT_CASE(left_lease_is_renewed),
+	KUNIT_CASE(left_refuses_wrong_outputs),
+	KUNIT_CASE(left_only_by_its_application),
+	KUNIT_CASE(left_is_not_detached_by_exit),
+	KUNIT_CASE(left_values_while_slave_is_gone),
+	{ }
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_kcyc_left", .exit = bus_exit, .test_cases = cases,
+};
+kunit_test_suite(suite);
