@@ -50,7 +50,7 @@ static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 		return usage_error("missing argument: ethercat %s %s", c->name, c->args);
 	if (nargs > c->max_args)
 		return usage_error("unexpected argument '%s'", args[c->max_args]);
-	if (t->follow && strchr(c->opts, 'F'))
+	if (c->flags & CMD_LINES || (t->follow && strchr(c->opts, 'F')))
 		out_start_lines(t->json);
 	else
 		out_start(t->json);

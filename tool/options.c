@@ -37,6 +37,11 @@ const struct opt opts[] = {
 	{ 'U', "allow-unreachable", NULL, "write an EEPROM also if the slave may be unreachable then" },
 	{ 'K', "repair-checksum", NULL, "correct the checksum of an EEPROM" },
 	{ 'D', "dry-run", NULL, "check only, change nothing" },
+	{ 'G', "include", "NAMES", "drives and safety devices that run as well, apart by commas" },
+	{ 'P', "period", "MICROSECONDS", "of the cycle, 100 to 1000000" },
+	{ 'H', "hold", NULL, "until it is set again" },
+	{ 'l', "lease", "SECONDS", "time until the output becomes zero, 0.01 to 86400" },
+	{ 'g', "names", NULL, "values by name instead of bytes" },
 	{ 'i', "file", "FILE", "EEPROM image of a file instead of a slave; - for stdin" },
 	{ 'x', "decode", NULL, "what the bytes mean" },
 	{ 'Z', "whole", NULL, "all that is known" },
@@ -76,6 +81,11 @@ static const struct option longs[] = {
 	{ "allow-unreachable", no_argument, NULL, 'U' },
 	{ "repair-checksum", no_argument, NULL, 'K' },
 	{ "dry-run", no_argument, NULL, 'D' },
+	{ "include", required_argument, NULL, 'G' },
+	{ "period", required_argument, NULL, 'P' },
+	{ "hold", no_argument, NULL, 'H' },
+	{ "lease", required_argument, NULL, 'l' },
+	{ "names", no_argument, NULL, 'g' },
 	{ "file", required_argument, NULL, 'i' },
 	{ "decode", no_argument, NULL, 'x' },
 	{ "whole", no_argument, NULL, 'Z' },
@@ -148,6 +158,28 @@ static int timeout(const char *text, u32 *ms)
 
 	if (!seconds(text, &s) || s < 0.001 || s > 600)
 		return usage_error("invalid time '%s' for --timeout: expected 0.001 to 600 seconds",
+				   text);
+	*ms = (u32)(s * 1000 + 0.5);
+	return 0;
+}
+
+static int period(const char *text, u32 *us)
+{
+	size_t n = strspn(text, "0123456789");
+
+	if (!n || n > 7 || text[n] || atoi(text) < 100 || atoi(text) > 1000000)
+		return usage_error("invalid time '%s' for --period: expected 100 to 1000000 microseconds",
+				   text);
+	*us = (u32)atoi(text);
+	return 0;
+}
+
+static int lease(const char *text, u32 *ms)
+{
+	double s;
+
+	if (!seconds(text, &s) || s < 0.01 || s > 86400)
+		return usage_error("invalid time '%s' for --lease: expected 0.01 to 86400 seconds",
 				   text);
 	*ms = (u32)(s * 1000 + 0.5);
 	return 0;
@@ -284,6 +316,19 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'Z':
 		t->whole = true;
+		return 0;
+	case 'G':
+		t->include = optarg;
+		return 0;
+	case 'P':
+		return period(optarg, &t->period_us);
+	case 'H':
+		t->hold = true;
+		return 0;
+	case 'l':
+		return lease(optarg, &t->lease_ms);
+	case 'g':
+		t->names = true;
 		return 0;
 	case 'R':
 		t->retry = true;

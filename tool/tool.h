@@ -19,6 +19,7 @@
 #define CMD_ONE_MASTER		1	/* -m must leave exactly one */
 #define CMD_HISTORIC		2	/* abbreviations resolve to it first */
 #define CMD_NEGATIVE		4	/* "-1" may be an argument */
+#define CMD_LINES		8	/* in JSON a line for each object */
 
 /**
  * struct tool - the command line, parsed
@@ -56,6 +57,11 @@
  * @file: --file, NULL when not given
  * @decode: --decode
  * @whole: --whole
+ * @include: --include, NULL when not given
+ * @period_us: argument of --period, 0: not given
+ * @hold: --hold
+ * @lease_ms: argument of --lease, 0: not given
+ * @names: --names
  */
 struct tool {
 	struct list masters;
@@ -92,6 +98,11 @@ struct tool {
 	const char *file;
 	bool decode;
 	bool whole;
+	const char *include;
+	u32 period_us;
+	bool hold;
+	u32 lease_ms;
+	bool names;
 };
 
 /**

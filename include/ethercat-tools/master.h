@@ -73,6 +73,8 @@ struct ect_master {
 	uint32_t held;		/* an application has the list of slaves held: no scan */
 	uint32_t links_up;	/* bit n: network device n has a link */
 	char owner[ECT_STRING];	/* the application that has reserved the master, or "" */
+	uint32_t left;		/* detached and left to the master: ect_run_leave() */
+	uint32_t reserved;
 };
 
 /* the main device of a master, or its backup device */

@@ -53,6 +53,7 @@ static void convert_master(struct ect_master *to, struct ec_ioc_master *from)
 	COPY(sii_bytes);
 	COPY(held);
 	COPY(links_up);
+	COPY(left);
 	memcpy(to->owner, from->owner, sizeof(to->owner));
 }
 

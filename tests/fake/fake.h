@@ -54,6 +54,9 @@ extern const struct ec_ip_params fake_net;
 /* 0, -1 with errno, or FAKE_OTHER */
 int fake_app(unsigned long request, void *arg);
 int fake_mbox(unsigned long request, void *arg);
+int fake_run(unsigned long request, void *arg);
+void fake_run_master(struct fake_master *m);
+void fake_run_slave(struct fake_slave *s);
 int fake_events(unsigned long request, void *arg);
 int fake_mail(unsigned long request, void *arg);
 bool fake_mail_read(void *buf, unsigned long size, long *bytes);

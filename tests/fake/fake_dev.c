@@ -204,6 +204,7 @@ static int master(struct ec_ioc_master *m, int index)
 	int ret = read_master(&last, index);
 
 	fake_why_master(&last);
+	fake_run_master(&last);
 	memcpy(m, &last, sizeof(*m));
 	return ret;
 }
@@ -264,7 +265,7 @@ static int answer(int fd, unsigned long request, void *arg)
 		polls = 0;
 		return 0;
 	case EC_IOC_END_DETACHED:
-		if (!fake_bus("detached"))
+		if (!fake_bus("detached") && !fake_bus("run"))
 			return fake_fail(ENOENT, "master 0 has no session");
 		fake_record("release %d\n", fd - FD);
 		return 0;
@@ -275,7 +276,9 @@ static int answer(int fd, unsigned long request, void *arg)
 		fake_record("debug %d %u\n", fd - FD, ((struct ec_ioc_debug *)arg)->level);
 		return 0;
 	default:
-		ret = fake_slave_command(request, arg);
+		ret = fake_run(request, arg);
+		if (ret == FAKE_OTHER)
+			ret = fake_slave_command(request, arg);
 		if (ret == FAKE_OTHER)
 			ret = fake_app(request, arg);
 		if (ret == FAKE_OTHER)

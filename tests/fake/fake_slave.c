@@ -132,6 +132,7 @@ static int slave(struct fake_slave *s)
 	if (fake_bus("reversed"))
 		reversed(s);
 	fake_glance_slave(s);
+	fake_run_slave(s);
 	if (fake_bus("differs") && s->position == 1) {
 		s->config = 2;
 		s->differs = 1;

@@ -238,9 +238,10 @@ tools_soname() {
 tools_work() {	# tools_work SANITIZERS
 	$CC -std=gnu11 -fms-extensions -Wall -Wextra -Werror $1 -D_GNU_SOURCE -pthread \
 		-o "$o/tools-test" tools.c ../fake/fake_*.c \
-		$(ls "$top"/lib/tools/*.c | grep -v /sys.c) \
+		$(ls "$top"/lib/tools/*.c | grep -v /sys.c) -I"$top/include" \
+		"$top"/lib/bus/{names,table}.c \
 		"$top"/master/wire/{al,coe,dc,emergency,eoe{,_frame},event{,_text},foe,mbox}.c \
-		"$top"/master/wire/{port_text,replay,sdo,sdoinfo,soe,voe}.c &&
+		"$top"/master/wire/{port_text,replay,sdo,sdoinfo,sii,soe,voe}.c &&
 		setarch -R "$o/tools-test"
 }
 

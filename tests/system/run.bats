@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-2.0-only
+# A bus that runs without an application: run, set, watch, top, stop.
+
+load helpers
+
+setup_file() {
+	# the outputs of the EL2008 are wired to the inputs of the EL1008
+	cat >"$BATS_FILE_TMPDIR/segment" <<-END
+	segment seed=7
+	slave c EK1100
+	slave o EL2008
+	slave i EL1008
+	slave axis drive
+	connect o.1 -> i.1
+	connect o.8 -> i.8
+	END
+	start "$BATS_FILE_TMPDIR/segment" 4
+	chmod o+r /dev/EtherCAT0
+}
+teardown_file() { stop; }
+teardown() {
+	kill -9 ${other:+"$other"} 2>/dev/null || true
+	ethercat release 2>/dev/null || true
+	chmod o-w /dev/EtherCAT0
+	wait_for 60 all_slaves_are PREOP 4
+}
+
+reader=(setpriv --reuid 65534 --regid 65534 --clear-groups "$EC_BUILD/tool/ethercat")
+frames() { ethercat master --json | gojq '.masters[0].common.tx_frames'; }
+sent() { [ "$(frames)" -ge "$1" ]; }
+# value NAME: what is sent or received now
+value() { ethercat data --names --json | gojq -r ".masters[0].values[] | select(.name == \"$1\").value"; }
+is() { [ "$(value "$1")" = "$2" ]; }
+lamp=el2008.channel_1.output
+sensor=el1008.channel_1.input
+
+@test "from a scanned bus to a live value with two commands, and no process stays" {
+	run ethercat run --dry
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"3 of 4 slave(s) would go to OP"* ]]
+	[[ "$output" == *"drive: omitted, a drive; add it with --include drive"* ]]
+	all_slaves_are PREOP 4
+	json '.masters[0].session == "none"' master
+
+	run ethercat run
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"Master0 runs: 3 slave(s) in OP, cycle 1 ms, SCHED_FIFO 50"* ]]
+	before=$(lost_frames)
+	timeout 0.5 "$EC_BUILD/tool/ethercat" watch $sensor | grep -q "$sensor = 0" || false
+	all_slaves_are OP 3
+	ethercat slaves | grep -q 'PREOP.*drive'
+	! fuser /dev/EtherCAT0 2>/dev/null || false
+	from=$(frames)
+	wait_for 60 sent $((from + 3000))
+	json '.masters[0] | .overruns == 0 and .state == "running"' cycle
+	[ "$(lost_frames)" = "$before" ]
+	json '.masters[0].session == "detached"' master
+	ethercat data --names
+	# outputs begin with zero
+	ethercat data --names --json | gojq -e '.masters[0].values | all(.value == "0")'
+	ethercat stop
+	wait_for 60 all_slaves_are PREOP 4
+}
+
+@test "set: an output is zero when its lease is over, also when its process was killed" {
+	ethercat run
+	ethercat set $lamp 1
+	wait_for 10 is $sensor 1
+	sleep 4
+	is $sensor 1
+	sleep 1.2
+	is $sensor 0
+	ethercat set --lease 0.5 $lamp on
+	wait_for 10 is $sensor 1
+	sleep 0.6
+	is $sensor 0
+	ethercat set --hold $lamp 1
+	ethercat set el2008.channel_8.output 1
+	sleep 6
+	is $sensor 1
+	is el1008.channel_8.input 0
+	json '.masters[0] | .overruns == 0 and .missed == 0' cycle
+	ethercat set --lease 0.1 $lamp 1
+	sleep 0.2
+	is $sensor 0
+	refused 'is an input' set $sensor 1
+	refused 'did you mean el2008.channel_1.output' set el2008.channel_1.outputt 1
+	refused 'does not fit' set $lamp 2
+	refused 'no value nothing.at_all' watch nothing.at_all
+}
+
+@test "a drive takes part only when it is named" {
+	refused 'has no slave dirve' run --include dirve
+	run ethercat run --include drive
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"4 slave(s) in OP"* ]]
+	all_slaves_are OP 4
+}
+
+@test "a user without write permission watches, and changes nothing" {
+	run "${reader[@]}" run
+	[ "$status" = 1 ]
+	[[ "$output" == *"Permission denied"* ]]
+	ethercat run
+	for command in "set $lamp 1" stop run release; do
+		# shellcheck disable=SC2086
+		run "${reader[@]}" $command
+		echo "$output"
+		[ "$status" = 1 ]
+		[[ "$output" == *"Permission denied"* ]]
+	done
+	all_slaves_are OP 3
+	"${reader[@]}" data --names | grep -q "$sensor"
+	timeout 0.5 "${reader[@]}" watch 'el1008.*' | grep -c ' = 0' | grep -qx 8
+	"${reader[@]}" top | grep -q "'ethercat run'"
+}
+
+@test "a member of the group without RLIMIT_RTPRIO runs at SCHED_OTHER, and another one stops it" {
+	chmod o+rw /dev/EtherCAT0
+	run prlimit --rtprio=0 "${reader[@]}" run
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"SCHED_OTHER: no right to real-time priority (RLIMIT_RTPRIO)"* ]]
+	[ "$(ps -o cls=,rtprio= -p "$(pgrep -x EtherCAT0-cyc)" | xargs)" = "TS -" ]
+	prlimit --rtprio=0 "${reader[@]}" set $lamp 1
+	wait_for 10 is $sensor 1
+	setpriv --reuid 1234 --regid 1234 --clear-groups "$EC_BUILD/tool/ethercat" stop
+	wait_for 60 all_slaves_are PREOP 4
+}
+
+@test "two users at once: one of them runs the bus, applications are refused" {
+	ethercat run >"$BATS_TEST_TMPDIR/one" 2>&1 3>&- &
+	other=$!
+	ethercat run >"$BATS_TEST_TMPDIR/two" 2>&1 || true
+	wait $other || true
+	other=
+	cat "$BATS_TEST_TMPDIR/one" "$BATS_TEST_TMPDIR/two"
+	[ "$(cat "$BATS_TEST_TMPDIR/one" "$BATS_TEST_TMPDIR/two" | grep -c 'slave(s) in OP')" = 1 ]
+	[ "$(cat "$BATS_TEST_TMPDIR/one" "$BATS_TEST_TMPDIR/two" | grep -cE 'is reserved by|runs without')" = 1 ]
+	refused "end that with 'ethercat stop'" run
+	run "$EC_BUILD/apps/kcycle" cycles=10
+	echo "$output"
+	[ "$status" != 0 ]
+	[[ "$output" == *"end that with 'ethercat stop'"* ]]
+	all_slaves_are OP 3
+	ethercat stop
+	refused 'does not run' stop
+	refused 'no application' set $lamp 1
+}
+
+@test "the outputs of an application are its own, also when it has exited" {
+	"$EC_BUILD/apps/kcycle" cycles=1000000 flags=1 >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	other=$!
+	wait_for 60 grep -q 'slaves in OP' "$BATS_TEST_TMPDIR/out"
+	ethercat data --names
+	refused 'those of an application' set "$(ethercat data --names --json |
+		gojq -r '[.masters[0].values[] | select(.direction == "output").name][0]')" 1
+	refused 'stop that application' stop
+	timeout 0.5 "${reader[@]}" watch 'el1008.*' | grep -q ' = '
+	kill -9 $other
+	wait $other || true
+	other=
+	refused "'ethercat release'" stop
+	refused 'those of an application' set "$(ethercat data --names --json |
+		gojq -r '[.masters[0].values[] | select(.direction == "output").name][0]')" 1
+}
+
+@test "killed before all is in OP it leaves nothing" {
+	for after in 0.05 0.2 0.4 0.8; do
+		timeout -s KILL $after "$EC_BUILD/tool/ethercat" run 3>&- || continue
+		ethercat stop	# it was faster
+	done
+	json '.masters[0].session == "none"' master
+	wait_for 60 all_slaves_are PREOP 4
+	ethercat run
+}
+
+@test "the module is removed while the bus runs and a lease has not ended" {
+	ethercat run
+	ethercat set $lamp 1
+	wait_for 10 is $sensor 1
+	stop
+	[ ! -e /dev/EtherCAT0 ]
+	! dmesg | grep -E 'BUG|WARNING|refcount' || false
+	start "$BATS_FILE_TMPDIR/segment" 4
+	chmod o+r /dev/EtherCAT0
+}

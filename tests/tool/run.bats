@@ -1,0 +1,186 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+# A bus that runs without an application, and its values by name.
+
+load common
+
+@test "run configures all slaves, starts the cycle and leaves it to the master" {
+	log_of run >"$BATS_TEST_TMPDIR/out"
+	cat "$BATS_TEST_TMPDIR/out"
+	grep -qx 'Master0 runs: 3 slave(s) in OP, cycle 1 ms, SCHED_FIFO 50' "$BATS_TEST_TMPDIR/out"
+	[ "$(grep -v '^[MO]' "$BATS_TEST_TMPDIR/out")" = 'reserve
+config 0: 0x00000002 0x044c2c52
+config 1: 0x00000002 0x07d83052
+domain: config 1 SM0
+config 2: 0x00000002 0x1c213052
+domain: config 2 SM2
+domain: config 2 SM3
+cycle 1000000 ns, stall 0, flags 0
+activate
+detach' ]
+	out run --json | json '(d["in_op"], d["period_ns"], d["priority"]) == (3, 1000000, 50)'
+	log_of run --period 250 | grep -q 'cycle 250000 ns'
+}
+
+@test "run --dry-run changes nothing and names the slaves that would run" {
+	[ "$(log_of run --dry)" = 'Master0: 3 of 3 slave(s) would go to OP with the PDOs that they have now, outputs zero, cycle 1 ms:
+  0  ek1100: to OP
+  1  el2008: to OP
+  2  el7201: to OP' ]
+	out run --dry-run --json |
+		json '[(s["name"], s["kind"], s["runs"]) for s in d["slaves"]][1] == ("el2008", "io", True)'
+}
+
+@test "run leaves drives and safety devices out, unless they are named" {
+	export FAKE_TYPE=402
+	log_of run >"$BATS_TEST_TMPDIR/out"
+	grep -q 'el7201: omitted, a drive; add it with --include el7201' "$BATS_TEST_TMPDIR/out"
+	grep -q 'runs: 2 slave(s) in OP' "$BATS_TEST_TMPDIR/out"
+	! grep -q '^config 2' "$BATS_TEST_TMPDIR/out"
+	log_of run --include el2008,el7201 | grep -q 'runs: 3 slave(s) in OP'
+	FAKE_TYPE=safety out run --dry-run | grep -q 'el7201: omitted, a safety device'
+	FAKE_TYPE=modular out run --dry-run | grep -q 'el7201: omitted, a drive'
+	FAKE_TYPE=mute out run --dry-run | grep -q 'el7201: omitted, it does not say what it is'
+	run ethercat run --include el7201,el99
+	[ "$status" = 1 ]
+	[[ $output == *"Master0 has no slave el99; 'ethercat run --dry-run' shows their names"* ]]
+}
+
+@test "run leaves nothing when a slave is not in OP, but with --force" {
+	export FAKE_STUCK=2
+	run log_of run --wait 0.1
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output == *"1 of 3 slave(s) not in OP, so the bus does not run"* ]]
+	[[ $output == *"slave 2: SAFEOP refused"* ]]
+	! grep -q detach "$FAKE_LOG"
+	log_of run --wait 0.1 --force | grep -q detach
+}
+
+@test "run reports a missing right, and the owner of the bus" {
+	FAKE_OTHER_SCHED=1 out run | grep -q 'SCHED_OTHER: no right to real-time priority (RLIMIT_RTPRIO)'
+	FAKE_BUS=run err run | grep -q "runs without an application ('ethercat run'); end that with 'ethercat stop'"
+	FAKE_BUS=app err run | grep -q 'reserved by process 7 (demo)'
+	FAKE_READONLY=1 err run | grep -q 'Permission denied'
+}
+
+@test "data --names shows names, types and values" {
+	export FAKE_BUS=run
+	golden data_names data --names
+	out data --names --json >"$BATS_TEST_TMPDIR/json"
+	json '[v["value"] for v in d["masters"][0]["values"]] == ["0", "1", "15", "4294967294"]' \
+		<"$BATS_TEST_TMPDIR/json"
+	json '(lambda v: (v["bit"], v["bits"], v["index"], v["subindex"]))(d["masters"][0]["values"][3]) == (24, 32, 0x6000, 0x11)' \
+		<"$BATS_TEST_TMPDIR/json"
+	[ -z "$(out data --names -d 1)" ]
+	FAKE_BUS=idle err data --names | grep -q "no application and no 'ethercat run'"
+	# types of the EEPROM
+	FAKE_SII=1 out data --names | grep -q 'el7201.controlword  *out  uint16'
+}
+
+@test "set gives a value a lease of 5 s, another one, or none" {
+	export FAKE_BUS=run
+	[ "$(log_of set el7201.controlword 15)" = 'el7201.controlword is 15 for 5 s, then zero
+output 0: bit 8, 16 bits, 0xf, device 13, lease 5000' ]
+	log_of set el2008.channel_2.output on --lease 0.25 |
+		grep -qx 'output 0: bit 1, 1 bits, 0x1, device 12, lease 250'
+	log_of set --hold el7201.controlword 0xffff |
+		grep -qx 'output 0: bit 8, 16 bits, 0xffff, device 13, lease 0, hold'
+	log_of set el7201.controlword -1 | grep -q 'bits, 0xffff,'
+	out set el7201.controlword 1 --json | json '(d["bits"], d["lease_ms"]) == (1, 5000)'
+}
+
+@test "set refuses inputs, values that do not fit, and outputs of an application" {
+	export FAKE_BUS=run
+	refused() {
+		run ethercat set "${@:2}"
+		echo "$output"
+		[ "$status" = 1 ] && [[ $output == *"$1"* ]]
+	}
+	refused 'el7201.position is an input: only outputs can be set' el7201.position 1
+	refused 'no value el7201.controlwort; did you mean el7201.controlword?' el7201.controlwort 1
+	refused "no value lamp; 'ethercat data --names' shows them" lamp 1
+	refused "the type bool, 1 bit(s), which '2' does not fit" el2008.channel_1.output 2
+	refused "which '65536' does not fit" el7201.controlword 65536
+	refused "which '-32769' does not fit" el7201.controlword -32769
+	refused "which 'x' does not fit" el7201.controlword x
+	refused '--hold and --lease exclude each other' --hold --lease 1 el7201.controlword 1
+	refused "invalid time '0' for --lease" --lease 0 el7201.controlword 1
+	FAKE_OWNER=demo refused 'the outputs of master 0 are those of an application' \
+		el7201.controlword 1
+}
+
+@test "watch prints a line for each value, then for each change, until the session ends" {
+	export FAKE_BUS=run FAKE_CHANGES=3
+	run ethercat watch --watch 0.1
+	[ "$status" = 0 ]
+	[ "$(echo "$output" | grep -c ' = ')" = 7 ]
+	[ "$(echo "$output" | grep -c 'el7201.position = ')" = 4 ]
+	[[ $output == *"Master0: the session has ended"* ]]
+	run ethercat watch --watch 0.1 'el2008.*'
+	[ "$(echo "$output" | grep -c ' = ')" = 2 ]
+	out watch --watch 0.1 --json el7201.position |
+		python3 -c 'import json, sys; assert [json.loads(l)["value"] for l in sys.stdin] == ["4294967294", "4294967295", "4294967040", "4294967041"]'
+	run ethercat watch el7201.positio
+	[ "$status" = 1 ]
+	[[ $output == *"did you mean el7201.position?"* ]]
+	FAKE_READONLY=1 out watch --watch 0.1 | grep -q el2008
+}
+
+# on_terminal ARG...: with a terminal of 80 columns and 24 lines as stdin and stdout
+on_terminal() {
+	python3 - "$HERE/build/fake/ethercat" "$@" <<-'END'
+	import fcntl, os, pty, struct, sys, termios
+	pid, fd = pty.fork()
+	if not pid:
+	    fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
+	    os.execv(sys.argv[1], sys.argv[1:])
+	if sys.argv[2] == 'top':
+	    os.write(fd, b'ejq')
+	got = b''
+	while True:
+	    try:
+	        part = os.read(fd, 4096)
+	    except OSError:
+	        break
+	    if not part:
+	        break
+	    got += part
+	status = os.waitpid(pid, 0)[1]
+	sys.stdout.write(got.decode())
+	sys.exit(os.waitstatus_to_exitcode(status))
+	END
+}
+
+# no line is as wide as the terminal, else it would wrap
+is_narrow() {
+	sed 's/\x1b\[[0-9;]*[A-Za-z]//g; s/\r//g' "$1" | awk 'length($0) > 79 { print; bad = 1 } END { exit bad }'
+}
+
+@test "watch and top on a terminal have at most 79 columns, mark changes, and end by a key" {
+	export FAKE_BUS=run FAKE_CHANGES=3
+	on_terminal watch --watch 0.1 >"$BATS_TEST_TMPDIR/out"
+	is_narrow "$BATS_TEST_TMPDIR/out"
+	grep -q '^\* el7201.position' "$BATS_TEST_TMPDIR/out"
+	! grep -q '^\* el2008' "$BATS_TEST_TMPDIR/out" || false
+	unset FAKE_CHANGES
+	on_terminal top --watch 0.1 >"$BATS_TEST_TMPDIR/out"
+	is_narrow "$BATS_TEST_TMPDIR/out"
+	grep -q "Master0  3 slave(s), 3 reply  'ethercat run'" "$BATS_TEST_TMPDIR/out"
+	grep -q 'e: all' "$BATS_TEST_TMPDIR/out"
+}
+
+@test "top prints its lines once in a pipe" {
+	export FAKE_BUS=run
+	golden top top
+	out top --json | json '(d["slaves"], d["session"], d["interval_ns"]) == (3, "'"'ethercat run'"'", 1000000)'
+	FAKE_BUS=idle out top | grep -qx 'Cycle: none'
+}
+
+@test "stop ends a bus that run has begun, and no other session" {
+	export FAKE_BUS=run
+	log_of stop | grep -qx 'release 0'
+	FAKE_BUS=detached err stop | grep -q "session of an application that has exited; end it with 'ethercat release'"
+	FAKE_OWNER='process 7 (demo)' err stop | grep -q 'by process 7 (demo); stop that application'
+	FAKE_BUS=idle err stop | grep -q 'Master0 does not run'
+}
