@@ -37,7 +37,8 @@ static inline const struct ect_value *current_at(const struct current *l, size_t
 }
 
 /* a value of that name, or NULL after printing which one is nearly called so */
-const struct ect_value *current_find(const struct dev *d, const struct current *l, const char *name);
+const struct ect_value *current_find(const struct dev *d, const struct current *l,
+				     const char *name);
 /* whether a name is meant by @pattern, with * and ? */
 bool current_matches(const struct ect_value *v, const char *pattern);
 
