@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Each cycle of a tree with random events: is all well with those that were not cut off? */
 #include "random.h"
+#include "master/bus/graph.h"
 #include "master/boundary/ioctl.h"
 
 /*
@@ -62,11 +63,30 @@ static bool is_addressed(struct random_run *r, struct random_slave *x, const str
 	return x->readdressed <= READDRESSED;
 }
 
+/*
+ * One that hangs elsewhere now, in OP and with its station address, is known where it was until the
+ * change is listed; then it is configured as one that has returned.
+ */
+static bool is_listed_here(struct bus *b, const struct ec_esc *esc, const struct ec_slave *s)
+{
+	const struct ec_slave *up = ec_graph_parent(s);
+	unsigned int p;
+
+	if (!up)
+		return !esc->route_pos[0];
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (esc->port[p].peer >= 0 &&
+		    get_unaligned_le16(b->sim->esc[esc->port[p].peer]->mem + EC_REG_STATION) ==
+		    up->station)
+			return true;
+	return false;
+}
+
 static void become(struct random_run *r, struct random_slave *x, const struct ec_esc *esc)
 {
 	struct ec_slave *s = by_station(r->b, get_unaligned_le16(esc->mem + EC_REG_STATION));
 
-	if (!s || !is_well(esc, s) || ec_slave_busy(s))
+	if (!s || !is_well(esc, s) || ec_slave_busy(s) || !is_listed_here(r->b, esc, s))
 		return;
 	if (x->slave)
 		ec_slave_unref(x->slave);
