@@ -386,6 +386,43 @@ add() {
 	[ "$(ethercat slaves | wc -l)" = 1000 ]
 	[ $((($(date +%s%N) - t0) / 1000000)) -lt 2000 ]
 	[ "$(ethercat slaves -p 500)" = "500  0:500  PREOP  +  $(ethercat slaves -p 500 | cut -d+ -f2 | cut -c3-)" ]
+	t0=$(date +%s%N)
+	ethercat bus save "$BATS_TEST_TMPDIR/bus.yaml"
+	t1=$(date +%s%N)
+	[ "$(ethercat bus check "$BATS_TEST_TMPDIR/bus.yaml")" = "no difference, 1000 slave(s)" ]
+	t2=$(date +%s%N)
+	t2=$(((t2 - t1) / 1000000)) t1=$(((t1 - t0) / 1000000))
+	echo "# bus file of 1000 slaves: written in $t1 ms, compared in $t2 ms (exact time)" >&3
+	[ $t1 -lt 1000 ] && [ $t2 -lt 1000 ]
+}
+
+@test "bus check names place, cause and remedy of each difference to the file" {
+	stop
+	printf '%s\n' 'segment seed=3' 'slave c EK1100' 'slave out EL2008 alias=1001' \
+		'slave a drive in=8 out=8 serial=7' 'slave b drive in=8 out=8 serial=8' \
+		'branch none' 'slave other EL7201' 'branch none' 'slave more io in=8 out=8' \
+		>"$BATS_TEST_TMPDIR/segment"
+	start "$BATS_TEST_TMPDIR/segment" 4
+	ethercat bus save --whole "$BATS_TEST_TMPDIR/bus.yaml"
+	ethercat bus check "$BATS_TEST_TMPDIR/bus.yaml"
+	sim=/sys/kernel/debug/ec_sim/sim0
+	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
+	# one more in the middle: no slave downstream of it differs
+	printf '%s\n' 'unplug out.1' 'plug out.1 more.0' 'plug more.1 a.0' >$sim
+	wait_for 20 all_slaves_are PREOP 5
+	run ethercat bus check "$BATS_TEST_TMPDIR/bus.yaml"
+	printf '# %s\n' "${lines[@]}" >&3
+	[ "$status" = 1 ]
+	[ "${#lines[@]}" -le 3 ]
+	[[ $output == *"' extra: "*"remove it from the bus, or add it to the file"* ]]
+	# another device in place of the last drive
+	printf '%s\n' 'unplug more.1' 'unplug out.1' 'plug out.1 a.0' 'unplug a.1' \
+		'plug a.1 other.0' >$sim
+	wait_for 20 all_slaves_are PREOP 4
+	run ethercat bus check "$BATS_TEST_TMPDIR/bus.yaml"
+	printf '# %s\n' "${lines[@]}" >&3
+	[ "$status" = 1 ]
+	[[ $output == *EL7201* ]]
 }
 
 @test "without the module the error names the remedy" {

@@ -23,7 +23,8 @@ detach' ]
 }
 
 @test "run --dry-run changes nothing and names the slaves that would run" {
-	[ "$(log_of run --dry)" = 'Master0: 3 of 3 slave(s) would go to OP with the PDOs that they have now, outputs zero, cycle 1 ms:
+	[ "$(log_of run --dry)" = \
+'Master0: 3 of 3 slave(s) would go to OP with the PDOs that they have now, outputs zero, cycle 1 ms:
   0  ek1100: to OP
   1  el2008: to OP
   2  el7201: to OP' ]
@@ -58,7 +59,8 @@ detach' ]
 }
 
 @test "run reports a missing right, and the owner of the bus" {
-	FAKE_OTHER_SCHED=1 out run | grep -q 'SCHED_OTHER: no right to real-time priority (RLIMIT_RTPRIO)'
+	FAKE_OTHER_SCHED=1 out run |
+		grep -q 'SCHED_OTHER: no right to real-time priority (RLIMIT_RTPRIO)'
 	FAKE_BUS=run err run | grep -q "runs without an application ('ethercat run'); end that with 'ethercat stop'"
 	FAKE_BUS=app err run | grep -q 'reserved by process 7 (demo)'
 	FAKE_READONLY=1 err run | grep -q 'Permission denied'
@@ -120,7 +122,9 @@ output 0: bit 8, 16 bits, 0xf, device 13, lease 5000' ]
 	run ethercat watch --watch 0.1 'el2008.*'
 	[ "$(echo "$output" | grep -c ' = ')" = 2 ]
 	out watch --watch 0.1 --json el7201.position |
-		python3 -c 'import json, sys; assert [json.loads(l)["value"] for l in sys.stdin] == ["4294967294", "4294967295", "4294967040", "4294967041"]'
+		python3 -c 'import json, sys
+assert [json.loads(l)["value"] for l in sys.stdin] == [
+	"4294967294", "4294967295", "4294967040", "4294967041"]'
 	run ethercat watch el7201.positio
 	[ "$status" = 1 ]
 	[[ $output == *"did you mean el7201.position?"* ]]
@@ -154,7 +158,8 @@ on_terminal() {
 
 # no line is as wide as the terminal, else it would wrap
 is_narrow() {
-	sed 's/\x1b\[[0-9;]*[A-Za-z]//g; s/\r//g' "$1" | awk 'length($0) > 79 { print; bad = 1 } END { exit bad }'
+	sed 's/\x1b\[[0-9;]*[A-Za-z]//g; s/\r//g' "$1" |
+		awk 'length($0) > 79 { print; bad = 1 } END { exit bad }'
 }
 
 @test "watch and top on a terminal have at most 79 columns, mark changes, and end by a key" {
@@ -173,7 +178,8 @@ is_narrow() {
 @test "top prints its lines once in a pipe" {
 	export FAKE_BUS=run
 	golden top top
-	out top --json | json '(d["slaves"], d["session"], d["interval_ns"]) == (3, "'"'ethercat run'"'", 1000000)'
+	out top --json |
+		json '(d["slaves"], d["session"], d["interval_ns"]) == (3, "'"'ethercat run'"'", 1000000)'
 	FAKE_BUS=idle out top | grep -qx 'Cycle: none'
 }
 
@@ -181,6 +187,7 @@ is_narrow() {
 	export FAKE_BUS=run
 	log_of stop | grep -qx 'release 0'
 	FAKE_BUS=detached err stop | grep -q "session of an application that has exited; end it with 'ethercat release'"
-	FAKE_OWNER='process 7 (demo)' err stop | grep -q 'by process 7 (demo); stop that application'
+	FAKE_OWNER='process 7 (demo)' err stop |
+		grep -q 'by process 7 (demo); stop that application'
 	FAKE_BUS=idle err stop | grep -q 'Master0 does not run'
 }
