@@ -16,7 +16,7 @@ extern "C" {
 #define ECT_KIND_IO		0
 #define ECT_KIND_DRIVE		1	/* profile 402, or SoE */
 #define ECT_KIND_SAFETY		2	/* FSoE */
-#define ECT_KIND_UNKNOWN	3	/* it does not say: a mailbox that does not answer */
+#define ECT_KIND_UNKNOWN	3	/* it does not say: no answer, or an unclear one */
 
 /* the name of a slave */
 struct ect_name {

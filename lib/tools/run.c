@@ -7,9 +7,13 @@
 
 #define PROFILE_DRIVE	402
 #define PROFILE_MODULAR	5001
-#define MODULES_MAX	64	/* of which the profile is read */
+#define MODULES_MAX	64	/* of which the profile is read; with more the kind is unknown */
 #define MBOX_COE	4
 #define MBOX_SOE	16
+
+/* SDO abort codes that say that there is no such object */
+#define ABORT_NO_OBJECT		0x06020000
+#define ABORT_NO_SUBINDEX	0x06090011
 
 int ect_run_reserve(struct ect_handle *h)
 {
@@ -84,14 +88,20 @@ int ect_output_set(struct ect_handle *h, const struct ect_output *o)
 	return ect_command(h, EC_IOC_OUTPUT, &i);
 }
 
-/* -EIO: the slave refuses, so it has no such object */
+/*
+ * Return: 1 it has the object; 0 it says that it has none; -EIO it refuses for another cause, or
+ * another negative errno.
+ */
 static int read_u32(struct ect_handle *h, u64 device, u16 index, u8 sub, u32 *value)
 {
 	u8 data[4] = { 0 };
 	long n = ect_sdo_upload(h, device, index, sub, 0, 0, data, sizeof(data));
 
 	*value = (u32)data[0] | (u32)data[1] << 8 | (u32)data[2] << 16 | (u32)data[3] << 24;
-	return n < 0 ? (int)n : 0;
+	if (n == -EIO && (ect_error_code(h) == ABORT_NO_OBJECT ||
+			  ect_error_code(h) == ABORT_NO_SUBINDEX))
+		return 0;
+	return n < 0 ? (int)n : 1;
 }
 
 static bool says_safety(const char *text)
@@ -119,41 +129,59 @@ static int named_safety(struct ect_handle *h, const struct ect_slave *s, bool *s
 	return 0;
 }
 
-/* A modular device: of one module at least */
-static bool has_drive(struct ect_handle *h, u64 device)
+/* A modular device: of one module at least. Return: 1, 0, or a negative errno. */
+static int has_drive(struct ect_handle *h, u64 device)
 {
 	u32 n, profile;
+	int ret = read_u32(h, device, 0xf010, 0, &n);
 
-	if (read_u32(h, device, 0xf010, 0, &n))
-		return false;
-	for (unsigned int i = 1; i <= n && i <= MODULES_MAX; i++)
-		if (!read_u32(h, device, 0xf010, (u8)i, &profile) &&
-		    (profile & 0xffff) == PROFILE_DRIVE)
-			return true;
-	return false;
+	if (ret > 0 && n > MODULES_MAX)
+		return -E2BIG;
+	for (unsigned int i = 1; ret > 0 && i <= n; i++) {
+		int has = read_u32(h, device, 0xf010, (u8)i, &profile);
+
+		if (has < 0)
+			return has;
+		if (has && (profile & 0xffff) == PROFILE_DRIVE)
+			return 1;
+	}
+	return ret < 0 ? ret : 0;
+}
+
+/* What its objects say; @kind stays without them. Return: 0, or a negative errno: no answer. */
+static int read_kind(struct ect_handle *h, u64 device, unsigned int *kind)
+{
+	u32 type, address;
+	int ret = read_u32(h, device, 0x1000, 0, &type), drive;
+
+	if (ret <= 0)
+		return ret;
+	type &= 0xffff;
+	drive = type == PROFILE_MODULAR ? has_drive(h, device) : type == PROFILE_DRIVE;
+	if (drive < 0)
+		return drive;
+	if (drive) {
+		*kind = ECT_KIND_DRIVE;
+		return 0;
+	}
+	ret = read_u32(h, device, 0xf980, 1, &address);
+	if (ret > 0)
+		*kind = ECT_KIND_SAFETY;
+	return ret < 0 ? ret : 0;
 }
 
 int ect_kind_read(struct ect_handle *h, const struct ect_slave *s, unsigned int *kind)
 {
 	bool safety;
-	u32 type, address;
 	int ret = named_safety(h, s, &safety);
 
 	*kind = safety ? ECT_KIND_SAFETY :
 		s->mbox_protocols & MBOX_SOE ? ECT_KIND_DRIVE : ECT_KIND_IO;
 	if (ret || *kind != ECT_KIND_IO || !(s->mbox_protocols & MBOX_COE))
 		return ret;
-	ret = read_u32(h, s->device, 0x1000, 0, &type);
-	if (ret == -EIO)
+	ret = read_kind(h, s->device, kind);
+	if (!ret)
 		return 0;
-	if (ret) {
-		*kind = ECT_KIND_UNKNOWN;
-		return ret == -ENODEV || ret == -EINTR ? ret : 0;
-	}
-	if ((type & 0xffff) == PROFILE_DRIVE ||
-	    ((type & 0xffff) == PROFILE_MODULAR && has_drive(h, s->device)))
-		*kind = ECT_KIND_DRIVE;
-	else if (!read_u32(h, s->device, 0xf980, 1, &address))
-		*kind = ECT_KIND_SAFETY;
-	return 0;
+	*kind = ECT_KIND_UNKNOWN;
+	return ret == -ENODEV || ret == -EINTR ? ret : 0;
 }

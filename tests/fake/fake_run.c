@@ -203,11 +203,21 @@ static int type(struct ec_ioc_sdo *x)
 		{ "modular", 0x1000, 0, 5001 }, { "modular", 0xf010, 0, 2 },
 		{ "modular", 0xf010, 1, 5001 }, { "modular", 0xf010, 2, 402 },
 		{ "safety", 0x1000, 0, 5001 }, { "safety", 0xf980, 1, 7 },
+		{ "many", 0x1000, 0, 5001 }, { "many", 0xf010, 0, 65 },
+		{ "io", 0x1000, 0, 5001 }, { "io", 0xf010, 0, 2 },
 	};
+	/* INDEX:SUBINDEX:CODE in hex, decimal and hex: the slave refuses that object */
+	const char *code = getenv("FAKE_ABORT");
+	unsigned int index, sub, abort_code;
 	const char *type = getenv("FAKE_TYPE");
 
 	if (type && !strcmp(type, "mute"))
 		return fake_fail(ETIMEDOUT, "slave 2 has not answered");
+	if (code && sscanf(code, "%x:%u:%x", &index, &sub, &abort_code) == 3 &&
+	    x->index == index && x->subindex == sub) {
+		x->abort_code = abort_code;
+		return fake_fail(EIO, "SDO aborted");
+	}
 	for (size_t i = 0; type && i < LEN(all); i++) {
 		if (strcmp(type, all[i].type) || x->index != all[i].index ||
 		    x->subindex != all[i].sub)

@@ -42,9 +42,23 @@ detach' ]
 	FAKE_TYPE=safety out run --dry-run | grep -q 'el7201: omitted, a safety device'
 	FAKE_TYPE=modular out run --dry-run | grep -q 'el7201: omitted, a drive'
 	FAKE_TYPE=mute out run --dry-run | grep -q 'el7201: omitted, it does not say what it is'
+	FAKE_TYPE=many out run --dry-run | grep -q 'el7201: omitted, it does not say what it is'
 	run ethercat run --include el7201,el99
 	[ "$status" = 1 ]
 	[[ $output == *"Master0 has no slave el99; 'ethercat run --dry-run' shows their names"* ]]
+}
+
+@test "run believes that there is no object only when the slave says that" {
+	local object
+	for object in 1000:0 f010:0 f010:1 f010:2 f980:1; do
+		export FAKE_TYPE=io FAKE_ABORT=$object:06020000
+		out run --dry-run | grep -qx '  2  el7201: to OP'
+		FAKE_ABORT=$object:06090011 out run --dry-run | grep -qx '  2  el7201: to OP'
+		FAKE_ABORT=$object:08000022 out run --dry-run |
+			grep -q 'el7201: omitted, it does not say what it is'
+		FAKE_ABORT=$object:0 out run --dry-run |
+			grep -q 'el7201: omitted, it does not say what it is'
+	done
 }
 
 @test "run leaves nothing when a slave is not in OP, but with --force" {
