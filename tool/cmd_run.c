@@ -222,13 +222,24 @@ static int start(struct dev *d, const struct tool *t, struct plan *p)
 		return dev_fail(d, err, "Master%u: cannot start the cycle", d->master);
 	if (wait_op(d, t, p, &n))
 		return 1;
-	err = ect_run_leave(d->h);
-	if (err)
-		return dev_fail(d, err, "Master%u: cannot leave the cycle to the master",
-				d->master);
 	out_u("in_op", n, "Master%u runs: %zu slave(s) in OP", d->master, n);
 	show_cycle(d);
 	out_text("Outputs are zero. 'ethercat watch' shows values, 'ethercat set' sets outputs, 'ethercat stop' ends it.\n");
+	return 0;
+}
+
+/* The last step: when the process ends before it, the session ends as well. */
+static int leave(struct dev *d)
+{
+	int err = out_finish();
+
+	if (err)
+		return fail("cannot write the output (%s); the bus does not run", strerror(-err));
+	err = ect_run_leave(d->h);
+	if (err)
+		return dev_fail(d, err,
+				"Master%u: cannot leave the cycle to the master; the bus does not run",
+				d->master);
 	return 0;
 }
 
@@ -256,7 +267,7 @@ static int run_master(const struct tool *t, struct dev *d)
 		ret = start(d, t, &p);
 	out_end();
 	plan_free(&p);
-	return ret;
+	return ret || t->dry_run ? ret : leave(d);
 }
 
 static int run(struct tool *t, int argc, char **argv)

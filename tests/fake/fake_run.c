@@ -255,6 +255,8 @@ static int begin(unsigned long request, void *arg)
 		fake_record("activate\n");
 		return 0;
 	case EC_IOC_DETACH:
+		if (getenv("FAKE_STAYS"))
+			return fake_fail(ETIMEDOUT, "the cycle does not run");
 		fake_record("detach\n");
 		return 0;
 	case EC_IOC_OUTPUT:

@@ -72,6 +72,16 @@ detach' ]
 	log_of run --wait 0.1 --force | grep -q detach
 }
 
+@test "run leaves the bus to the master when all is written, so that its end before ends the bus" {
+	export FAKE_LOG=$BATS_TEST_TMPDIR/log
+	"$HERE/build/fake/ethercat" run >/dev/full 2>"$BATS_TEST_TMPDIR/err" && return 1
+	grep -q 'cannot write the output (No space left on device); the bus does not run' \
+		"$BATS_TEST_TMPDIR/err"
+	grep -q '^activate' "$FAKE_LOG"
+	! grep -q '^detach' "$FAKE_LOG" || return 1
+	FAKE_STAYS=1 err run | grep -q 'to the master; the bus does not run'
+}
+
 @test "run reports a missing right, and the owner of the bus" {
 	FAKE_OTHER_SCHED=1 out run |
 		grep -q 'SCHED_OTHER: no right to real-time priority (RLIMIT_RTPRIO)'
