@@ -128,6 +128,7 @@ struct ec_config_flag {
  *	last search; its station address and serial number; the first list of slaves
  *	(bus->lists) whose new slaves may be attached instead; it is lost, and only its
  *	place can bring a slave back
+ * @device: number of the device that it had last, 0: none
  * @slave: attached slave with a reference, or NULL
  */
 struct ec_config {
@@ -168,6 +169,7 @@ struct ec_config {
 		u32 list;
 		bool waits;
 	} lost;
+	u64 device;
 	struct ec_slave *slave;
 };
 

@@ -145,6 +145,51 @@ int ec_detached_begin(struct ec_session *s)
 	return 0;
 }
 
+/* Zero for what is set in @bits bits, with its leases. */
+static void clear_bits_of(struct ec_detached *d, u64 bit, u64 bits)
+{
+	struct lease *l, *tmp;
+
+	lockdep_assert_held(&d->lock);
+	memset(d->image + bit / 8, 0, bits / 8);
+	list_for_each_entry_safe(l, tmp, &d->leases, list)
+		if (l->bit < bit + bits && bit < l->bit + l->bits)
+			drop(d, l);
+}
+
+/**
+ * ec_detached_device() - a configuration gets a slave
+ * @s: session; nothing is cleared when an application has it
+ * @c: its configuration, for whose slave OP is not requested yet
+ *
+ * Outputs that were set for another device become zero, and stay so: it must not act on them. A
+ * device is another one when its number is, even if it only could not be recognized.
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_detached_device(struct ec_session *s, struct ec_config *c)
+{
+	struct ec_detached *d = s->detached;
+	unsigned int i;
+
+	lockdep_assert_held(s->wanted.lock);
+	if (c->device == c->slave->device)
+		return;
+	c->device = c->slave->device;
+	if (!d)
+		return;
+	mutex_lock(&d->lock);
+	for (i = 0; i < c->n_fmmus; i++) {
+		const struct ec_config_fmmu *f = &c->fmmus[i];
+		u64 at = (u64)f->domain->offset + f->offset;
+
+		if (f->dir == EC_CFG_DIR_OUTPUT && !WARN_ON_ONCE(at + f->size > d->bytes))
+			clear_bits_of(d, 8 * at, 8 * (u64)f->size);
+	}
+	ec_cycle_run_give(d->cycle, &d->buffer, d->image);
+	mutex_unlock(&d->lock);
+}
+
 /* Are these bits outputs of the device, which is connected? */
 static bool are_outputs(const struct ec_session *s, const struct ec_ioc_output *o)
 {

@@ -4,6 +4,7 @@
 #include "../bus/ports.h"
 #include "../config/replay_run.h"
 #include "../mailbox/emerg.h"
+#include "detached.h"
 #include "request.h"
 #include "session_slave.h"
 #include "session_units.h"
@@ -113,6 +114,8 @@ bool ec_session_give(struct ec_session *s, struct ec_config *c, struct ec_slave 
 	slave->lost.seen_ns = c->lost.seen_ns;
 	mutex_unlock(&slave->lock);
 	c->slave = slave;
+	/* before OP is requested */
+	ec_detached_device(s, c);
 	WRITE_ONCE(slave->mbox.reply_ms, c->reply_ms);
 	ec_requests_attach(s, c);
 	if (s->wanted.active && !s->ending)

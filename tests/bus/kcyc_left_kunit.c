@@ -201,7 +201,7 @@ static void left_is_not_detached_by_exit(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, set(a, output(a, 0, 1, 42)), -EPERM);
 }
 
-/* The value that is held is sent to a slave that returns; a lease has ended meanwhile. */
+/* Without a serial number a slave that has lost its power may be any: it gets zeros. */
 static void left_values_while_slave_is_gone(struct kunit *test)
 {
 	struct kcyc *a = left(test);
@@ -218,7 +218,63 @@ static void left_values_while_slave_is_gone(struct kunit *test)
 	bus_command(b, "on s2");
 	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
 	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 0ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 0ll);
+	/* it can be set again, by its new number */
+	o.device = bus_slave(b, 1)->device;
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+}
+
+/* Another device at the place of one with values gets none of them, and they do not come back. */
+static void left_values_are_of_one_device(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "segment seed=31\nslave s1 io in=6400 out=6400 serial=1\n"
+			       "slave s2 io in=6400 out=6400 serial=2\n"
+			       "branch none\nslave x io in=6400 out=6400 serial=3\n", 2);
+	struct ec_ioc_output o;
+	struct kcyc *a;
+
+	bus_idle(b);
+	a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+	kcyc_until_op(a);
+	KUNIT_ASSERT_EQ_MSG(test, detach(b), 0, "%s", b->app.reason);
+	o = output(a, 1, 1, 43);
+	o.flags = EC_OUTPUT_FLAG_HOLD;
+	o.lease_ms = 0;
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	o.device = bus_slave(b, 0)->device;
+	o.bit = 8 * kcyc_place(a, 0, 0, 1);
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	o = output(a, 1, 2, 44);
+	o.lease_ms = 60000;
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	/* the same device gets its values again */
+	bus_command(b, "off s2");
+	msleep(3000);
+	bus_command(b, "on s2");
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
+	msleep(100);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 43ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 44ll);
+	bus_command(b, "unplug s1.1");
+	msleep(3000);
+	bus_command(b, "plug s1.1 x.0");
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "x", 1), 0ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "x", 2), 0ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 43ll);
+	/* the lease has gone with the values: a part of its bits can be set */
+	o = output(a, 1, 2, 7);
+	o.bits = 8;
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	bus_command(b, "unplug s1.1");
+	msleep(3000);
+	bus_command(b, "plug s1.1 s2.0");
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 0ll);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 0ll);
 }
 
@@ -230,6 +286,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(left_only_by_its_application),
 	KUNIT_CASE(left_is_not_detached_by_exit),
 	KUNIT_CASE(left_values_while_slave_is_gone),
+	KUNIT_CASE(left_values_are_of_one_device),
 	{ }
 };
 
