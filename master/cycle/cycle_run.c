@@ -240,11 +240,14 @@ void ec_cycle_run_give(struct ec_cycle *c, u32 *buffer, const u8 *image)
 /* The previous application may have exited at any point: the next one gets all buffers again. */
 static void adopt(struct ec_cycle_thread *t)
 {
+	/* it leaves with the outputs that it has given last, and owes none any more */
+	if (READ_ONCE(t->kept)) {
+		take_outputs(t);
+		t->fed = false;
+	}
 	use_image(t);
 	t->given = false;
 	ec_cycle_run_deal(t);
-	/* the application gets the buffers before it sees the flag */
-	smp_store_release(&t->adopt, false);
 	complete(&t->adopted);
 }
 
@@ -268,7 +271,8 @@ static void cycle_run_publish(struct ec_cycle_thread *t)
 	unsigned long flags;
 	unsigned int i;
 
-	if (unlikely(READ_ONCE(t->adopt)))
+	/* a barrier: what was written before the request is seen */
+	if (unlikely(READ_ONCE(t->adopt)) && xchg(&t->adopt, 0))
 		adopt(t);
 	b->cycle = cycle;
 	b->time_ns = t->next_ns;

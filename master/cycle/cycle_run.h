@@ -77,9 +77,12 @@ struct ec_cycle_thread {
 	struct ec_event_rate stalls;
 	/** @stall_told: the present output stall is an event */
 	bool stall_told;
-	/** @adopt: another application is to get the buffers; cleared when it has them */
-	bool adopt;
-	/** @adopted: completed then */
+	/**
+	 * @adopt: 1: another application is to get the buffers; the cycle takes the request, or
+	 * the caller withdraws it, by changing this to 0
+	 */
+	u32 adopt;
+	/** @adopted: it has them: the cycle has taken the request and is done */
 	struct completion adopted;
 	/** @timer: runs cycles in its interrupt */
 	struct hrtimer timer;

@@ -239,12 +239,14 @@ static int redeal(struct ec_cycle *c)
 
 	lockdep_assert_held(c->wanted->lock);
 	reinit_completion(&t->adopted);
-	WRITE_ONCE(t->adopt, true);
-	do {
-		if (!wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
-			return -ETIMEDOUT;
-		/* still set: the completion was that of an earlier call that has timed out */
-	} while (smp_load_acquire(&t->adopt));
+	/* pairs with cycle_run_publish(), which sees @kept as well */
+	smp_store_release(&t->adopt, 1);
+	if (wait_for_completion_timeout(&t->adopted, msecs_to_jiffies(limit_ms)))
+		return 0;
+	if (xchg(&t->adopt, 0))
+		return -ETIMEDOUT;
+	/* the cycle has just taken it */
+	wait_for_completion(&t->adopted);
 	return 0;
 }
 
@@ -278,7 +280,7 @@ int ec_cycle_thread_adopt(struct ec_cycle *c)
  * Cycles without new outputs are not counted as missed any more.
  *
  * Context: Process, lock of the configuration held. Sleeps until the next cycle has begun.
- * Return: 0; -ETIMEDOUT the cycle does not run.
+ * Return: 0; -EINVAL the cycle has ended; -ETIMEDOUT the cycle does not run, nothing has changed.
  */
 int ec_cycle_thread_keep(struct ec_cycle *c, u32 *buffer, u8 *image)
 {
@@ -286,6 +288,8 @@ int ec_cycle_thread_keep(struct ec_cycle *c, u32 *buffer, u8 *image)
 	int ret;
 
 	lockdep_assert_held(c->wanted->lock);
+	if (ec_cycle_thread_ended(c))
+		return -EINVAL;
 	WRITE_ONCE(t->kept, true);
 	ret = redeal(c);
 	if (ret) {

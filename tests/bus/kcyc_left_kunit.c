@@ -77,6 +77,24 @@ static void left_session_continues(struct kunit *test)
 	kcyc_until_op(a);
 }
 
+/* The last outputs of the application stay, and cycles without new ones are not counted. */
+static void left_with_last_outputs(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	u64 missed;
+
+	kcyc_write(a, 42);
+	kcyc_give(a);
+	kcyc_wait_cycles(a, 3);
+	KUNIT_EXPECT_GT(test, kcyc_status(a)->missed, 0ull);
+	KUNIT_ASSERT_EQ_MSG(test, detach(a->c->b), 0, "%s", a->c->b->app.reason);
+	missed = kcyc_status(a)->missed;
+	msleep(100);
+	KUNIT_EXPECT_EQ(test, kcyc_status(a)->missed, missed);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 42ll);
+	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", KCYC_CHANNELS), 42ll);
+}
+
 /* A lease ends to the millisecond, a value without one stays, others are not touched. */
 static void left_leases_end(struct kunit *test)
 {
@@ -280,6 +298,7 @@ static void left_values_are_of_one_device(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(left_session_continues),
+	KUNIT_CASE(left_with_last_outputs),
 	KUNIT_CASE(left_leases_end),
 	KUNIT_CASE(left_lease_is_renewed),
 	KUNIT_CASE(left_refuses_wrong_outputs),
