@@ -16,7 +16,7 @@ int ec_ioc_detach(struct ec_call *call)
 				 "the kernel runs no cycle of this application; call ecrt_master_set_cycle() and activate before it is detached");
 	case -EDOM:
 		return ec_refuse(call, -EINVAL,
-				 "an output stall or the lease of a sync unit would replace outputs that are set; use stall_cycles 0 and no lease");
+				 "an output stall, or a sync unit with a lease, authority or a policy, would replace outputs that are set; use stall_cycles 0 and only units without these");
 	case -EBUSY:
 		return ec_refuse(call, ret,
 				 "a process still has memory of the session mapped; unmap it first");
@@ -40,6 +40,9 @@ static int output_failed(struct ec_call *call, const struct ec_ioc_output *i, in
 		return ec_refuse(call, ret,
 				 "%u bits from bit %u of domain %u on are not outputs of this slave, or the slave is disconnected",
 				 i->bits, i->bit, i->domain);
+	case -EEXIST:
+		return ec_refuse(call, ret,
+				 "a copy of the application writes some of these bits in each cycle");
 	case -EBUSY:
 		return ec_refuse(call, ret,
 				 "some of these bits are set with a lease, together with others; wait for its end, or set exactly the same bits");

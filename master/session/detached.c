@@ -7,6 +7,7 @@
 #include <linux/jiffies.h>
 #include <linux/ktime.h>
 #include <linux/list.h>
+#include <linux/nospec.h>
 #include <linux/slab.h>
 #include <linux/workqueue.h>
 #include "../base/report.h"
@@ -92,10 +93,12 @@ static void end_leases(struct work_struct *work)
 	mutex_unlock(&d->lock);
 }
 
-static bool has_unit_lease(const struct ec_session *s)
+/* Could a sync unit send other outputs than those that are set? */
+static bool has_units_that_replace(const struct ec_session *s)
 {
 	ec_for_each_unit(u, &s->wanted)
-		if (u->what.lease_cycles)
+		if (u->what.lease_cycles || u->what.flags & EC_UNIT_FLAG_AUTHORITY ||
+		    u->what.policy != EC_UNIT_POLICY_CONTINUE)
 			return true;
 	return false;
 }
@@ -107,9 +110,9 @@ static bool has_unit_lease(const struct ec_session *s)
  * From now on it has no application, and none gets it: it ends with ec_session_end_detached().
  *
  * Context: Process, session lock held. Sleeps until the next cycle has begun.
- * Return: 0; -EINVAL the kernel runs no cycle of it; -EDOM it has an output stall or a lease of a
- * sync unit, which would replace outputs that are set; -EBUSY a process has its memory mapped;
- * -ETIMEDOUT the cycle does not run; -ENOMEM.
+ * Return: 0; -EINVAL the kernel runs no cycle of it; -EDOM it has an output stall, or a sync
+ * unit with a lease, authority or a policy, which would replace outputs that are set; -EBUSY a
+ * process has its memory mapped; -ETIMEDOUT the cycle does not run; -ENOMEM.
  */
 int ec_detached_begin(struct ec_session *s)
 {
@@ -120,7 +123,7 @@ int ec_detached_begin(struct ec_session *s)
 	lockdep_assert_held(s->wanted.lock);
 	if (!s->wanted.active || !c->thread || s->ending)
 		return -EINVAL;
-	if (c->setup.kernel.stall_cycles || has_unit_lease(s))
+	if (c->setup.kernel.stall_cycles || has_units_that_replace(s))
 		return -EDOM;
 	/* the session, and its requests */
 	if (kref_read(&c->shared->kref) > 1 + !!s->requests)
@@ -211,6 +214,22 @@ static bool are_outputs(const struct ec_session *s, const struct ec_ioc_output *
 	return false;
 }
 
+/* Does the cycle itself write some of these bits? */
+static bool are_copied(const struct ec_session *s, const struct ec_ioc_output *o)
+{
+	const struct ec_copies *copies = &s->cycle.setup.copies;
+	unsigned int i;
+
+	for (i = 0; i < copies->n; i++) {
+		const struct ec_ioc_copy *x = &copies->list[i];
+
+		if (x->to_domain == o->domain && x->to_bit < (u64)o->bit + o->bits &&
+		    o->bit < (u64)x->to_bit + x->bits)
+			return true;
+	}
+	return false;
+}
+
 /*
  * Replace the lease of exactly these bits by one of @o, or by none. Return: 0; -EBUSY there is one
  * of some of these bits; -ENOSPC, -ENOMEM.
@@ -253,12 +272,14 @@ static int renew(struct ec_detached *d, u64 bit, const struct ec_ioc_output *o)
  *
  * Context: Process, session lock held. May sleep.
  * Return: 0; -EPERM it is the session of an application; -EINVAL number of bits or lease;
- * -ENOENT they are not outputs of this device; -EBUSY a lease of some of these bits, but of others
- * as well, has not ended; -ENOSPC too many leases; -ENOMEM.
+ * -ENOENT they are not outputs of this device; -EEXIST a copy of the cycle writes some of them;
+ * -EBUSY a lease of some of these bits, but of others as well, has not ended; -ENOSPC too many
+ * leases; -ENOMEM.
  */
 int ec_detached_set(struct ec_session *s, const struct ec_ioc_output *o)
 {
 	struct ec_detached *d = s->detached;
+	u32 domain;
 	u64 bit;
 	int ret;
 
@@ -271,7 +292,10 @@ int ec_detached_set(struct ec_session *s, const struct ec_ioc_output *o)
 		return -EINVAL;
 	if (o->domain >= s->wanted.n_domains || !are_outputs(s, o))
 		return -ENOENT;
-	bit = (u64)s->wanted.domains[o->domain]->offset * 8 + o->bit;
+	if (are_copied(s, o))
+		return -EEXIST;
+	domain = array_index_nospec(o->domain, s->wanted.n_domains);
+	bit = (u64)s->wanted.domains[domain]->offset * 8 + o->bit;
 	mutex_lock(&d->lock);
 	ret = renew(d, bit, o);
 	if (!ret) {

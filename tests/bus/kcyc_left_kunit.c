@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* A session that its application has left to the master, and outputs that commands set. */
 #include "kcyc.h"
+#include "units.h"
 #include "master/bus/slave.h"
 #include "master/session/reserve.h"
 
@@ -206,6 +207,53 @@ static void left_only_by_its_application(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), -EPERM);
 }
 
+/* Sync units that send other outputs than those that are set; outputs that the cycle writes. */
+static void left_sets_what_is_sent(struct kunit *test)
+{
+	static const struct ec_ioc_unit units[] = {
+		{ .policy = EC_UNIT_POLICY_ZERO }, { .policy = EC_UNIT_POLICY_HOLD },
+		{ .flags = EC_UNIT_FLAG_AUTHORITY }, { .policy = EC_UNIT_POLICY_CONTINUE },
+	};
+	struct bus *b = kcyc_bus(test);
+	struct ec_ioc_output o;
+	struct kcyc *a;
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(units); i++) {
+		struct ec_ioc_unit u = units[i];
+		struct ec_ioc_copy c;
+
+		strscpy(u.name, "unit", sizeof(u.name));
+		a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+		KUNIT_ASSERT_EQ_MSG(test, ec_ioc(&b->app, EC_IOC_UNIT, &u), 0, "%s",
+				    b->app.reason);
+		units_put(b, 0, u.index);
+		c = (struct ec_ioc_copy){
+			.from_bit = 8 * bus_config(b, 0)->fmmus[1].offset, .bits = 32,
+			.to_bit = 8 * bus_config(b, 0)->fmmus[0].offset + 32,
+		};
+		KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_COPY, &c), 0);
+		KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
+		if (i == ARRAY_SIZE(units) - 1)
+			break;
+		KUNIT_EXPECT_EQ(test, detach(b), -EINVAL);
+		KUNIT_EXPECT_NOT_NULL_MSG(test, strstr(b->app.reason, "only units without these"),
+					  "%s", b->app.reason);
+		bus_end(b);
+	}
+	kcyc_until_op(a);
+	KUNIT_ASSERT_EQ_MSG(test, detach(b), 0, "%s", b->app.reason);
+	KUNIT_EXPECT_EQ(test, set(a, output(a, 0, 2, 1)), -EEXIST);
+	o = output(a, 0, 1, 1);
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+	o = output(a, 0, 2, 1);
+	o.bit += 31;
+	o.bits = 2;
+	KUNIT_EXPECT_EQ(test, set(a, o), -EEXIST);
+	o.bit++;
+	KUNIT_EXPECT_EQ(test, set(a, o), 0);
+}
+
 /* What was detached when its application exited is the session of others. */
 static void left_is_not_detached_by_exit(struct kunit *test)
 {
@@ -303,6 +351,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(left_lease_is_renewed),
 	KUNIT_CASE(left_refuses_wrong_outputs),
 	KUNIT_CASE(left_only_by_its_application),
+	KUNIT_CASE(left_sets_what_is_sent),
 	KUNIT_CASE(left_is_not_detached_by_exit),
 	KUNIT_CASE(left_values_while_slave_is_gone),
 	KUNIT_CASE(left_values_are_of_one_device),
