@@ -248,10 +248,27 @@ static int item(struct reader *r, const struct type *type, void *to)
 	return 0;
 }
 
+/* libyaml compares each tag directive with all before it, and a bus file has no tags */
+static int directives(struct reader *r)
+{
+	const char *at = r->data, *end = r->data + r->size;
+
+	for (size_t line = 1; at && at < end; line++) {
+		if (*at == '%')
+			return ecb_report(r->e, r->file, line, 1,
+					  "a line that begins with '%%'; expected none, since bus files have no directives");
+		at = memchr(at, '\n', (size_t)(end - at));
+		at = at ? at + 1 : NULL;
+	}
+	return 0;
+}
+
 static int document(struct reader *r)
 {
-	int ret = next(r);	/* begin of the stream */
+	int ret = directives(r);
 
+	if (!ret)
+		ret = next(r);	/* begin of the stream */
 	if (!ret)
 		ret = next(r);
 	if (!ret && r->event.type == YAML_STREAM_END_EVENT)

@@ -179,16 +179,21 @@ static int slave(struct check *c, size_t i)
 	if (!s->parent != (s->port == ECB_NONE8))
 		return BAD(c, s->line, "slave '%s' needs both 'parent' and 'port', or none of them",
 			   s->name);
-	for (k = 0; s->group && k < m->group_count && strcmp(s->group, m->groups[k]->name); k++)
-		nearest = text_nearer(s->group, nearest, m->groups[k]->name);
-	if (s->group && k == m->group_count)
+	for (k = 0; s->group && k < m->group_count && strcmp(s->group, m->groups[k]->name);)
+		k++;
+	if (s->group && k == m->group_count) {
+		for (k = 0; k < m->group_count; k++)
+			nearest = text_nearer(s->group, nearest, m->groups[k]->name);
 		return missing(c, s->line, "hot connect group", s->group, nearest);
-	nearest = NULL;
+	}
 	for (k = 0; s->sync_unit && k < m->sync_unit_count &&
-	     strcmp(s->sync_unit, m->sync_units[k]->name); k++)
-		nearest = text_nearer(s->sync_unit, nearest, m->sync_units[k]->name);
-	if (s->sync_unit && k == m->sync_unit_count)
+	     strcmp(s->sync_unit, m->sync_units[k]->name);)
+		k++;
+	if (s->sync_unit && k == m->sync_unit_count) {
+		for (k = 0; k < m->sync_unit_count; k++)
+			nearest = text_nearer(s->sync_unit, nearest, m->sync_units[k]->name);
 		return missing(c, s->line, "sync unit", s->sync_unit, nearest);
+	}
 	ret = pdos(c, s);
 	for (k = 0; k < s->startup_count && !ret; k++)
 		ret = command(c, s->startup[k]);

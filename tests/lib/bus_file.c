@@ -114,6 +114,8 @@ static const struct {
 	{ "ethercat: &x 1\n", "t:1:11: anchor 'x'; expected a value without it" },
 	{ "ethercat: !!int 1\n", "tag 'tag:yaml.org,2002:int'; expected a value without it" },
 	{ "ethercat: 1\nmasters: *x\n", "t:2:10: alias '*x'; expected the value itself" },
+	{ "%TAG !a! b\n---\nethercat: 1\nmasters: []\n", "t:1:1: a line that begins with '%'" },
+	{ "ethercat: 1\nmasters: []\n...\n%YAML 1.1\n", "t:4:1: a line that begins with '%'" },
 	{ "&a [*a,*a,*a,*a,*a,*a,*a,*a]", "t:1:1: anchor 'a'" },
 	{ "ethercat: 1\nmasters: [\n", "expected YAML" },
 	{ "ethercat:\t1: 2\n\t- 3", "expected YAML" },
@@ -168,6 +170,7 @@ static void hostile(void)
 	many(SLAVE "    pdos:\n", "    - {index: 1, sm: 1}\n", 1025, "pdos: expected at most 1024");
 	many("ethercat: 1\nmasters:\n", "- {}\n", 33, "masters: expected at most 32");
 	many(SDO "      sdo: 0x8000:01\n      data: ", "01 ", 5000, "expected 1 to 4096 bytes");
+	many("", "%TAG !a! b\n", 1000000, "t:1:1: a line that begins with '%'");
 	row("ethercat: 1\0x", 13, "t:1:12: control characters are not allowed");
 }
 
