@@ -44,7 +44,7 @@ static int save_to(const struct tool *t, const char *path, const struct ecb_bus 
 	struct save s;
 	struct stat st;
 
-	if (!t->force && !lstat(path, &st) && S_ISREG(st.st_mode) && st.st_size)
+	if (!t->force && !stat(path, &st) && S_ISREG(st.st_mode) && st.st_size)
 		return fail("%s exists; -f overwrites it", path);
 	if (save_begin(&s, path))
 		return 1;

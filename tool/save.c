@@ -22,8 +22,11 @@ static FILE *part_file(char *part, const struct stat *old)
 		return NULL;
 	f = fchmod(fd, old ? old->st_mode & 07777 : 0666 & ~mask) ? NULL : fdopen(fd, "wb");
 	if (!f) {
+		int err = errno;
+
 		close(fd);
 		remove(part);
+		errno = err;
 	}
 	return f;
 }
@@ -41,18 +44,25 @@ int save_begin(struct save *s, const char *path)
 	size_t size = strlen(path) + sizeof(".XXXXXX");
 	struct stat st;
 	bool there = !lstat(path, &st);
+	int err = 0;
 
 	*s = (struct save){ .path = path, .part = malloc(size) };
 	if (!s->part)
 		return fail("out of memory");
 	snprintf(s->part, size, "%s.XXXXXX", path);
-	if (!there || S_ISREG(st.st_mode))
+	if (!there || S_ISREG(st.st_mode)) {
 		s->f = part_file(s->part, there ? &st : NULL);
+		err = s->f ? 0 : errno;
+	}
 	if (s->f)
 		return 0;
 	free(s->part);
 	s->part = NULL;
-	s->f = fopen(path, "wb");
+	/* a full disk would leave neither the old content nor the new one */
+	if (!err || err == EACCES || err == EPERM || err == EROFS || err == ENAMETOOLONG)
+		s->f = fopen(path, "wb");
+	else
+		errno = err;
 	return s->f ? 0 : fail("cannot write '%s': %s", path, strerror(errno));
 }
 

@@ -26,8 +26,24 @@ setup() {
 	[ "$(cat "$BATS_TEST_TMPDIR/mine")" = mine ]
 	ethercat bus save -f "$BATS_TEST_TMPDIR/mine"
 	ethercat bus check "$BATS_TEST_TMPDIR/mine"
+	echo mine >"$BATS_TEST_TMPDIR/mine"
+	ln -s mine "$BATS_TEST_TMPDIR/link"
+	run ethercat bus save "$BATS_TEST_TMPDIR/link"
+	[ "$status" -eq 1 ]
+	[ "$(cat "$BATS_TEST_TMPDIR/mine")" = mine ]
 	run ethercat bus save /dev/full
 	[ "$status" -eq 1 ]
+}
+
+@test "bus save leaves the old file when the disk takes no new one" {
+	unshare -m true 2>/dev/null || skip "needs a mount namespace"
+	export -f ethercat
+	export HERE
+	mkdir "$BATS_TEST_TMPDIR/disk"
+	unshare -m bash -c '
+		mount -t tmpfs -o nr_inodes=2 none "$0" && echo mine >"$0/mine" &&
+		! ethercat bus save -f "$0/mine" && [ "$(cat "$0/mine")" = mine ]' \
+		"$BATS_TEST_TMPDIR/disk"
 }
 
 # the difference that a change of the file makes, without the name of the file
