@@ -196,8 +196,8 @@ int ect_names_read(struct ect_handle *h, struct ect_list **list)
 	return ret;
 }
 
-/* Entries of a SyncManager of the configuration; @keep false: only counts them. */
-static int sm_entries(struct ect_handle *h, struct slot *t, unsigned int sm, bool keep)
+/* Entries of a SyncManager of the configuration: keeps at most @room; without room only counts. */
+static int sm_entries(struct ect_handle *h, struct slot *t, unsigned int sm, size_t room)
 {
 	struct ect_config_sm x = { .struct_size = sizeof(x) };
 	int ret = ect_config_sm(h, t->config, sm, &x);
@@ -210,9 +210,12 @@ static int sm_entries(struct ect_handle *h, struct slot *t, unsigned int sm, boo
 		for (unsigned int k = 0; k < p.entry_count && !ret; k++) {
 			struct ect_pdo_entry e = { .struct_size = sizeof(e) };
 
-			if (keep)
+			/* more than were counted: another session has begun */
+			if (room && t->n == room)
+				return -EAGAIN;
+			if (room)
 				ret = ect_config_entry(h, t->config, sm, i, k, &e);
-			if (keep && !ret)
+			if (room && !ret)
 				t->entries[t->n] = (struct entry){
 					.sm = (u8)sm, .bit = bit, .bits = e.bits, .index = e.index,
 					.subindex = e.subindex, .pdo_index = p.index,
@@ -230,7 +233,7 @@ static int read_entries(struct ect_handle *h, struct slot *t)
 	int ret = 0;
 
 	for (unsigned int sm = 0; sm < 16 && !ret; sm++)
-		ret = sm_entries(h, t, sm, false);
+		ret = sm_entries(h, t, sm, 0);
 	n = t->n;
 	t->n = 0;
 	t->entries = calloc(n + 1, sizeof(*t->entries));
@@ -238,9 +241,11 @@ static int read_entries(struct ect_handle *h, struct slot *t)
 	if (!t->entries || !t->names)
 		return ect_no_memory(h);
 	/* PDOs of an active session do not change; another one may have begun */
-	for (unsigned int sm = 0; sm < 16 && !ret && t->n < n; sm++)
-		ret = sm_entries(h, t, sm, true);
-	return ret ? ret : t->n == n ? 0 : -EAGAIN;
+	for (unsigned int sm = 0; sm < 16 && !ret && n; sm++)
+		ret = sm_entries(h, t, sm, n);
+	if (ret == -EAGAIN || (!ret && t->n != n))
+		return ect_fail(h, -EAGAIN, "another session has begun meanwhile; repeat the command");
+	return ret;
 }
 
 /* What the slave calls its entries, as struct text */

@@ -2,7 +2,8 @@
 /*
  * Fake master: a bus that runs without an application. FAKE_BUS=run: it runs, with slaves 1 and 2,
  * or as the application of FAKE_OWNER. Otherwise a program may begin it. FAKE_STUCK: so many of
- * its slaves come to OP. FAKE_CHANGES: so many reads show another position.
+ * its slaves come to OP. FAKE_CHANGES: so many reads show another position. FAKE_GROWS: after so
+ * many reads PDOs have more entries.
  */
 #include <errno.h>
 #include <stdlib.h>
@@ -103,9 +104,13 @@ static int pdo(struct ec_ioc_config_pdo *x)
 		.pdo_pos = (__u16)x->pdo_pos,
 	};
 	int ret = fake_slave_command(EC_IOC_PDO, &from);
+	static int reads;
 
 	x->pdo_index = from.index;
 	x->entry_count = from.entry_count;
+	/* another session begins after so many reads */
+	if (getenv("FAKE_GROWS") && reads++ >= atoi(getenv("FAKE_GROWS")))
+		x->entry_count += 200;
 	return ret;
 }
 
@@ -113,7 +118,8 @@ static int entry(struct ec_ioc_config_entry *x)
 {
 	struct ec_ioc_pdo_entry from = {
 		.slave.position = (__u16)positions[x->index], .sm = x->sm,
-		.pdo_pos = (__u16)x->pdo_pos, .entry_pos = (__u16)x->entry_pos,
+		.pdo_pos = (__u16)x->pdo_pos,
+		.entry_pos = getenv("FAKE_GROWS") ? 0 : (__u16)x->entry_pos,
 	};
 	int ret = fake_slave_command(EC_IOC_PDO_ENTRY, &from);
 

@@ -215,3 +215,14 @@ is_narrow() {
 		grep -q 'by process 7 (demo); stop that application'
 	FAKE_BUS=idle err stop | grep -q 'Master0 does not run'
 }
+
+@test "data --names refuses PDOs that grow while they are read" {
+	for reads in 1 2 3; do
+		FAKE_BUS=run FAKE_GROWS=$reads run ethercat data --names
+		echo "$output"
+		[ "$status" -eq 1 ]
+		[[ $output == *"another session has begun meanwhile; repeat the command"* ]] && seen=1
+		[[ $output != *AddressSanitizer* ]]
+	done
+	[ "$seen" = 1 ]
+}
