@@ -6,6 +6,10 @@
 #include "match.h"
 #include "table.h"
 
+/* a pair in the order; 4096 of them, the most that WORK_MAX allows, fit into 16 bits */
+#define WEIGHT_IDENTITY	4
+#define WEIGHT_PLACE	6
+#define WEIGHT_SIGN	12
 #define WORK_MAX	(16u << 20)	/* pairs that are compared; beyond it only in order */
 
 static int side_init(struct side *s, const struct ecb_master *m)
@@ -24,6 +28,7 @@ static int side_init(struct side *s, const struct ecb_master *m)
 		seat = s->slaves[i]->parent ? table_find(&names, s->slaves[i]->parent) : NULL;
 		if (seat && seat->key)
 			s->parent[i] = seat->value;
+		s->placed |= s->parent[i] != NO_SLAVE;
 		seat = table_find(&names, s->slaves[i]->name);
 		seat->key = s->slaves[i]->name;
 		seat->value = i;
@@ -93,59 +98,86 @@ static size_t left(const struct side *s, size_t *to)
 	return n;
 }
 
-/* too many for a table: the next one of the same identity */
-static void greedy(struct match *m, const size_t *a, size_t n, const size_t *b, size_t k)
+/* whether two slaves stand at the same port of what is, or could be, the same slave */
+static bool same_place(const struct match *m, size_t a, size_t b)
 {
-	size_t from = 0;
+	size_t pa = m->a.parent[a], pb = m->b.parent[b];
 
-	for (size_t i = 0; i < n; i++)
-		for (size_t j = from; j < k && j < from + 256; j++)
-			if (same_identity(m->a.slaves[a[i]], m->b.slaves[b[j]])) {
-				join(m, a[i], b[j]);
+	if (!m->a.placed || !m->b.placed)
+		return true;
+	if (pa == NO_SLAVE || pb == NO_SLAVE)
+		return pa == pb;
+	if (m->a.slaves[a]->port != m->b.slaves[b]->port)
+		return false;
+	if (m->a.peer[pa] != NO_SLAVE || m->b.peer[pb] != NO_SLAVE)
+		return m->a.peer[pa] == pb;
+	return same_identity(m->a.slaves[pa], m->b.slaves[pb]);
+}
+
+/* what a pair counts in the order: 0 is no pair; those by signs hold the others between them */
+static unsigned int weight(const struct match *m, size_t a, size_t b)
+{
+	if (m->a.peer[a] != NO_SLAVE || m->b.peer[b] != NO_SLAVE)
+		return m->a.peer[a] == b ? WEIGHT_SIGN : 0;
+	if (!same_identity(m->a.slaves[a], m->b.slaves[b]))
+		return 0;
+	return same_place(m, a, b) ? WEIGHT_PLACE : WEIGHT_IDENTITY;
+}
+
+/* too many for a table: the next one of the same identity */
+static void greedy(struct match *m, size_t a, size_t n, size_t b, size_t k)
+{
+	size_t from = b;
+
+	for (size_t i = a; i < a + n; i++)
+		for (size_t j = from; j < b + k && j < from + 256; j++)
+			if (weight(m, i, j)) {
+				join(m, i, j);
 				from = j + 1;
 				break;
 			}
 }
 
-/* the longest common sequence of identities */
-static int in_order(struct match *m, const size_t *a, size_t n, const size_t *b, size_t k)
+/* the common sequence of the greatest weight */
+static int in_order(struct match *m)
 {
-	uint16_t *len, *row;
-	size_t i = 0, j = 0;
+	size_t a = 0, b = 0, n = m->a.count, k = m->b.count;
+	uint16_t *sum, *row;
 
-#define SAME(x, y)	same_identity(m->a.slaves[a[x]], m->b.slaves[b[y]])
-	while (n && k && SAME(0, 0)) {
-		join(m, *a++, *b++);
-		n--;
-		k--;
-	}
-	while (n && k && SAME(n - 1, k - 1))
-		join(m, a[--n], b[--k]);
+	for (; n && k && weight(m, a, b) >= WEIGHT_PLACE; n--, k--)
+		join(m, a++, b++);
+	for (; n && k && weight(m, a + n - 1, b + k - 1) >= WEIGHT_PLACE; n--, k--)
+		join(m, a + n - 1, b + k - 1);
 	if (n && k > WORK_MAX / n) {
 		greedy(m, a, n, b, k);
 		return 0;
 	}
-	len = calloc((n + 1) * (k + 1), sizeof(*len));
-	if (!len)
+	sum = calloc((n + 1) * (k + 1), sizeof(*sum));
+	if (!sum)
 		return -ENOMEM;
-	for (i = n; i--;) {
-		row = len + i * (k + 1);
-		for (j = k; j--;)
-			row[j] = SAME(i, j) ? row[k + 1 + j + 1] + 1 :
-				row[j + 1] > row[k + 1 + j] ? row[j + 1] : row[k + 1 + j];
+	for (size_t i = n; i--;) {
+		row = sum + i * (k + 1);
+		for (size_t j = k; j--;) {
+			unsigned int w = weight(m, a + i, b + j);
+
+			row[j] = row[j + 1] > row[k + 1 + j] ? row[j + 1] : row[k + 1 + j];
+			if (w && w + row[k + 1 + j + 1] > row[j])
+				row[j] = (uint16_t)(w + row[k + 1 + j + 1]);
+		}
 	}
-	for (i = j = 0; i < n && j < k;) {
-		row = len + i * (k + 1);
-		if (SAME(i, j))
-			join(m, a[i++], b[j++]);
+	for (size_t i = 0, j = 0; i < n && j < k;) {
+		unsigned int w = weight(m, a + i, b + j);
+
+		row = sum + i * (k + 1);
+		if (w && row[j] == w + row[k + 1 + j + 1])
+			join(m, a + i++, b + j++);
 		else if (row[j + 1] > row[k + 1 + j])
 			j++;
 		else
 			i++;
 	}
-	free(len);
+	free(sum);
 	return 0;
-#undef SAME
 }
 
 size_t match_parent(const struct side *s, size_t i, unsigned int *port)
@@ -190,9 +222,7 @@ int match_slaves(struct match *m, const struct ecb_master *a, const struct ecb_m
 	if (!rest)
 		return -ENOMEM;
 	by_signs(m, by_name);
-	n = left(&m->a, rest);
-	k = left(&m->b, rest + n);
-	ret = in_order(m, rest, n, rest + n, k);
+	ret = in_order(m);
 	/* the same device elsewhere */
 	n = left(&m->a, rest);
 	k = left(&m->b, rest + n);

@@ -13,6 +13,7 @@ struct side {
 	size_t count;
 	size_t *peer;		/* index on the other side, or NO_SLAVE */
 	size_t *parent;		/* index on this side, or NO_SLAVE */
+	bool placed;		/* parents are known */
 };
 
 struct match {

@@ -239,6 +239,80 @@ static void made(void)
 	}
 }
 
+/* slaves as "name parent port alias"; e is a coupler, the others are equal terminals */
+static struct ecb_bus *line_of_slaves(const char *slaves)
+{
+	struct ecb_bus *bus = ecb_bus_new();
+	struct ecb_master *m = ecb_master_add(bus);
+	char name[8], parent[8];
+	unsigned int alias, port;
+	struct ecb_error e;
+	int n;
+
+	for (; sscanf(slaves, " %7s %7s %u %u%n", name, parent, &port, &alias, &n) == 4;
+	     slaves += n) {
+		struct ecb_slave *s = ecb_slave_add(bus, m);
+
+		s->vendor = 2;
+		s->product = *name == 'e' ? 1 : 2;
+		s->alias = (uint16_t)alias;
+		s->name = ecb_bus_text(bus, name);
+		if (*parent != '-') {
+			s->parent = ecb_bus_text(bus, parent);
+			s->port = (uint8_t)port;
+		}
+	}
+	if (ecb_bus_finish(bus, NULL, &e)) {
+		printf("%s: %s\n", slaves, e.text);
+		bad++;
+	}
+	return bus;
+}
+
+static void note(void *ctx, const struct ecb_difference *d)
+{
+	static const char kinds[] = {
+		[ECB_MISSING] = '-', [ECB_EXTRA] = '+', [ECB_EXCHANGED] = 'x', [ECB_MOVED] = 'm',
+		[ECB_VALUE_DIFFERS] = 'v',
+	};
+	char *to = ctx;
+
+	if (strlen(to) < 64)
+		sprintf(to + strlen(to), "%c%s ", kinds[d->kind], d->slave);
+}
+
+static void matches(void)
+{
+#define TWO	"e1 - 0 1  t1 e1 1 0  t2 t1 1 0  e2 e1 2 2  t3 e2 1 0  t4 t3 1 0"
+#define BRANCH	"e1 - 0 0  t1 e1 1 0  t2 t1 1 0  t3 e1 2 0"
+	static const struct { const char *a, *b, *differences; } cases[] = {
+		{ TWO, TWO, "" },
+		/* an alias is a border */
+		{ TWO, "e1 - 0 1  m1 e1 1 0  e2 e1 2 2  m3 e2 1 0  m4 m3 1 0", "-t2 " },
+		{ TWO, "e1 - 0 1  m1 e1 1 0  m2 m1 1 0  mx m2 1 0  e2 e1 2 2  m3 e2 1 0  m4 m3 1 0",
+		  "+mx " },
+		{ TWO, "e1 - 0 1  m1 e1 1 0  m2 m1 1 0  e2 e1 2 2  m3 e2 1 0", "-t4 " },
+		/* twins: ports and parents say which one */
+		{ BRANCH, "e1 - 0 0  m1 e1 1 0  m3 e1 2 0", "-t2 " },
+		{ BRANCH, "e1 - 0 0  m1 e1 1 0  m2 m1 1 0", "-t3 " },
+		{ BRANCH, "e1 - 0 0  m3 e1 2 0", "-t1 -t2 " },
+	};
+
+	for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+		struct ecb_bus *a = line_of_slaves(cases[i].a), *b = line_of_slaves(cases[i].b);
+		char got[128] = "";
+
+		ecb_compare(a, b, ECB_COMPARE_MACHINE, note, got);
+		if (strcmp(got, cases[i].differences)) {
+			printf("%s\n%s\n: '%s', expected '%s'\n", cases[i].a, cases[i].b, got,
+			       cases[i].differences);
+			bad++;
+		}
+		ecb_bus_free(a);
+		ecb_bus_free(b);
+	}
+}
+
 int main(int argc, char **argv)
 {
 	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++)
@@ -247,5 +321,6 @@ int main(int argc, char **argv)
 	for (int i = 1; i < argc; i++)
 		whole(argv[i]);
 	made();
+	matches();
 	return bad != 0;
 }
