@@ -127,6 +127,29 @@ static int read_slave(struct dev *d, const struct ect_slave *s, struct ecb_slave
 	return into.wish->pdos ? read_pdos(d, s, to) : 0;
 }
 
+/* the names that data, watch and set use */
+static int name_slaves(const struct ect_list *list, struct ecb_master *m)
+{
+	struct ecb_slave_name *names = calloc(m->slave_count + 1, sizeof(*names));
+	const struct ect_slave *s;
+	int ret;
+
+	if (!names)
+		return no_memory();
+	for (size_t i = 0; i < m->slave_count && (s = ect_list_get(list, i)); i++)
+		names[i] = (struct ecb_slave_name){
+			.order = s->order, .text = s->name, .group = s->group,
+		};
+	ret = ecb_name_slaves(names, m->slave_count) ? no_memory() : 0;
+	for (size_t i = 0; i < m->slave_count && !ret; i++) {
+		m->slaves[i]->name = ecb_bus_text(into.bus, names[i].name);
+		if (!m->slaves[i]->name)
+			ret = no_memory();
+	}
+	free(names);
+	return ret;
+}
+
 /* needs the names */
 static int read_ports(const struct ect_list *list, struct ecb_master *m)
 {
@@ -165,6 +188,8 @@ static int each(const struct tool *t, struct dev *d)
 
 		ret = to ? read_slave(d, s, to) : no_memory();
 	}
+	if (!ret)
+		ret = name_slaves(list, m);
 	if (!ret && ecb_bus_finish(into.bus, "machine", &e))
 		ret = fail("%s", e.text);
 	if (!ret)

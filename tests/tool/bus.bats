@@ -135,3 +135,11 @@ differs() {	# differs SED EXPECTED
 		ethercat bus show "$x" >/dev/null
 	done
 }
+
+@test "bus save calls slaves as data does, whatever the order text" {
+	export FAKE_ORDER=---
+	ethercat bus save >"$BATS_TEST_TMPDIR/out"
+	cat "$BATS_TEST_TMPDIR/out"
+	[ "$(grep -c 'name: el2008_8_ch_output$' "$BATS_TEST_TMPDIR/out")" = 1 ]
+	FAKE_BUS=run ethercat data --names | grep -q '^el2008_8_ch_output\.'
+}
