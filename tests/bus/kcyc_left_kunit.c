@@ -208,7 +208,7 @@ static void left_only_by_its_application(struct kunit *test)
 }
 
 /* Sync units that send other outputs than those that are set; outputs that the cycle writes. */
-static void left_sets_what_is_sent(struct kunit *test)
+static void left_refuses_outputs_not_sent(struct kunit *test)
 {
 	static const struct ec_ioc_unit units[] = {
 		{ .policy = EC_UNIT_POLICY_ZERO }, { .policy = EC_UNIT_POLICY_HOLD },
@@ -351,7 +351,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(left_lease_is_renewed),
 	KUNIT_CASE(left_refuses_wrong_outputs),
 	KUNIT_CASE(left_only_by_its_application),
-	KUNIT_CASE(left_sets_what_is_sent),
+	KUNIT_CASE(left_refuses_outputs_not_sent),
 	KUNIT_CASE(left_is_not_detached_by_exit),
 	KUNIT_CASE(left_values_while_slave_is_gone),
 	KUNIT_CASE(left_values_are_of_one_device),
