@@ -127,6 +127,26 @@ static int read_slave(struct dev *d, const struct ect_slave *s, struct ecb_slave
 	return into.wish->pdos ? read_pdos(d, s, to) : 0;
 }
 
+/* An alias is of one slave in a file: the first one that has it. */
+static void signs_once(struct ecb_master *m)
+{
+	u8 alias[65536 / 8] = { 0 }, id[65536 / 8] = { 0 };
+
+	for (size_t i = 0; i < m->slave_count; i++) {
+		struct ecb_slave *s = m->slaves[i];
+
+		if (s->alias && alias[s->alias / 8] >> s->alias % 8 & 1) {
+			note("slave %zu has alias %u, as another slave before it; the bus file omits it",
+			     i, s->alias);
+			s->alias = 0;
+		}
+		if (id[s->identification / 8] >> s->identification % 8 & 1)
+			s->identification = 0;
+		alias[s->alias / 8] |= (u8)(1 << s->alias % 8);
+		id[s->identification / 8] |= (u8)(1 << s->identification % 8);
+	}
+}
+
 /* the names that data, watch and set use */
 static int name_slaves(const struct ect_list *list, struct ecb_master *m)
 {
@@ -190,6 +210,8 @@ static int each(const struct tool *t, struct dev *d)
 	}
 	if (!ret)
 		ret = name_slaves(list, m);
+	if (!ret)
+		signs_once(m);
 	if (!ret && ecb_bus_finish(into.bus, "machine", &e))
 		ret = fail("%s", e.text);
 	if (!ret)

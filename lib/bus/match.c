@@ -25,13 +25,16 @@ static int side_init(struct side *s, const struct ecb_master *m)
 		return -ENOMEM;
 	for (size_t i = 0; i < s->count; i++) {
 		s->peer[i] = s->parent[i] = NO_SLAVE;
+		seat = table_find(&names, s->slaves[i]->name);
+		seat->key = s->slaves[i]->name;
+		seat->value = i;
+	}
+	/* a parent may stand behind */
+	for (size_t i = 0; i < s->count; i++) {
 		seat = s->slaves[i]->parent ? table_find(&names, s->slaves[i]->parent) : NULL;
 		if (seat && seat->key)
 			s->parent[i] = seat->value;
 		s->placed |= s->parent[i] != NO_SLAVE;
-		seat = table_find(&names, s->slaves[i]->name);
-		seat->key = s->slaves[i]->name;
-		seat->value = i;
 	}
 	table_free(&names);
 	return 0;
@@ -182,12 +185,12 @@ static int in_order(struct match *m)
 
 size_t match_parent(const struct side *s, size_t i, unsigned int *port)
 {
-	size_t p = i;
+	size_t p = i, steps = 0;
 
 	do {
 		*port = s->slaves[p]->port;
 		p = s->parent[p];
-	} while (p != NO_SLAVE && s->peer[p] == NO_SLAVE);
+	} while (p != NO_SLAVE && s->peer[p] == NO_SLAVE && steps++ < s->count);
 	return p;
 }
 

@@ -115,6 +115,13 @@ ECB_API void ecb_bus_free(struct ecb_bus *bus)
 	free(w);
 }
 
+/* U+FEFF, U+FFFE, U+FFFF: YAML has the first only as a mark, the others not at all */
+static bool no_yaml(const unsigned char *p, int n)
+{
+	return n == 3 && p[0] == 0xef && ((p[1] == 0xbb && p[2] == 0xbf) ||
+					  (p[1] == 0xbf && p[2] >= 0xbe));
+}
+
 ECB_API const char *ecb_bus_text(struct ecb_bus *bus, const char *text)
 {
 	char clean[TEXT_MAX + 1];
@@ -132,7 +139,7 @@ ECB_API const char *ecb_bus_text(struct ecb_bus *bus, const char *text)
 
 		step = n ? (size_t)n : 1;
 		memcpy(clean + i, p, step);
-		if (!n || !text_harmless(p, n))
+		if (!n || !text_harmless(p, n) || no_yaml(p, n))
 			memset(clean + i, '?', step);
 	}
 	return ecb_copy((struct whole *)bus, clean, len);

@@ -146,8 +146,8 @@ static int missing(struct check *c, uint32_t line, const char *what, const char 
 		BAD(c, line, "no %s '%.60s' in this master", what, name);
 }
 
-/* @below: only slaves before this one; @line: of what refers to it */
-static int refers_to_slave(struct check *c, const char *name, size_t below, uint32_t line)
+/* @line: of what refers to it */
+static int refers_to_slave(struct check *c, const char *name, uint32_t line)
 {
 	const struct ecb_master *m = c->m;
 	const char *nearest = NULL;
@@ -156,11 +156,8 @@ static int refers_to_slave(struct check *c, const char *name, size_t below, uint
 	if (!name)
 		return 0;
 	seat = table_find(&c->slaves, name);
-	if (seat->key && seat->value < below)
-		return 0;
 	if (seat->key)
-		return BAD(c, line, "slave '%s' is no slave upstream; expected one that stands before",
-			   name);
+		return 0;
 	for (size_t i = 0; i < m->slave_count; i++)
 		nearest = text_nearer(name, nearest, m->slaves[i]->name);
 	return missing(c, line, "slave", name, nearest);
@@ -172,7 +169,7 @@ static int slave(struct check *c, size_t i)
 	const struct ecb_master *m = c->m;
 	const char *nearest = NULL;
 	size_t k;
-	int ret = refers_to_slave(c, s->parent, i, s->line);
+	int ret = refers_to_slave(c, s->parent, s->line);
 
 	if (ret)
 		return ret;
@@ -262,7 +259,7 @@ static int groups(struct check *c)
 
 	for (size_t i = 0; i < m->group_count; i++) {
 		const struct ecb_group *g = m->groups[i];
-		int ret = refers_to_slave(c, g->parent, SIZE_MAX, g->line);
+		int ret = refers_to_slave(c, g->parent, g->line);
 
 		for (size_t k = 0; k < i; k++)
 			if (!strcmp(g->name, m->groups[k]->name))
@@ -306,6 +303,35 @@ static int signs(struct check *c)
 	return ret;
 }
 
+/* parents lead to the master; they may stand behind, as in a bus that begins at another port */
+static int circles(struct check *c)
+{
+	const struct ecb_master *m = c->m;
+	size_t *seen = calloc(m->slave_count + 1, sizeof(*seen));
+	int ret = 0;
+
+	if (!seen)
+		return no_memory(c);
+	for (size_t i = 0; i < m->slave_count && !ret; i++) {
+		size_t p = i;
+
+		while (!seen[p]) {
+			seen[p] = i + 1;
+			if (!m->slaves[p]->parent)
+				break;
+			p = table_find(&c->slaves, m->slaves[p]->parent)->value;
+			if (seen[p] != i + 1)
+				continue;
+			ret = BAD(c, m->slaves[p]->line,
+				  "slave '%s' is upstream of itself; expected parents that lead to the master",
+				  m->slaves[p]->name);
+			break;
+		}
+	}
+	free(seen);
+	return ret;
+}
+
 static int master(struct check *c)
 {
 	int ret = table_init(&c->slaves, c->m->slave_count + 1);
@@ -322,7 +348,9 @@ static int master(struct check *c)
 	for (size_t i = 0; i < c->m->slave_count && !ret; i++)
 		ret = slave(c, i);
 	if (!ret)
-		ret = refers_to_slave(c, c->m->reference_clock, SIZE_MAX, c->m->line);
+		ret = circles(c);
+	if (!ret)
+		ret = refers_to_slave(c, c->m->reference_clock, c->m->line);
 	table_free(&c->slaves);
 	return ret;
 }

@@ -129,6 +129,9 @@ static int slave(struct fake_slave *s)
 		s->sii_words = 0x80;
 	if (fake_bus("cut") && s->position == 2)
 		s->device_index = 1;
+	/* all have the same alias */
+	if (getenv("FAKE_ALIAS"))
+		s->alias = (__u16)atoi(getenv("FAKE_ALIAS"));
 	if (getenv("FAKE_ORDER"))
 		snprintf(s->order, sizeof(s->order), "%s", getenv("FAKE_ORDER"));
 	if (fake_bus("reversed"))

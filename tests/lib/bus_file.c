@@ -70,7 +70,13 @@ static const struct {
 	{ SLAVE "    parent: x\n    port: 1\n", "t:4: no slave 'x' in this master" },
 	{ SLAVE "    name: axis\n  - {vendor: 2, product: 3, parent: axes, port: 1}\n",
 	  "t:7: no slave 'axes'; did you mean 'axis'?" },
-	{ SLAVE "    name: a\n    parent: a\n    port: 1\n", "slave 'a' is no slave upstream" },
+	{ SLAVE "    name: a\n    parent: a\n    port: 1\n", "slave 'a' is upstream of itself" },
+	{ HEAD "  - {vendor: 2, product: 3, name: a, parent: b, port: 1}\n"
+	  "  - {vendor: 2, product: 3, name: b}\n", NULL },
+	{ HEAD "  - {vendor: 2, product: 3, name: a, parent: b, port: 1}\n"
+	  "  - {vendor: 2, product: 3, name: b, parent: c, port: 1}\n"
+	  "  - {vendor: 2, product: 3, name: c, parent: b, port: 1}\n",
+	  "t:5: slave 'b' is upstream of itself" },
 	{ SLAVE "    name: a\n  - {vendor: 2, product: 3, parent: a}\n", "'parent' and 'port'" },
 	{ SLAVE "    port: 1\n", "needs both 'parent' and 'port'" },
 	{ SLAVE "    alias: 5\n  - {vendor: 2, product: 3, alias: 5}\n",
@@ -220,10 +226,10 @@ static void made(void)
 	struct ecb_entry *entry = ecb_entry_add(bus, p);
 	struct ecb_error e;
 
-	s->type = ecb_bus_text(bus, "Gr\xfc\xc3\xbc\x1b");
+	s->type = ecb_bus_text(bus, "Gr\xfc\xc3\xbc\x1b\xef\xbf\xbe\xef\xbf\xbf\xef\xbb\xbf");
 	entry->object = 0x600001;
 	entry->bits = 8;
-	if (ecb_bus_text(bus, "") || strcmp(s->type, "Gr?\xc3\xbc?") || entry->scale != 1 ||
+	if (ecb_bus_text(bus, "") || strcmp(s->type, "Gr?\xc3\xbc??????????") || entry->scale != 1 ||
 	    s->port != ECB_NONE8 || ecb_bus_finish(bus, NULL, &e) || strcmp(s->name, "gr") ||
 	    strcmp(entry->name, "x6000_01")) {
 		printf("made: '%s' '%s' '%s'\n", s->type, s->name, entry->name);

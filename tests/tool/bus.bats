@@ -143,3 +143,16 @@ differs() {	# differs SED EXPECTED
 	[ "$(grep -c 'name: el2008_8_ch_output$' "$BATS_TEST_TMPDIR/out")" = 1 ]
 	FAKE_BUS=run ethercat data --names | grep -q '^el2008_8_ch_output\.'
 }
+
+@test "bus check accepts what bus save writes of a reversed bus and of one alias for all" {
+	FAKE_BUS=reversed ethercat bus save "$BATS_TEST_TMPDIR/reversed"
+	cat "$BATS_TEST_TMPDIR/reversed"
+	[ "$(FAKE_BUS=reversed ethercat bus check "$BATS_TEST_TMPDIR/reversed")" = \
+		"no difference, 3 slave(s)" ]
+	export FAKE_ALIAS=7
+	run ethercat bus save "$BATS_TEST_TMPDIR/alias"
+	[ "$status" -eq 0 ]
+	[[ $output == *"slave 1 has alias 7, as another slave before it; the bus file omits it"* ]]
+	[ "$(grep -c 'alias: 7' "$BATS_TEST_TMPDIR/alias")" = 1 ]
+	[ "$(out bus check "$BATS_TEST_TMPDIR/alias")" = "no difference, 3 slave(s)" ]
+}
