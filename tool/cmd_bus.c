@@ -8,7 +8,7 @@ static int run(struct tool *t, int argc, char **argv)
 	(void)t;
 	(void)argc;
 	(void)argv;
-	return fail("this 'ethercat' was built without libyaml: install libyaml-dev and build it again");
+	return fail("this 'ethercat' was built without libyaml: install libyaml-dev and build it again"), 2;
 }
 #else
 #include <errno.h>
@@ -341,6 +341,7 @@ const struct cmd cmd_bus = {
 		"extra, exchanged, moved, value), master, line, slave, key, expected, found, remedy;\n"
 		"show: masters[]: index, cycle_ns, slaves[]: name, type, vendor, product, alias,\n"
 		"parent, port, values[]: name, index, subindex, bits, unit",
+	.flags = CMD_COMPARES,
 	.min_args = 1,
 	.max_args = 3,
 };

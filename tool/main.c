@@ -44,12 +44,13 @@ static void fill_std_files(void)
 
 static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 {
+	bool compares = c->flags & CMD_COMPARES;
 	int ret, err;
 
 	if (nargs < c->min_args)
-		return usage_error("missing argument: ethercat %s %s", c->name, c->args);
+		return usage_error("missing argument: ethercat %s %s", c->name, c->args) + compares;
 	if (nargs > c->max_args)
-		return usage_error("unexpected argument '%s'", args[c->max_args]);
+		return usage_error("unexpected argument '%s'", args[c->max_args]) + compares;
 	if (c->flags & CMD_LINES || (t->follow && strchr(c->opts, 'F')))
 		out_start_lines(t->json);
 	else
@@ -58,8 +59,8 @@ static int run(struct tool *t, const struct cmd *c, int nargs, char **args)
 	if (!ret)
 		ret = dev_nothing_selected();
 	err = out_finish();
-	if (err && !ret)
-		ret = fail_full(-err, NULL, 0, "cannot write the output");
+	if (err && (!ret || compares))
+		ret = fail_full(-err, NULL, 0, "cannot write the output") + compares;
 	return ret;
 }
 
@@ -96,8 +97,11 @@ int main(int argc, char **argv)
 	ret = 1;
 	if (argc == 2 && !strcmp(argv[1], "--version"))
 		argv[1] = "version";
-	if (options_parse(&t, argc, argv, args, &nargs, &help, seen, sizeof(seen)))
+	if (options_parse(&t, argc, argv, args, &nargs, &help, seen, sizeof(seen))) {
+		c = argc > 1 ? cmd_exact(argv[1]) : NULL;
+		ret = c && c->flags & CMD_COMPARES ? 2 : 1;
 		goto out;
+	}
 	error_context("", t.json);
 	if (!nargs) {
 		if (help)

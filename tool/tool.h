@@ -20,6 +20,7 @@
 #define CMD_HISTORIC		2	/* abbreviations resolve to it first */
 #define CMD_NEGATIVE		4	/* "-1" may be an argument */
 #define CMD_LINES		8	/* in JSON a line for each object */
+#define CMD_COMPARES		16	/* 1 means a difference, so errors are 2 */
 
 /**
  * struct tool - the command line, parsed

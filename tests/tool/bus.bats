@@ -91,6 +91,15 @@ differs() {	# differs SED EXPECTED
 		"bus.yaml:46: slave 'el7201' pdos 0x1a00 entries 1 name differs: expected position, found actual" ]
 }
 
+@test "bus exits with 2 when its output is lost, whatever the result" {
+	sed 's/alias: 1001/alias: 1002/' "$f" >"$BATS_TEST_TMPDIR/b"
+	for b in "$f" "$BATS_TEST_TMPDIR/b"; do
+		ret=0
+		ethercat bus diff "$f" "$b" >/dev/full || ret=$?
+		[ "$ret" = 2 ]
+	done
+}
+
 @test "bus show shows slaves as a tree with the names of values" {
 	diff -u "$HERE/golden/bus_show.txt" <(ethercat bus show "$f")
 	ethercat bus show -j "$f" |
@@ -107,7 +116,7 @@ differs() {	# differs SED EXPECTED
 	run ethercat bus check /nonexistent
 	[ "$status" -eq 2 ]
 	[[ $output == *"/nonexistent: No such file or directory" ]]
-	for verb in chek "check" "diff $f" "schema x"; do
+	for verb in chek "check" "diff $f" "schema x" "" "diff a b c d" "diff --nonsense a b"; do
 		run ethercat bus $verb
 		[ "$status" -eq 2 ]
 	done
