@@ -66,7 +66,8 @@ static void compare_scalars(struct comparison *c, const struct field *f, const c
 	const void *x = (const char *)a + f->at, *y = (const char *)b + f->at;
 	char expected[ECB_VALUE], found[ECB_VALUE], key[128];
 
-	if (c->flags & ECB_COMPARE_MACHINE && !scalar_given(f, x))
+	/* an entry without object is a gap, which is expected as well */
+	if (c->flags & ECB_COMPARE_MACHINE && !scalar_given(f, x) && strcmp(f->key, "object"))
 		return;
 	print(f, x, expected, sizeof(expected));
 	print(f, y, found, sizeof(found));
@@ -107,6 +108,42 @@ static const void *same_key(const struct type *type, const void *item, size_t i,
 	return NULL;
 }
 
+static size_t pdo_at(void *const *pdos, size_t n, const struct ecb_pdo *p)
+{
+	size_t i = 0;
+
+	while (i < n && ((const struct ecb_pdo *)pdos[i])->index != p->index)
+		i++;
+	return i;
+}
+
+/* the order of PDOs within a SyncManager is that of their data; one difference for each */
+static void compare_order(struct comparison *c, void *const *x, size_t n, void *const *y, size_t k)
+{
+	size_t last[256], at;
+	const struct ecb_pdo *before[256] = { NULL };
+	char key[64], expected[64], found[64];
+
+	for (size_t i = 0; i < n; i++) {
+		const struct ecb_pdo *p = x[i], *peer;
+
+		at = pdo_at(y, k, p);
+		peer = at < k ? y[at] : NULL;
+		if (!peer || peer->sm != p->sm)
+			continue;
+		if (before[p->sm] && at < last[p->sm]) {
+			snprintf(key, sizeof(key), "pdos 0x%04x order", p->index);
+			snprintf(expected, sizeof(expected), "behind 0x%04x",
+				 before[p->sm]->index);
+			snprintf(found, sizeof(found), "before it");
+			differ(c, ECB_VALUE_DIFFERS, key, p, expected, peer, found,
+			       "assign PDOs in the order of the file, or change the file");
+		}
+		before[p->sm] = p;
+		last[p->sm] = at;
+	}
+}
+
 static void compare_lists(struct comparison *c, const struct field *f, const char *path,
 			  const void *a, const void *b)
 {
@@ -129,6 +166,8 @@ static void compare_lists(struct comparison *c, const struct field *f, const cha
 			differ(c, ECB_MISSING, sub, x[i], f->type->name, NULL, "",
 			       "map and assign PDOs as in the file, or change the file");
 	}
+	if (f->type == &type_pdo)
+		compare_order(c, x, n, y, k);
 	for (size_t i = 0; i < k; i++) {
 		if (same_key(f->type, y[i], i, x, n))
 			continue;
@@ -188,7 +227,7 @@ static void compare_places(struct comparison *c, const struct match *m, size_t i
 	size_t pa = match_parent(&m->a, i, &port_a), pb = match_parent(&m->b, k, &port_b);
 	char expected[128], found[128], remedy[256];
 
-	if (m->a.slaves[i]->port == ECB_NONE8)
+	if (c->flags & ECB_COMPARE_MACHINE && m->a.slaves[i]->port == ECB_NONE8)
 		return;
 	if (pa == NO_SLAVE ? pb == NO_SLAVE : pb == m->a.peer[pa] && port_a == port_b)
 		return;

@@ -319,6 +319,41 @@ static void matches(void)
 	}
 }
 
+/* differences of two files, and of the second and the first one: as many */
+static void differences(const char *x, const char *y, unsigned int flags, const char *expected)
+{
+	struct ecb_bus *a, *b;
+	struct ecb_error e;
+	char got[128] = "", back[128] = "";
+
+	if (ecb_file_parse(&a, "a", x, strlen(x), &e) || ecb_file_parse(&b, "b", y, strlen(y), &e)) {
+		printf("%s\n", e.text);
+		exit(1);
+	}
+	if (ecb_compare(a, b, flags, note, got) != ecb_compare(b, a, flags, note, back) ||
+	    strcmp(got, expected)) {
+		printf("%s\n%s\n: '%s', back '%s', expected '%s'\n", x, y, got, back, expected);
+		bad++;
+	}
+	ecb_bus_free(a);
+	ecb_bus_free(b);
+}
+
+static void compared(void)
+{
+#define FIRST	HEAD "  - {name: a, vendor: 2, product: 3}\n"
+#define PDOS(x)	SLAVE "    name: a\n    pdos: [" x "]\n"
+	differences(FIRST "  - {name: b, vendor: 2, product: 4, parent: a, port: 1}\n",
+		    FIRST "  - {name: b, vendor: 2, product: 4}\n", 0, "mb ");
+	differences(PDOS("{index: 1, sm: 3, entries: [{bits: 8}]}"),
+		    PDOS("{index: 1, sm: 3, entries: [{bits: 8, object: 0x6000:01}]}"),
+		    ECB_COMPARE_MACHINE, "va ");
+	differences(PDOS("{index: 1, sm: 3}, {index: 2, sm: 3}"),
+		    PDOS("{index: 2, sm: 3}, {index: 1, sm: 3}"), ECB_COMPARE_MACHINE, "va ");
+	differences(PDOS("{index: 1, sm: 2}, {index: 2, sm: 3}"),
+		    PDOS("{index: 2, sm: 3}, {index: 1, sm: 2}"), ECB_COMPARE_MACHINE, "");
+}
+
 int main(int argc, char **argv)
 {
 	for (size_t i = 0; i < sizeof(rows) / sizeof(rows[0]); i++)
@@ -328,5 +363,6 @@ int main(int argc, char **argv)
 		whole(argv[i]);
 	made();
 	matches();
+	compared();
 	return bad != 0;
 }
