@@ -226,7 +226,7 @@ static void show_slave(const struct ecb_master *m, size_t i, int *depths)
 	while (s->parent && p < i && strcmp(m->slaves[p]->name, s->parent))
 		p++;
 	/* the first line stays at the margin, branches go in */
-	depths[i] = !s->parent || p == i ? 2 : depths[p] + (s->port > 1 || (s->port != 1 && s->port) ? 2 : 0);
+	depths[i] = !s->parent || p == i ? 2 : depths[p] + (s->port > 1 ? 2 : 0);
 	out_object(NULL);
 	out_str("name", s->name, "%*s%s", depths[i], "", s->name);
 	if (s->type)

@@ -229,8 +229,8 @@ static void made(void)
 	s->type = ecb_bus_text(bus, "Gr\xfc\xc3\xbc\x1b\xef\xbf\xbe\xef\xbf\xbf\xef\xbb\xbf");
 	entry->object = 0x600001;
 	entry->bits = 8;
-	if (ecb_bus_text(bus, "") || strcmp(s->type, "Gr?\xc3\xbc??????????") || entry->scale != 1 ||
-	    s->port != ECB_NONE8 || ecb_bus_finish(bus, NULL, &e) || strcmp(s->name, "gr") ||
+	if (ecb_bus_text(bus, "") || strcmp(s->type, "Gr?\xc3\xbc??????????") ||
+	    entry->scale != 1 || s->port != ECB_NONE8 || ecb_bus_finish(bus, NULL, &e) || strcmp(s->name, "gr") ||
 	    strcmp(entry->name, "x6000_01")) {
 		printf("made: '%s' '%s' '%s'\n", s->type, s->name, entry->name);
 		bad++;
@@ -326,7 +326,8 @@ static void differences(const char *x, const char *y, unsigned int flags, const 
 	struct ecb_error e;
 	char got[128] = "", back[128] = "";
 
-	if (ecb_file_parse(&a, "a", x, strlen(x), &e) || ecb_file_parse(&b, "b", y, strlen(y), &e)) {
+	if (ecb_file_parse(&a, "a", x, strlen(x), &e) ||
+	    ecb_file_parse(&b, "b", y, strlen(y), &e)) {
 		printf("%s\n", e.text);
 		exit(1);
 	}

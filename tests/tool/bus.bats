@@ -91,7 +91,7 @@ differs() {	# differs SED EXPECTED
 		"bus.yaml:46: slave 'el7201' pdos 0x1a00 entries 1 name differs: expected position, found actual" ]
 }
 
-@test "bus exits with 2 when its output is lost, whatever the result" {
+@test "bus exits with 2 when its output is lost, equal or not" {
 	sed 's/alias: 1001/alias: 1002/' "$f" >"$BATS_TEST_TMPDIR/b"
 	for b in "$f" "$BATS_TEST_TMPDIR/b"; do
 		ret=0
@@ -145,7 +145,7 @@ differs() {	# differs SED EXPECTED
 	done
 }
 
-@test "bus save calls slaves as data does, whatever the order text" {
+@test "bus save calls slaves as data does, with and without an order text" {
 	export FAKE_ORDER=---
 	ethercat bus save >"$BATS_TEST_TMPDIR/out"
 	cat "$BATS_TEST_TMPDIR/out"
@@ -153,7 +153,7 @@ differs() {	# differs SED EXPECTED
 	FAKE_BUS=run ethercat data --names | grep -q '^el2008_8_ch_output\.'
 }
 
-@test "bus check accepts what bus save writes of a reversed bus and of one alias for all" {
+@test "bus check accepts the saved file of a reversed bus and of one alias for all" {
 	FAKE_BUS=reversed ethercat bus save "$BATS_TEST_TMPDIR/reversed"
 	cat "$BATS_TEST_TMPDIR/reversed"
 	[ "$(FAKE_BUS=reversed ethercat bus check "$BATS_TEST_TMPDIR/reversed")" = \
