@@ -248,17 +248,25 @@ static int item(struct reader *r, const struct type *type, void *to)
 	return 0;
 }
 
+/* a line of YAML also ends with CR, NEL, LS and PS */
+static bool begins_line(const char *data, size_t i)
+{
+	return !i || data[i - 1] == '\n' || data[i - 1] == '\r' ||
+		(i > 1 && !memcmp(data + i - 2, "\xc2\x85", 2)) ||
+		(i > 2 && !memcmp(data + i - 3, "\xe2\x80\xa8", 3)) ||
+		(i > 2 && !memcmp(data + i - 3, "\xe2\x80\xa9", 3));
+}
+
 /* libyaml compares each tag directive with all before it, and a bus file has no tags */
 static int directives(struct reader *r)
 {
-	const char *at = r->data, *end = r->data + r->size;
+	size_t line = 1;
 
-	for (size_t line = 1; at && at < end; line++) {
-		if (*at == '%')
+	for (size_t i = 0; i < r->size; i++) {
+		line += r->data[i] == '\n';
+		if (r->data[i] == '%' && begins_line(r->data, i))
 			return ecb_report(r->e, r->file, line, 1,
 					  "a line that begins with '%%'; expected none, since bus files have no directives");
-		at = memchr(at, '\n', (size_t)(end - at));
-		at = at ? at + 1 : NULL;
 	}
 	return 0;
 }

@@ -122,6 +122,10 @@ static const struct {
 	{ "ethercat: 1\nmasters: *x\n", "t:2:10: alias '*x'; expected the value itself" },
 	{ "%TAG !a! b\n---\nethercat: 1\nmasters: []\n", "t:1:1: a line that begins with '%'" },
 	{ "ethercat: 1\nmasters: []\n...\n%YAML 1.1\n", "t:4:1: a line that begins with '%'" },
+	{ "#\r%YAML 1.1\r", "a line that begins with '%'" },
+	{ "#\xc2\x85%YAML 1.1\n", "a line that begins with '%'" },
+	{ "#\xe2\x80\xa8%YAML 1.1\n", "a line that begins with '%'" },
+	{ "ethercat: 1\nmasters: [{slaves: [{vendor: 1, product: 2, type: a 5 %}]}]\n", NULL },
 	{ "&a [*a,*a,*a,*a,*a,*a,*a,*a]", "t:1:1: anchor 'a'" },
 	{ "ethercat: 1\nmasters: [\n", "expected YAML" },
 	{ "ethercat:\t1: 2\n\t- 3", "expected YAML" },
@@ -230,7 +234,8 @@ static void made(void)
 	entry->object = 0x600001;
 	entry->bits = 8;
 	if (ecb_bus_text(bus, "") || strcmp(s->type, "Gr?\xc3\xbc??????????") ||
-	    entry->scale != 1 || s->port != ECB_NONE8 || ecb_bus_finish(bus, NULL, &e) || strcmp(s->name, "gr") ||
+	    entry->scale != 1 ||
+	    s->port != ECB_NONE8 || ecb_bus_finish(bus, NULL, &e) || strcmp(s->name, "gr") ||
 	    strcmp(entry->name, "x6000_01")) {
 		printf("made: '%s' '%s' '%s'\n", s->type, s->name, entry->name);
 		bad++;
