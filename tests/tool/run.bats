@@ -206,8 +206,8 @@ is_narrow() {
 @test "top prints its lines once in a pipe" {
 	export FAKE_BUS=run
 	golden top top
-	out top --json |
-		json '(d["slaves"], d["session"], d["interval_ns"]) == (3, "'"'ethercat run'"'", 1000000)'
+	out top --json | json '(d["slaves"], d["interval_ns"]) == (3, 1000000)'
+	out top --json | json 'd["session"] == "\u0027ethercat run\u0027"'
 	FAKE_BUS=idle out top | grep -qx 'Cycle: none'
 }
 
@@ -226,7 +226,7 @@ is_narrow() {
 		FAKE_BUS=run FAKE_GROWS=$reads run ethercat data --names
 		echo "$output"
 		[ "$status" -eq 1 ]
-		[[ $output == *"another session has begun meanwhile; repeat the command"* ]] && seen=1
+		[[ $output != *"has begun meanwhile; repeat the command"* ]] || seen=1
 		[[ $output != *AddressSanitizer* ]]
 	done
 	[ "$seen" = 1 ]
