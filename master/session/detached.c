@@ -60,7 +60,7 @@ static void put_bits(u8 *image, u64 bit, u32 bits, u64 value)
 	}
 }
 
-static void drop(struct ec_detached *d, struct lease *l)
+static void lease_drop(struct ec_detached *d, struct lease *l)
 {
 	lockdep_assert_held(&d->lock);
 	list_del(&l->list);
@@ -83,7 +83,7 @@ static void end_leases(struct work_struct *work)
 			continue;
 		}
 		put_bits(d->image, l->bit, l->bits, 0);
-		drop(d, l);
+		lease_drop(d, l);
 		changed = true;
 	}
 	if (changed)
@@ -157,7 +157,7 @@ static void clear_bits_of(struct ec_detached *d, u64 bit, u64 bits)
 	memset(d->image + bit / 8, 0, bits / 8);
 	list_for_each_entry_safe(l, tmp, &d->leases, list)
 		if (l->bit < bit + bits && bit < l->bit + l->bits)
-			drop(d, l);
+			lease_drop(d, l);
 }
 
 /**
@@ -234,7 +234,7 @@ static bool are_copied(const struct ec_session *s, const struct ec_ioc_output *o
  * Replace the lease of exactly these bits by one of @o, or by none. Return: 0; -EBUSY there is one
  * of some of these bits; -ENOSPC, -ENOMEM.
  */
-static int renew(struct ec_detached *d, u64 bit, const struct ec_ioc_output *o)
+static int lease_renew(struct ec_detached *d, u64 bit, const struct ec_ioc_output *o)
 {
 	struct lease *l, *same = NULL;
 
@@ -247,7 +247,7 @@ static int renew(struct ec_detached *d, u64 bit, const struct ec_ioc_output *o)
 	}
 	if (o->flags & EC_OUTPUT_FLAG_HOLD) {
 		if (same)
-			drop(d, same);
+			lease_drop(d, same);
 		return 0;
 	}
 	if (!same) {
@@ -297,7 +297,7 @@ int ec_detached_set(struct ec_session *s, const struct ec_ioc_output *o)
 	domain = array_index_nospec(o->domain, s->wanted.n_domains);
 	bit = (u64)s->wanted.domains[domain]->offset * 8 + o->bit;
 	mutex_lock(&d->lock);
-	ret = renew(d, bit, o);
+	ret = lease_renew(d, bit, o);
 	if (!ret) {
 		put_bits(d->image, bit, o->bits, o->value);
 		ec_cycle_run_give(d->cycle, &d->buffer, d->image);
@@ -326,7 +326,7 @@ void ec_detached_end(struct ec_session *s)
 	WRITE_ONCE(s->detached, NULL);
 	mutex_lock(&d->lock);
 	list_for_each_entry_safe(l, tmp, &d->leases, list)
-		drop(d, l);
+		lease_drop(d, l);
 	mutex_unlock(&d->lock);
 	kvfree(d);
 }
