@@ -124,7 +124,8 @@ differs() {	# differs SED EXPECTED
 
 @test "the JSON Schema accepts each example and the file of bus save, and refuses typos" {
 	ethercat bus schema >"$BATS_TEST_TMPDIR/schema.json"
-	python3 - "$BATS_TEST_TMPDIR/schema.json" "$f" "$HERE"/../busfile/*.yaml <<-'END'
+	# that of Debian, whose packages tests/install-deps.sh installs
+	/usr/bin/python3 - "$BATS_TEST_TMPDIR/schema.json" "$f" "$HERE"/../busfile/*.yaml <<-'END'
 		import json, sys
 		import jsonschema, yaml
 		schema = json.load(open(sys.argv[1]))
