@@ -134,8 +134,9 @@ soe 2 0 0x0094 0000" ]
 		sleep 0.1
 	done
 	kill -TERM $pid
-	run wait $pid
-	[ "$status" -ne 0 ]
+	status=0
+	wait $pid || status=$?
+	[ "$status" -eq 1 ]
 	grep -q "S-0-0150 of drive 0 cancelled after" "$BATS_TEST_TMPDIR/err"
 	[ "$(tail -n1 "$FAKE_LOG")" = "soe 2 0 0x0096 0000" ]
 }
