@@ -198,40 +198,46 @@ says_why() {	# needs library_works
 
 cyclic_is_silent() { ! grep 'Failed to \(send\|receive\|process\|queue\)' "$o/session.err"; }
 
-# --- libethercat-tools ---
-tools_map() {
-	sed -n 's/^\t\t\(ect_[a-z0-9_]*\);/\1/p' "$top/lib/tools/libethercat-tools.map" | sort
+# --- libethercat-tools, libethercat-bus: LIBRARY is tools or bus ---
+declare -A begins=([tools]=ect [bus]=ecb)
+
+map_of() {	# map_of LIBRARY
+	sed -n "s/^\t\t\(${begins[$1]}_[a-z0-9_]*\);/\1/p" "$top/lib/$1/libethercat-$1.map" | sort
 }
 
-tools_declared() {
-	echo '#include "ethercat-tools.h"' | $CC -E -P -I"$top/include" - | tr '\n' ' ' |
-		grep -o 'ect_[a-z0-9_]*([^(){};]*) *;' | grep -o '^[a-z0-9_]*' | sort
+other_declares() {	# other_declares LIBRARY
+	echo "#include \"ethercat-$1.h\"" | $CC -E -P -I"$top/include" - | tr '\n' ' ' |
+		grep -o "${begins[$1]}_[a-z0-9_]*([^(){};]*) *;" | grep -o '^[a-z0-9_]*' | sort
 }
 
-tools_exported() {
-	readelf -W --dyn-syms "$o/tools/libethercat-tools.so.1" |
-		awk '$7 != "UND" && sub(/@@LIBETHERCAT_TOOLS_1$/, "", $8) && $8 ~ /^ect_/ {
-			print $8 }' | sort
+other_exports() {	# other_exports LIBRARY
+	readelf -W --dyn-syms "$o/$1/libethercat-$1.so.1" |
+		awk -v begin="^${begins[$1]}_" -v version="@@LIBETHERCAT_${1^^}_1\$" '
+			$7 != "UND" && sub(version, "", $8) && $8 ~ begin { print $8 }' | sort
 }
 
 # each has its text as the header's other functions
-tools_described() {
-	diff <(tools_map) <(sed -n 's/^ \* \(ect_[a-z0-9_]*\)() - .*/\1/p' \
-		"$top"/include/ethercat-tools/*.h | sort)
+described() {	# described LIBRARY
+	diff <(map_of "$1") <(sed -n "s/^ \* \(${begins[$1]}_[a-z0-9_]*\)() - .*/\1/p" \
+		"$top/include/ethercat-$1"/*.h | sort)
 }
 
-tools_packaged() {
-	diff <(tools_map) <(sed -n 's/^ \(ect_[a-z0-9_]*\)@LIBETHERCAT_TOOLS_1 .*/\1/p' \
-		"$top/debian/libethercat-tools1.symbols")
+packaged() {	# packaged LIBRARY
+	diff <(map_of "$1") <(sed -n \
+		"s/^ \(${begins[$1]}_[a-z0-9_]*\)@LIBETHERCAT_${1^^}_1 .*/\1/p" \
+		"$top/debian/libethercat-${1}1.symbols")
 }
 
-tools_need_libc_only() {
-	! readelf -d "$o/tools/libethercat-tools.so.1" | grep NEEDED | grep -v 'libc\.so\|ld-linux'
+has_soname() {	# has_soname LIBRARY
+	readelf -d "$o/$1/libethercat-$1.so.1" | grep -q "SONAME.*\[libethercat-$1\.so\.1\]"
 }
 
-tools_soname() {
-	readelf -d "$o/tools/libethercat-tools.so.1" |
-		grep -q 'SONAME.*\[libethercat-tools\.so\.1\]'
+needs_only() {	# needs_only LIBRARY PATTERN
+	! readelf -d "$o/$1/libethercat-$1.so.1" | grep NEEDED | grep -v "$2"
+}
+
+other_header_compiles() {	# other_header_compiles LIBRARY COMPILER STANDARD LANGUAGE
+	echo "#include <ethercat-$1.h>" | $2 -std=$3 -x $4 $warn -I"$top/include" -fsyntax-only -
 }
 
 # what the tests of the tool do not show: handles, sizes, failures, threads
@@ -243,47 +249,6 @@ tools_work() {	# tools_work SANITIZERS
 		"$top"/master/wire/{al,coe,dc,emergency,eoe{,_frame},event{,_text},foe,mbox}.c \
 		"$top"/master/wire/{port_text,replay,sdo,sdoinfo,sii,soe,voe}.c &&
 		setarch -R "$o/tools-test"
-}
-
-tools_header_compiles() {	# COMPILER STANDARD LANGUAGE
-	echo '#include <ethercat-tools.h>' |
-		$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only -
-}
-
-# --- libethercat-bus ---
-bus_map() { sed -n 's/^\t\t\(ecb_[a-z0-9_]*\);/\1/p' "$top/lib/bus/libethercat-bus.map" | sort; }
-
-bus_declared() {
-	echo '#include "ethercat-bus.h"' | $CC -E -P -I"$top/include" - | tr '\n' ' ' |
-		grep -o 'ecb_[a-z0-9_]*([^(){};]*) *;' | grep -o '^[a-z0-9_]*' | sort
-}
-
-bus_exported() {
-	readelf -W --dyn-syms "$o/bus/libethercat-bus.so.1" |
-		awk '$7 != "UND" && sub(/@@LIBETHERCAT_BUS_1$/, "", $8) && $8 ~ /^ecb_/ {
-			print $8 }' | sort
-}
-
-bus_described() {
-	diff <(bus_map) <(sed -n 's/^ \* \(ecb_[a-z0-9_]*\)() - .*/\1/p' \
-		"$top"/include/ethercat-bus/*.h | sort)
-}
-
-bus_packaged() {
-	diff <(bus_map) <(sed -n 's/^ \(ecb_[a-z0-9_]*\)@LIBETHERCAT_BUS_1 .*/\1/p' \
-		"$top/debian/libethercat-bus1.symbols")
-}
-
-bus_needs() {
-	readelf -d "$o/bus/libethercat-bus.so.1" |
-		grep -q 'SONAME.*\[libethercat-bus\.so\.1\]' &&
-	! readelf -d "$o/bus/libethercat-bus.so.1" | grep NEEDED |
-		grep -v 'libc\.so\|ld-linux\|libyaml-0\.so\.2'
-}
-
-bus_header_compiles() {	# COMPILER STANDARD LANGUAGE
-	echo '#include <ethercat-bus.h>' |
-		$1 -std=$2 -x $3 $warn -I"$top/include" -fsyntax-only -
 }
 
 bus_names() {
@@ -344,37 +309,39 @@ t "library against a fake kernel" library_works
 t "failures of configuration are explained" says_why
 t "cyclic calls are silent" cyclic_is_silent
 t "libethercat-tools builds" $MAKE -s -C "$top/lib/tools" O="$o/tools" CFLAGS="-O2 -Werror" all
-t "ethercat-tools.h declares what the map has" diff <(tools_map) <(tools_declared)
-t "each of these functions is described" tools_described
-t "libethercat-tools exports them and nothing else" diff <(tools_map) <(tools_exported)
-t "its package has them" tools_packaged
+t "ethercat-tools.h declares what the map has" diff <(map_of tools) <(other_declares tools)
+t "each of these functions is described" described tools
+t "libethercat-tools exports them and nothing else" diff <(map_of tools) <(other_exports tools)
+t "its package has them" packaged tools
 ! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees with libethercat-tools" \
 	gensymbols libethercat-tools1 tools/libethercat-tools.so.1.0.0
-t "soname of libethercat-tools" tools_soname
-t "libethercat-tools needs libc only" tools_need_libc_only
+t "soname of libethercat-tools" has_soname tools
+t "libethercat-tools needs libc only" needs_only tools 'libc\.so\|ld-linux'
 t "libethercat-tools against the fake kernel" tools_work "$san"
 t "libethercat-tools in several threads" tools_work "-fsanitize=thread -g -O1"
 for std in c99 c17; do
-	t "ethercat-tools.h compiles as $std" tools_header_compiles $CC $std c
+	t "ethercat-tools.h compiles as $std" other_header_compiles tools $CC $std c
 done
 for std in c++11 c++20; do
-	t "ethercat-tools.h compiles as $std" tools_header_compiles $CXX $std c++
+	t "ethercat-tools.h compiles as $std" other_header_compiles tools $CXX $std c++
 done
 t "libethercat-bus builds" $MAKE -s -C "$top/lib/bus" O="$o/bus" CFLAGS="-O2 -Werror" all
-t "ethercat-bus.h declares what the map has" diff <(bus_map) <(bus_declared)
-t "each function of libethercat-bus is described" bus_described
-t "libethercat-bus exports them and nothing else" diff <(bus_map) <(bus_exported)
-t "the package of libethercat-bus has them" bus_packaged
+t "ethercat-bus.h declares what the map has" diff <(map_of bus) <(other_declares bus)
+t "each function of libethercat-bus is described" described bus
+t "libethercat-bus exports them and nothing else" diff <(map_of bus) <(other_exports bus)
+t "the package of libethercat-bus has them" packaged bus
 ! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees with libethercat-bus" \
 	gensymbols libethercat-bus1 bus/libethercat-bus.so.1.0.0
-t "soname of libethercat-bus; it needs libc and libyaml only" bus_needs
+t "soname of libethercat-bus" has_soname bus
+t "libethercat-bus needs libc and libyaml only" needs_only bus \
+	'libc\.so\|ld-linux\|libyaml-0\.so\.2'
 t "names of slaves and values" bus_names
 t "bus files" bus_file
 for std in c99 c17; do
-	t "ethercat-bus.h compiles as $std" bus_header_compiles $CC $std c
+	t "ethercat-bus.h compiles as $std" other_header_compiles bus $CC $std c
 done
 for std in c++11 c++20; do
-	t "ethercat-bus.h compiles as $std" bus_header_compiles $CXX $std c++
+	t "ethercat-bus.h compiles as $std" other_header_compiles bus $CXX $std c++
 done
 t "demo builds" demo_builds
 for std in c99 c11; do
