@@ -267,6 +267,16 @@ static void left_is_not_detached_by_exit(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, set(a, output(a, 0, 1, 42)), -EPERM);
 }
 
+/* A slave is away for a while; then both are in OP, and have got outputs. */
+static void comes_back(struct bus *b, const char *gone, const char *back)
+{
+	bus_command(b, gone);
+	msleep(3000);
+	bus_command(b, back);
+	KUNIT_EXPECT_NE(b->test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
+	msleep(100);
+}
+
 /* Without a serial number a slave that has lost its power may be any: it gets zeros. */
 static void left_values_while_slave_is_gone(struct kunit *test)
 {
@@ -316,18 +326,10 @@ static void left_values_are_of_one_device(struct kunit *test)
 	o.lease_ms = 60000;
 	KUNIT_EXPECT_EQ(test, set(a, o), 0);
 	/* the same device gets its values again */
-	bus_command(b, "off s2");
-	msleep(3000);
-	bus_command(b, "on s2");
-	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
-	msleep(100);
+	comes_back(b, "off s2", "on s2");
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 43ll);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 44ll);
-	bus_command(b, "unplug s1.1");
-	msleep(3000);
-	bus_command(b, "plug s1.1 x.0");
-	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
-	msleep(100);
+	comes_back(b, "unplug s1.1", "plug s1.1 x.0");
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "x", 1), 0ll);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "x", 2), 0ll);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s1", 1), 43ll);
@@ -335,11 +337,7 @@ static void left_values_are_of_one_device(struct kunit *test)
 	o = output(a, 1, 2, 7);
 	o.bits = 8;
 	KUNIT_EXPECT_EQ(test, set(a, o), 0);
-	bus_command(b, "unplug s1.1");
-	msleep(3000);
-	bus_command(b, "plug s1.1 s2.0");
-	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_OP, 10000), ~0ull);
-	msleep(100);
+	comes_back(b, "unplug s1.1", "plug s1.1 s2.0");
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 1), 0ll);
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 0ll);
 }
