@@ -20,6 +20,8 @@ static int run(struct tool *t, int argc, char **argv)
 #include "out.h"
 #include "save.h"
 
+#define DEPTH_MAX	40	/* columns: branches behind that are not shifted any more */
+
 static int read_file(const char *path, struct ecb_bus **bus)
 {
 	struct ecb_error e;
@@ -226,7 +228,8 @@ static void show_slave(const struct ecb_master *m, size_t i, int *depths)
 	while (s->parent && p < i && strcmp(m->slaves[p]->name, s->parent))
 		p++;
 	/* the first line stays at the margin, branches go in */
-	depths[i] = !s->parent || p == i ? 2 : depths[p] + (s->port > 1 ? 2 : 0);
+	depths[i] = !s->parent || p == i ? 2 :
+		    depths[p] + (s->port > 1 && depths[p] < DEPTH_MAX ? 2 : 0);
 	out_object(NULL);
 	out_str("name", s->name, "%*s%s", depths[i], "", s->name);
 	if (s->type)

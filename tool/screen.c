@@ -26,10 +26,14 @@ static void end(int signal)
 
 void screen_catch_end(void)
 {
+	static const int signals[] = { SIGHUP, SIGINT, SIGQUIT, SIGTERM };
 	const struct sigaction act = { .sa_handler = end };
+	struct sigaction old;
 
-	sigaction(SIGINT, &act, NULL);
-	sigaction(SIGTERM, &act, NULL);
+	/* one that is ignored, as by nohup, stays so */
+	for (unsigned int i = 0; i < sizeof(signals) / sizeof(*signals); i++)
+		if (!sigaction(signals[i], NULL, &old) && old.sa_handler != SIG_IGN)
+			sigaction(signals[i], &act, NULL);
 }
 
 bool screen_ended(void)
@@ -94,6 +98,8 @@ void screen_grab(void)
 		return;
 	t = before;
 	t.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
+	/* a stopped program would leave the terminal as it is now */
+	t.c_cc[VSUSP] = _POSIX_VDISABLE;
 	grabbed = !tcsetattr(STDIN_FILENO, TCSANOW, &t);
 }
 

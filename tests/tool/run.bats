@@ -167,8 +167,7 @@ on_terminal() {
 	if not pid:
 	    fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
 	    os.execv(sys.argv[1], sys.argv[1:])
-	if sys.argv[2] == 'top':
-	    os.write(fd, b'ejq')
+	keys = os.environ.get('KEYS', 'ejq').encode() if sys.argv[2] == 'top' else b''
 	got = b''
 	while True:
 	    try:
@@ -178,8 +177,13 @@ on_terminal() {
 	    if not part:
 	        break
 	    got += part
+	    # it draws when it has the terminal
+	    os.write(fd, keys)
+	    keys = b''
 	status = os.waitpid(pid, 0)[1]
 	sys.stdout.write(got.decode())
+	if sys.argv[2] == 'top' and not termios.tcgetattr(fd)[3] & termios.ECHO:
+	    sys.exit('the terminal has no echo')
 	sys.exit(os.waitstatus_to_exitcode(status))
 	END
 }
@@ -201,6 +205,13 @@ is_narrow() {
 	is_narrow "$BATS_TEST_TMPDIR/out"
 	grep -q "Master0  3 slave(s), 3 reply  'ethercat run'" "$BATS_TEST_TMPDIR/out"
 	grep -q 'e: all' "$BATS_TEST_TMPDIR/out"
+}
+
+@test "top gives the terminal back at each key that ends or stops a program" {
+	export FAKE_BUS=run
+	for key in '\x1c' '\x03' '\x1a\x1c'; do
+		KEYS=$(printf "$key") on_terminal top --watch 0.1 >"$BATS_TEST_TMPDIR/out"
+	done
 }
 
 @test "top prints its lines once in a pipe" {
