@@ -46,6 +46,8 @@ struct entry {
  * @vendor_id: identity
  * @product_code: likewise
  * @slave: a slave of this kind, NULL: there is none
+ * @image: EEPROM of @slave, of a configuration
+ * @size: bytes of @image
  * @entries: of a configuration
  * @names: of @entries
  * @n: of them
@@ -57,6 +59,8 @@ struct slot {
 	u32 vendor_id;
 	u32 product_code;
 	const struct ect_slave *slave;
+	u8 *image;
+	size_t size;
 	struct entry *entries;
 	struct ecb_entry_name *names;
 	size_t n;
@@ -72,6 +76,7 @@ struct naming {
 static void naming_free(struct naming *x)
 {
 	for (size_t i = 0; i < x->n; i++) {
+		free(x->slots[i].image);
 		free(x->slots[i].entries);
 		free(x->slots[i].names);
 	}
@@ -302,8 +307,22 @@ static int name_entries(struct ect_handle *h, struct slot *t, const struct ect_l
 	return ecb_name_entries(t->names, t->n) ? ect_no_memory(h) : 0;
 }
 
+/* One that cannot be read has no types. */
+static int read_image(struct ect_handle *h, struct slot *t)
+{
+	long got;
+
+	t->image = calloc(1, 2u * t->slave->sii_words + 1);
+	if (!t->image)
+		return ect_no_memory(h);
+	got = t->slave->sii_words ? ect_sii_read(h, t->slave->device, 0, t->image,
+						 2u * t->slave->sii_words) : 0;
+	t->size = got > 0 ? (size_t)got : 0;
+	return 0;
+}
+
 /* The types of the entries, where the EEPROM has them */
-static u16 type_of(const u8 *image, size_t size, const struct entry *e)
+static u16 type_of(const struct slot *t, const struct entry *e)
 {
 	static const u16 categories[] = { EC_SII_CAT_TXPDO, EC_SII_CAT_RXPDO };
 
@@ -311,7 +330,7 @@ static u16 type_of(const u8 *image, size_t size, const struct entry *e)
 		struct ec_sii_pdo_iter it;
 		struct ec_sii_pdo pdo;
 
-		ec_sii_pdo_iter_init(&it, image, size, categories[c]);
+		ec_sii_pdo_iter_init(&it, t->image, t->size, categories[c]);
 		while (ec_sii_pdo_iter_next(&it, &pdo) > 0)
 			for (unsigned int i = 0; i < pdo.entries; i++) {
 				struct ec_sii_pdo_entry x;
@@ -327,9 +346,6 @@ static u16 type_of(const u8 *image, size_t size, const struct entry *e)
 static int add_values(struct ect_handle *h, const struct slot *t, const char *slave,
 		      const struct ect_fmmu *f, unsigned int domain, struct ect_list *l)
 {
-	size_t size = t->slave ? 2u * t->slave->sii_words : 0;
-	u8 *image = calloc(1, size + 1);
-	long got = image && size ? ect_sii_read(h, t->slave->device, 0, image, size) : 0;
 	bool attached = t->device && t->slave && t->slave->device == t->device;
 
 	for (size_t i = 0; i < t->n; i++) {
@@ -339,10 +355,8 @@ static int add_values(struct ect_handle *h, const struct slot *t, const char *sl
 		if (e->sm != f->sm || !e->index || !e->bits)
 			continue;
 		v = ect_list_add(l);
-		if (!v) {
-			free(image);
+		if (!v)
 			return ect_no_memory(h);
-		}
 		v->config = t->config;
 		v->device = attached ? t->device : 0;
 		v->position = attached ? t->slave->position : -1;
@@ -352,10 +366,9 @@ static int add_values(struct ect_handle *h, const struct slot *t, const char *sl
 		v->index = e->index;
 		v->subindex = e->subindex;
 		v->dir = f->dir;
-		v->type = got > 0 ? type_of(image, (size_t)got, e) : 0;
+		v->type = t->size ? type_of(t, e) : 0;
 		ecb_name_value(v->name, slave, t->names[i].name);
 	}
-	free(image);
 	return 0;
 }
 
@@ -394,7 +407,7 @@ static int describe(struct ect_handle *h, struct naming *x)
 		texts = ect_list_new(sizeof(struct text));
 		ret = texts ? read_entries(h, t) : ect_no_memory(h);
 		if (!ret && t->slave)
-			ret = read_texts(h, t->slave, texts);
+			ret = read_texts(h, t->slave, texts) ?: read_image(h, t);
 		ret = ret ? ret : name_entries(h, t, texts);
 		ect_list_free(texts);
 	}
