@@ -98,7 +98,7 @@ void screen_grab(void)
 		return;
 	t = before;
 	t.c_lflag &= ~(tcflag_t)(ICANON | ECHO);
-	/* a stopped program would leave the terminal as it is now */
+	/* a program that is stopped does not give the terminal back */
 	t.c_cc[VSUSP] = _POSIX_VDISABLE;
 	grabbed = !tcsetattr(STDIN_FILENO, TCSANOW, &t);
 }

@@ -307,7 +307,7 @@ static int name_entries(struct ect_handle *h, struct slot *t, const struct ect_l
 	return ecb_name_entries(t->names, t->n) ? ect_no_memory(h) : 0;
 }
 
-/* One that cannot be read has no types. */
+/* Without it there are no types. */
 static int read_image(struct ect_handle *h, struct slot *t)
 {
 	long got;
@@ -407,7 +407,9 @@ static int describe(struct ect_handle *h, struct naming *x)
 		texts = ect_list_new(sizeof(struct text));
 		ret = texts ? read_entries(h, t) : ect_no_memory(h);
 		if (!ret && t->slave)
-			ret = read_texts(h, t->slave, texts) ?: read_image(h, t);
+			ret = read_texts(h, t->slave, texts);
+		if (!ret && t->slave)
+			ret = read_image(h, t);
 		ret = ret ? ret : name_entries(h, t, texts);
 		ect_list_free(texts);
 	}
