@@ -43,6 +43,8 @@ struct ec_flight {
 	u8 overdue;
 	/** @built: the frame has been written; its posts may be cancelled */
 	bool built;
+	/** @patient: all its posts are */
+	bool patient;
 };
 
 /** struct ec_carry - posts of a master */
@@ -79,6 +81,12 @@ struct ec_carry {
 	unsigned int n_flying;
 	/** @flight: by index of the slot */
 	struct ec_flight flight[EC_SLOTS];
+	/** @landed: slots with the reply to patient posts, which have not ended; atomic */
+	DECLARE_BITMAP(landed, EC_SLOTS);
+	/** @has_landed: there may be some */
+	bool has_landed;
+	/** @polled: the cycle owner takes replies from the devices just now */
+	bool polled;
 	/** @stuck_ns: since when the first frame does not fit beside the cycle, ktime; or 0 */
 	aligned_u64 stuck_ns;
 	/** @stuck_class: of that frame, enum ec_post_class */
@@ -115,6 +123,12 @@ struct ec_carry {
 static inline bool ec_carry_has_left(const struct ec_carry *c)
 {
 	return READ_ONCE(c->n_ready);
+}
+
+/* do replies to patient posts wait? RT-safe */
+static inline bool ec_carry_has_landed(const struct ec_carry *c)
+{
+	return READ_ONCE(c->has_landed);
 }
 
 /* have posts not ended, in frames or not? */

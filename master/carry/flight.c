@@ -58,7 +58,9 @@ static void build(struct ec_flight *f, struct ec_slot *slot, u8 *frame)
 	unsigned int i;
 
 	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	f->patient = true;
 	list_for_each_entry(post, &f->posts, list) {
+		f->patient &= post->patient;
 		for (i = 0; i < post->n; i++) {
 			const struct ec_dg *dg = &post->dg[i];
 			u8 *p;
@@ -277,13 +279,8 @@ static void take_results(const struct ec_slot *slot, struct ec_post *post)
 	}
 }
 
-/**
- * ec_flight_landed() - a reply is received: the posts of the frame get their results
- * @slot: in state DONE, free afterwards
- *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- */
-void ec_flight_landed(struct ec_slot *slot)
+/* The posts of a frame get their results from its reply. */
+static void land(struct ec_slot *slot)
 {
 	struct ec_carry *c = slot->user;
 	struct ec_post *post;
@@ -302,4 +299,44 @@ void ec_flight_landed(struct ec_slot *slot)
 	if (READ_ONCE(c->held))
 		ec_carry_kick(c);
 	ec_post_finish(c, &posts);
+}
+
+/**
+ * ec_flight_landed() - a reply is received: the posts of the frame get their results
+ * @slot: in state DONE, free afterwards
+ *
+ * Patient ones get them by ec_flight_land() if the cycle owner receives, whose process data would
+ * leave later otherwise.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_flight_landed(struct ec_slot *slot)
+{
+	struct ec_carry *c = slot->user;
+
+	if (!READ_ONCE(c->polled) || !c->flight[slot->index].patient) {
+		land(slot);
+		return;
+	}
+	set_bit(slot->index, c->landed);
+	/* the slot before @has_landed; pairs with ec_flight_land() */
+	smp_store_release(&c->has_landed, true);
+}
+
+/**
+ * ec_flight_land() - end the patient posts whose replies have been received
+ * @c: posts of the master
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_flight_land(struct ec_carry *c)
+{
+	unsigned int i;
+
+	WRITE_ONCE(c->has_landed, false);
+	smp_mb();	/* before the slots are read; pairs with ec_flight_landed() */
+	for_each_set_bit(i, c->landed, EC_SLOTS)
+		/* the thread of the posts may do this at the same time */
+		if (test_and_clear_bit(i, c->landed))
+			land(&c->links->slots.slot[i]);
 }

@@ -24,5 +24,6 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 		   const struct ec_flight_room *room, u64 sent_ns);
 void ec_flight_end(struct ec_carry *c, const struct ec_slot *slot, struct list_head *posts);
 void ec_flight_landed(struct ec_slot *slot);
+void ec_flight_land(struct ec_carry *c);
 
 #endif

@@ -233,6 +233,9 @@ static void look_at_all(struct ec_carry *c)
 	bitmap_copy(flying, c->flying, EC_SLOTS);
 	raw_spin_unlock_irqrestore(&c->lock, flags);
 	c->overdue = false;
+	/* the cycle owner has received, and sends no more */
+	if (ec_carry_has_landed(c))
+		ec_flight_land(c);
 	for_each_set_bit(i, flying, EC_SLOTS)
 		look_at_frame(c, i, &k);
 	look_at_ready(c, &k);
@@ -404,6 +407,7 @@ void ec_loss_end_all(struct ec_carry *c)
 	const struct look none = { .now = ktime_get_ns() };
 	unsigned int i;
 
+	ec_flight_land(c);
 	for (i = 0; i < EC_SLOTS; i++)
 		look_at_frame(c, i, &none);
 	look_at_ready(c, &none);

@@ -10,6 +10,8 @@
  *
  * - it runs in the context that has received or sent the frame, possibly a hard interrupt on
  *   PREEMPT_RT, or in the thread of the posts: so it is bounded and takes no sleeping lock;
+ * - that of a patient post which a cycle owner receives runs in its next send, behind the process
+ *   data;
  * - it runs as well when the device of the link was withdrawn;
  * - it may send its post again;
  * - it never runs after ec_post_cancel() has returned: the memory may be freed then, and a late
@@ -69,6 +71,8 @@ struct ec_post {
 	u8 train;
 	/** @sides: mask of the links on which it is sent, which the user sets; 0: all */
 	u8 sides;
+	/** @patient: its end may wait until the cycle has sent, which the user sets */
+	bool patient;
 
 	/** @list: of the posts that are READY, or of its frame; the lock protects what follows */
 	struct list_head list;

@@ -318,7 +318,9 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 	}
 	/* replies may stay in the device until they are taken below */
 	rcu_read_lock();
+	WRITE_ONCE(c->carry->polled, true);
 	ec_links_poll_cycle(l);
+	WRITE_ONCE(c->carry->polled, false);
 	WRITE_ONCE(l->access.polls, l->access.polls + 1);
 	for (i = 0; i < c->n_flight; i++) {
 		struct ec_cyc_flight *f = &c->flight[i];

@@ -5,6 +5,7 @@
 #include <linux/rcupdate.h>
 #include "../base/bytes.h"
 #include "../base/once64.h"
+#include "../carry/flight.h"
 #include "../kernel/trace.h"
 #include "send.h"
 #include "units_run.h"
@@ -231,6 +232,11 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(l->access.wire_ns, max(send.wire.ns, wire_ns(c)));
 	ec_share_begin(&carry->share, ec_access_interval_us(&l->access));
+	if (unlikely(ec_carry_has_landed(carry))) {
+		/* what they lead to takes time, which the process data do not wait for */
+		ec_links_flush(l);
+		ec_flight_land(carry);
+	}
 	if (unlikely(ec_carry_has_left(carry)))
 		ec_share_send_left(carry, send.wire.ns);
 	ec_links_flush(l);

@@ -2,8 +2,9 @@
 /*
  * The mailbox transport of a slave: it writes messages to the slave and reads those of the slave.
  * It advances when its datagram is received, in the context that receives, so with a cycle its
- * next datagram leaves with the send of the same cycle. It has at most one datagram in flight, and
- * none while there is nothing to do.
+ * next datagram leaves with the send of the same cycle. With nothing but frames of EoE it advances
+ * in that send, behind the process data. It has at most one datagram in flight, and none while
+ * there is nothing to do.
  *
  * A slave with the repeat mechanism (EEPROM, general category) drops a message whose counter is
  * that of the one before, and puts its own last message into SM1 again on request. So with it no
@@ -208,9 +209,14 @@ static enum ec_box_step box_choose(struct ec_box *box)
  */
 void ec_box_go(struct ec_box *box)
 {
+	enum ec_box_step step;
+
 	lockdep_assert_held(&box->lock);
-	if (box->step == EC_BOX_REST && !box->dead && box->rx && !box->closed)
-		ec_box_post(box, box_choose(box));
+	if (box->step != EC_BOX_REST || box->dead || !box->rx || box->closed)
+		return;
+	step = box_choose(box);
+	box->post.patient = box->ops->streams(box);
+	ec_box_post(box, step);
 }
 
 /**

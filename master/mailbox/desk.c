@@ -166,6 +166,20 @@ static enum ec_box_want desk_want(struct ec_box *box)
 	return want;
 }
 
+/* Nobody waits for an answer, and no message but frames is sent. */
+static bool desk_streams(struct ec_box *box)
+{
+	struct ec_mbox *mb = mbox_of(box);
+	const struct ec_mbox_user *u;
+
+	lockdep_assert_held(&box->lock);
+	for_each_user(mb, u)
+		if ((u->type != EC_MBOX_EOE || u->answer) &&
+		    (u->phase == EC_MBOX_USER_WAITING || u->phase == EC_MBOX_USER_SENDING))
+			return false;
+	return true;
+}
+
 /* May a message be the answer to this user? Only if the slave may have its request. */
 static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
 {
@@ -358,6 +372,7 @@ static void desk_event(struct ec_box *box, enum ec_box_event event, int err)
 const struct ec_box_ops ec_desk_ops = {
 	.next = desk_next,
 	.want = desk_want,
+	.streams = desk_streams,
 	.event = desk_event,
 };
 

@@ -166,13 +166,25 @@ static void eoe_idle_8(struct kunit *test)
 	idle(test, 8, IDLE_8);
 }
 
+/* between receive and send: do replies of mailboxes wait until the process data have left? */
+static void count_waiting(struct cyc *c)
+{
+	u64 *cycles = c->ctx;
+
+	*cycles += ec_carry_has_landed(bus_carry(c->b));
+}
+
 static void beside_cycle(struct kunit *test, u32 n, u64 limit)
 {
 	struct pinger *p = pingers(test, n);
 	struct cyc *c = cyc_in_op(p->w->b, 0, n + 1);
-	u64 ns = together(test, p, n, stream, c, PINGS);
+	u64 ns, waiting = 0;
 	char text[100];
 
+	c->ctx = &waiting;
+	c->each = count_waiting;
+	ns = together(test, p, n, stream, c, PINGS);
+	KUNIT_EXPECT_GT(test, waiting, 2ull * PINGS);
 	snprintf(text, sizeof(text),
 		 "1/100 cycle of 1 ms: a full mailbox of EoE each way, %u slave(s)", n);
 	bus_judge(test, div_u64(ns, PINGS * FRAGMENTS * PERIOD_US * 10), 250, limit, text);
