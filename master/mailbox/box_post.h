@@ -163,7 +163,7 @@ struct ec_box_ops {
 	void (*next)(struct ec_box *box);
 	/** @want: what is wanted of SM1 */
 	enum ec_box_want (*want)(struct ec_box *box);
-	/** @streams: are there only frames of EoE, which can wait until the cycle has sent? */
+	/** @streams: only frames of EoE are exchanged: each can wait until the cycle has sent */
 	bool (*streams)(struct ec_box *box);
 	/** @event: something has happened; @err is 0 where not described otherwise */
 	void (*event)(struct ec_box *box, enum ec_box_event event, int err);

@@ -166,7 +166,7 @@ static enum ec_box_want desk_want(struct ec_box *box)
 	return want;
 }
 
-/* Nobody waits for an answer, and no message but frames is sent. */
+/* Is no user waiting for an answer, and is no message sent but frames? */
 static bool desk_streams(struct ec_box *box)
 {
 	struct ec_mbox *mb = mbox_of(box);

@@ -322,7 +322,7 @@ native_cost() {
 		[ "$us" = 1000 ] || [ $n = 1 ] ||
 			units=(+ eight --cycles 300 --period-us $us --domains 8
 			       + units --cycles 300 --period-us $us --domains 8 --units)
-		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 500 \
+		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 1000 \
 			--period-us $us + kernel --cycles 300 --period-us $us --kernel timer \
 			+ wait --cycles 300 --period-us $us --kernel wait \
 			+ iwait --cycles 300 --period-us $us --kernel wait --interrupt \
