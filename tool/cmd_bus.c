@@ -219,6 +219,23 @@ static void show_values(const struct ecb_slave *s, int depth)
 	out_end();
 }
 
+static void show_modules(const struct ecb_slave *s, int depth)
+{
+	out_array("modules");
+	for (size_t i = 0; i < s->module_count; i++) {
+		const struct ecb_module *m = s->modules[i];
+
+		out_object(NULL);
+		out_u("slot", m->slot, "%*sslot %u", depth, "", m->slot);
+		out_u("ident", m->ident, "  module 0x%08x", m->ident);
+		if (m->name)
+			out_str("name", m->name, "  %s", m->name);
+		out_text("\n");
+		out_end();
+	}
+	out_end();
+}
+
 /* in the order of the bus; behind a parent that follows a slave is at the margin */
 static void show_slave(const struct ecb_master *m, size_t i, int *depths)
 {
@@ -243,6 +260,7 @@ static void show_slave(const struct ecb_master *m, size_t i, int *depths)
 		out_u("port", s->port, " port %u", s->port);
 	}
 	out_text("\n");
+	show_modules(s, depths[i] + 4);
 	show_values(s, depths[i] + 4);
 	out_end();
 }
@@ -343,7 +361,7 @@ const struct cmd cmd_bus = {
 	.json = "save: file, slaves, or text; schema: text; check, diff: differences[]: kind (missing,\n"
 		"extra, exchanged, moved, value), master, line, slave, key, expected, found, remedy;\n"
 		"show: masters[]: index, cycle_ns, slaves[]: name, type, vendor, product, alias,\n"
-		"parent, port, values[]: name, index, subindex, bits, unit",
+		"parent, port, modules[]: slot, ident, name; values[]: name, index, subindex, bits, unit",
 	.flags = CMD_COMPARES,
 	.min_args = 1,
 	.max_args = 3,

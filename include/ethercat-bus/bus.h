@@ -112,6 +112,14 @@ struct ecb_clock {
 	int64_t sync1;
 };
 
+/* of a modular slave */
+struct ecb_module {
+	uint32_t line;
+	uint8_t slot;		/* subindex of 0xF050 and 0xF030: 1 to 255 */
+	uint32_t ident;		/* not 0 */
+	const char *name;	/* for readers */
+};
+
 struct ecb_slave {
 	uint32_t line;
 	const char *name;
@@ -133,6 +141,9 @@ struct ecb_slave {
 	size_t pdo_count;
 	struct ecb_command **startup;
 	size_t startup_count;
+	struct ecb_module **modules;	/* slots that are not in it are empty; none: any modules */
+	size_t module_count;
+	uint8_t write_modules;	/* write @modules into 0xF030, gaps as 0 */
 };
 
 struct ecb_unit {
@@ -253,6 +264,16 @@ struct ecb_pdo *ecb_pdo_add(struct ecb_bus *bus, struct ecb_slave *slave);
  * Return: entry, or NULL without memory.
  */
 struct ecb_entry *ecb_entry_add(struct ecb_bus *bus, struct ecb_pdo *pdo);
+
+/**
+ * ecb_module_add() - append a module to a slave
+ * @bus: bus
+ * @slave: slave of this bus
+ *
+ * Context: The thread of the bus.
+ * Return: module, or NULL without memory.
+ */
+struct ecb_module *ecb_module_add(struct ecb_bus *bus, struct ecb_slave *slave);
 
 /**
  * ecb_bus_finish() - check what belongs together, and name what has no name

@@ -144,6 +144,53 @@ static void compare_order(struct comparison *c, void *const *x, size_t n, void *
 	}
 }
 
+static void by_slot(const struct ecb_slave *s, const struct ecb_module *to[UINT8_MAX + 1])
+{
+	memset(to, 0, (UINT8_MAX + 1) * sizeof(*to));
+	for (size_t i = 0; i < s->module_count; i++)
+		to[s->modules[i]->slot] = s->modules[i];
+}
+
+static void ident(const struct ecb_module *m, char *buf, size_t size)
+{
+	if (m)
+		snprintf(buf, size, "ident 0x%08x%s%s", m->ident, m->name ? ", " : "",
+			 m->name ? m->name : "");
+	else
+		snprintf(buf, size, "an empty slot");
+}
+
+/* slot by slot */
+static void compare_modules(struct comparison *c, const struct ecb_slave *a,
+			    const struct ecb_slave *b)
+{
+	const struct ecb_module *as[UINT8_MAX + 1], *bs[UINT8_MAX + 1];
+	char key[32], expected[192], found[192], remedy[96];
+
+	if (!a->module_count && (c->flags & ECB_COMPARE_MACHINE || !b->module_count))
+		return;
+	by_slot(a, as);
+	by_slot(b, bs);
+	for (unsigned int slot = 1; slot <= UINT8_MAX; slot++) {
+		const struct ecb_module *x = as[slot], *y = bs[slot];
+
+		if (x ? y && x->ident == y->ident : !y)
+			continue;
+		snprintf(key, sizeof(key), "module in slot %u", slot);
+		ident(x, expected, sizeof(expected));
+		ident(y, found, sizeof(found));
+		if (x)
+			snprintf(remedy, sizeof(remedy),
+				 "plug the expected module into slot %u, or change modules in the file",
+				 slot);
+		else
+			snprintf(remedy, sizeof(remedy),
+				 "remove it from slot %u, or add it to modules in the file", slot);
+		differ(c, ECB_VALUE_DIFFERS, key, x ? (const void *)x : a, expected,
+		       y ? (const void *)y : b, found, remedy);
+	}
+}
+
 static void compare_lists(struct comparison *c, const struct field *f, const char *path,
 			  const void *a, const void *b)
 {
@@ -187,7 +234,9 @@ static void compare_fields(struct comparison *c, const struct field *f, const ch
 
 	if (f->kind == K_LATER || (c->flags & ECB_COMPARE_MACHINE && !(f->flags & F_MACHINE)))
 		return;
-	if (f->kind == K_LIST) {
+	if (f->type == &type_module) {
+		compare_modules(c, a, b);
+	} else if (f->kind == K_LIST) {
 		compare_lists(c, f, path, a, b);
 	} else if (f->kind != K_ITEM) {
 		compare_scalars(c, f, path, a, b);

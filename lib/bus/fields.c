@@ -93,6 +93,17 @@ static const struct type type_clock = {
 };
 #undef S
 
+#define S ecb_module
+static const struct field type_module_fields[] = {
+	{ "slot", K_NUMBER, F_REQUIRED | F_MACHINE, AT(slot), 1, 255,
+	  .text = "subindex of 0xF050 and 0xF030" },
+	{ "ident", K_NUMBER, F_REQUIRED | F_HEX | F_MACHINE, AT(ident), 1, UINT32_MAX,
+	  .text = "module ident; an empty slot is not in the list" },
+	{ "name", K_TEXT, 0, AT(name), .text = "name of the module, for readers" },
+};
+TYPE(type_module, ecb_module, "a module", 255);
+#undef S
+
 #define S ecb_slave
 static const struct field type_slave_fields[] = {
 	{ "name", K_NAME, 0, AT(name), .text = "unique in the master; not given: made of type" },
@@ -118,6 +129,10 @@ static const struct field type_slave_fields[] = {
 	{ "timeouts", K_ITEM, 0, AT(timeouts), .type = &type_timeouts,
 	  .text = "time limits; not given: those of the master" },
 	{ "clock", K_ITEM, 0, AT(clock), .type = &type_clock, .text = "SYNC signals" },
+	{ "modules", K_LIST, F_MACHINE, AT(modules), .type = &type_module,
+	  .text = "modules by slot, object 0xF050; not given: any" },
+	{ "write_modules", K_BOOL, 0, AT(write_modules),
+	  .text = "the master writes the modules into 0xF030 in PREOP, at each connect" },
 	{ "pdos", K_LIST, F_MACHINE, AT(pdos), .type = &type_pdo,
 	  .text = "assigned PDOs; not given: those that the slave has" },
 	{ "startup", K_LIST, 0, AT(startup), .type = &type_command, .text = "startup commands" },

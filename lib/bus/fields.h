@@ -63,6 +63,7 @@ struct type {
 extern const struct type type_bus;
 extern const struct type type_master;
 extern const struct type type_slave;
+extern const struct type type_module;
 extern const struct type type_pdo;
 extern const struct type type_entry;
 

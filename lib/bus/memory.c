@@ -165,6 +165,11 @@ ECB_API struct ecb_entry *ecb_entry_add(struct ecb_bus *bus, struct ecb_pdo *pdo
 	return ecb_append((struct whole *)bus, &pdo->entries, &type_entry);
 }
 
+ECB_API struct ecb_module *ecb_module_add(struct ecb_bus *bus, struct ecb_slave *slave)
+{
+	return ecb_append((struct whole *)bus, &slave->modules, &type_module);
+}
+
 ECB_API int ecb_bus_finish(struct ecb_bus *bus, const char *file, struct ecb_error *error)
 {
 	return ecb_rules((struct whole *)bus, file ? file : "bus", error);

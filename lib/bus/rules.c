@@ -103,6 +103,23 @@ static int pdos(struct check *c, struct ecb_slave *s)
 	return ret || !s->pdo_count ? ret : name_values(c, s);
 }
 
+static int modules(struct check *c, const struct ecb_slave *s)
+{
+	bool seen[256] = { false };
+
+	for (size_t i = 0; i < s->module_count; i++) {
+		const struct ecb_module *m = s->modules[i];
+
+		if (seen[m->slot])
+			return BAD(c, m->line, "slot %u twice; expected it once for a slave",
+				   m->slot);
+		seen[m->slot] = true;
+	}
+	if (s->write_modules && !s->module_count)
+		return BAD(c, s->line, "'write_modules' of slave '%s' without 'modules'", s->name);
+	return 0;
+}
+
 /* whether a number fits into a type */
 static bool fits(unsigned int type, int64_t v)
 {
@@ -191,7 +208,9 @@ static int slave(struct check *c, size_t i)
 			nearest = text_nearer(s->sync_unit, nearest, m->sync_units[k]->name);
 		return missing(c, s->line, "sync unit", s->sync_unit, nearest);
 	}
-	ret = pdos(c, s);
+	ret = modules(c, s);
+	if (!ret)
+		ret = pdos(c, s);
 	for (k = 0; k < s->startup_count && !ret; k++)
 		ret = command(c, s->startup[k]);
 	return ret;

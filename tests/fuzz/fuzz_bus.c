@@ -23,6 +23,8 @@ const struct fuzz_seed fuzz_seeds[] = {
 	SEED(S "    pdos:\n    - index: 0x1a00\n      sm: 3\n      name: \"a\\tb\"\n      entries:\n"
 	     "      - {object: 0x6000:01, bits: 16, type: int16, unit: mm, scale: 1e-3, offset: -1}\n"
 	     "      - {bits: 8}\n      - {object: 0x6000:02, bits: 8, name: p.value}\n"),
+	SEED(S "    modules:\n    - {slot: 1, ident: 0x119800, name: x}\n    - slot: 255\n"
+	     "      ident: 4294967295\n    write_modules: true\n"),
 	SEED(S "    startup:\n    - {at: safeop, sdo: 0x8000:01, type: uint8, value: 255}\n"
 	     "    - {at: preop, register: 0x120, data: 00 ff}\n"
 	     "    - {at: op, idn: P-7-4095, drive: 1, type: int64, value: -1}\n"

@@ -12,6 +12,7 @@ static int bad;
 #define HEAD	"ethercat: 1\nmasters:\n- slaves:\n"
 #define SLAVE	HEAD "  - vendor: 2\n    product: 3\n"
 #define PDO	SLAVE "    pdos:\n    - index: 0x1a00\n      sm: 3\n      entries:\n"
+#define MODULE	SLAVE "    modules:\n    - slot: 1\n"
 #define SDO	SLAVE "    startup:\n    - at: safeop\n"
 #define MASTER	"ethercat: 1\nmasters:\n- "
 
@@ -101,6 +102,12 @@ static const struct {
 	  "      - {bits: 8, object: 0x6000:02, name: a}\n", "two values of the same name" },
 	{ PDO "      - {bits: 8, object: 0x6000:01, unit: furlong}\n", NULL },
 	{ PDO "      - {bits: 8}\n    - {index: 0x1a00, sm: 3}\n", "t:11: PDO 0x1a00 twice" },
+	{ MODULE "      ident: 7\n    write_modules: true\n", NULL },
+	{ MODULE, "t:7:7: a module without 'ident'" },
+	{ MODULE "      ident: 0\n", "ident: found '0', expected a number from 0x1 to 0xffffffff" },
+	{ MODULE "      ident: 7\n    - {slot: 256, ident: 7}\n", "slot: found '256'" },
+	{ MODULE "      ident: 7\n    - {slot: 1, ident: 8}\n", "t:9: slot 1 twice" },
+	{ SLAVE "    write_modules: true\n", "t:4: 'write_modules' of slave 'slave' without" },
 	{ SDO "      value: 1\n", "with 0 targets; expected one of register, sdo and idn" },
 	{ SDO "      sdo: 0x8000:01\n", "needs either 'data', or 'type' and 'value'" },
 	{ SDO "      sdo: 0x8000:01\n      value: 1\n", "needs either 'data'" },
