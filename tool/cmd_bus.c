@@ -101,6 +101,7 @@ struct names {
 static const char *const kinds[] = {
 	[ECB_MISSING] = "missing", [ECB_EXTRA] = "extra", [ECB_EXCHANGED] = "exchanged",
 	[ECB_MOVED] = "moved", [ECB_VALUE_DIFFERS] = "value",
+	[ECB_PENDING] = "pending",
 };
 
 static void show_difference(void *ctx, const struct ecb_difference *d)
@@ -236,17 +237,80 @@ static void show_modules(const struct ecb_slave *s, int depth)
 	out_end();
 }
 
-/* in the order of the bus; behind a parent that follows a slave is at the margin */
-static void show_slave(const struct ecb_master *m, size_t i, int *depths)
+/* a slave by its name */
+struct named {
+	const char *name;
+	size_t at;
+};
+
+static int by_name(const void *a, const void *b)
+{
+	return strcmp(((const struct named *)a)->name, ((const struct named *)b)->name);
+}
+
+/* @to: index of each slave's parent, or the number of slaves */
+static void find_parents(const struct ecb_master *m, struct named *names, size_t *to)
+{
+	size_t n = m->slave_count;
+
+	for (size_t i = 0; i < n; i++)
+		names[i] = (struct named){ m->slaves[i]->name, i };
+	qsort(names, n, sizeof(*names), by_name);
+	for (size_t i = 0; i < n; i++) {
+		const struct named key = { m->slaves[i]->parent, 0 };
+		const struct named *parent = key.name ? bsearch(&key, names, n, sizeof(key),
+								by_name) : NULL;
+
+		to[i] = parent ? parent->at : n;
+	}
+}
+
+/* the first line stays at the margin, branches go in; a parent may stand behind its branches */
+static void find_depths(const struct ecb_master *m, const size_t *parents, size_t *path,
+			int *depths)
+{
+	for (size_t i = 0; i < m->slave_count; i++) {
+		size_t n = 0, at = i;
+
+		for (; at < m->slave_count && !depths[at] && n < m->slave_count; at = parents[at])
+			path[n++] = at;
+		while (n--) {
+			size_t p = parents[path[n]];
+			int in = p < m->slave_count ? depths[p] : 2;
+
+			if (p < m->slave_count && m->slaves[path[n]]->port > 1 && in < DEPTH_MAX)
+				in += 2;
+			depths[path[n]] = in;
+		}
+	}
+}
+
+/* columns of each slave, to be freed; NULL without memory */
+static int *depths_of(const struct ecb_master *m)
+{
+	struct named *names = calloc(m->slave_count + 1, sizeof(*names));
+	size_t *parents = calloc(m->slave_count + 1, sizeof(*parents));
+	size_t *path = calloc(m->slave_count + 1, sizeof(*path));
+	int *depths = calloc(m->slave_count + 1, sizeof(*depths));
+
+	if (names && parents && path && depths) {
+		find_parents(m, names, parents);
+		find_depths(m, parents, path, depths);
+	} else {
+		free(depths);
+		depths = NULL;
+	}
+	free(names);
+	free(parents);
+	free(path);
+	return depths;
+}
+
+/* in the order of the bus */
+static void show_slave(const struct ecb_master *m, size_t i, const int *depths)
 {
 	const struct ecb_slave *s = m->slaves[i];
-	size_t p = 0;
 
-	while (s->parent && p < i && strcmp(m->slaves[p]->name, s->parent))
-		p++;
-	/* the first line stays at the margin, branches go in */
-	depths[i] = !s->parent || p == i ? 2 :
-		    depths[p] + (s->port > 1 && depths[p] < DEPTH_MAX ? 2 : 0);
 	out_object(NULL);
 	out_str("name", s->name, "%*s%s", depths[i], "", s->name);
 	if (s->type)
@@ -277,7 +341,7 @@ static int show(struct tool *t, int argc, char **argv)
 	out_array("masters");
 	for (size_t i = 0; i < bus->master_count && !ret; i++) {
 		const struct ecb_master *m = bus->masters[i];
-		int *depths = calloc(m->slave_count + 1, sizeof(*depths));
+		int *depths = depths_of(m);
 
 		if (!depths) {
 			ret = fail("out of memory");
@@ -359,7 +423,7 @@ const struct cmd cmd_bus = {
 		"\n"
 		"Exit code of 'check' and 'diff': 0 equal, 1 differences, 2 not compared.\n",
 	.json = "save: file, slaves, or text; schema: text; check, diff: differences[]: kind (missing,\n"
-		"extra, exchanged, moved, value), master, line, slave, key, expected, found, remedy;\n"
+		"extra, exchanged, moved, value, pending), master, line, slave, key, expected, found, remedy;\n"
 		"show: masters[]: index, cycle_ns, slaves[]: name, type, vendor, product, alias,\n"
 		"parent, port, modules[]: slot, ident, name; values[]: name, index, subindex, bits, unit",
 	.flags = CMD_COMPARES,

@@ -144,7 +144,18 @@ struct ecb_slave {
 	struct ecb_module **modules;	/* slots that are not in it are empty; none: any modules */
 	size_t module_count;
 	uint8_t write_modules;	/* write @modules into 0xF030, gaps as 0 */
+	uint32_t known;		/* ECB_KNOWN_*; of a file 0 */
+	uint8_t state;		/* AL state, of a slave of a running session; otherwise 0 */
 };
+
+/* struct ecb_slave.known: what a machine has told of it, for ecb_compare() */
+#define ECB_KNOWN_PDOS		0x01U
+#define ECB_KNOWN_MODULES	0x02U
+#define ECB_KNOWN_CLOCK		0x04U
+#define ECB_KNOWN_SHIFT		0x08U	/* of SYNC0 */
+#define ECB_KNOWN_STARTUP	0x10U	/* present values of objects */
+#define ECB_KNOWN_UNIT		0x20U
+#define ECB_KNOWN_GROUP		0x40U
 
 struct ecb_unit {
 	uint32_t line;
@@ -183,6 +194,7 @@ struct ecb_master {
 	size_t group_count;
 	struct ecb_slave **slaves;
 	size_t slave_count;
+	uint32_t known;		/* ECB_KNOWN_UNIT and _GROUP: the running session has told its own */
 };
 
 struct ecb_bus {
@@ -274,6 +286,59 @@ struct ecb_entry *ecb_entry_add(struct ecb_bus *bus, struct ecb_pdo *pdo);
  * Return: module, or NULL without memory.
  */
 struct ecb_module *ecb_module_add(struct ecb_bus *bus, struct ecb_slave *slave);
+
+/**
+ * ecb_clock_add() - give a slave a clock
+ * @bus: bus
+ * @slave: slave of this bus, without clock
+ *
+ * Context: The thread of the bus.
+ * Return: clock, or NULL without memory.
+ */
+struct ecb_clock *ecb_clock_add(struct ecb_bus *bus, struct ecb_slave *slave);
+
+/**
+ * ecb_startup_add() - append a startup command to a slave
+ * @bus: bus
+ * @slave: slave of this bus
+ * @data: value, or NULL: the caller sets @type and @value
+ * @size: bytes at @data
+ *
+ * Context: The thread of the bus.
+ * Return: command with a copy of @data, or NULL without memory.
+ */
+struct ecb_command *ecb_startup_add(struct ecb_bus *bus, struct ecb_slave *slave,
+				    const void *data, size_t size);
+
+/**
+ * ecb_unit_add() - append a sync unit to a master
+ * @bus: bus
+ * @master: master of this bus
+ *
+ * Context: The thread of the bus.
+ * Return: sync unit, or NULL without memory.
+ */
+struct ecb_unit *ecb_unit_add(struct ecb_bus *bus, struct ecb_master *master);
+
+/**
+ * ecb_group_add() - append a hot connect group to a master
+ * @bus: bus
+ * @master: master of this bus
+ *
+ * Context: The thread of the bus.
+ * Return: hot connect group, or NULL without memory.
+ */
+struct ecb_group *ecb_group_add(struct ecb_bus *bus, struct ecb_master *master);
+
+/**
+ * ecb_command_data() - the bytes that a startup command writes
+ * @command: startup command
+ * @number: for its @value, which becomes little endian
+ *
+ * Context: Any thread, while no other one changes the bus.
+ * Return: bytes, of @data or in @number.
+ */
+struct ecb_bytes ecb_command_data(const struct ecb_command *command, uint8_t number[8]);
 
 /**
  * ecb_bus_finish() - check what belongs together, and name what has no name

@@ -15,6 +15,7 @@ extern "C" {
 #define ECB_EXCHANGED	2	/* another device in the place of the expected one */
 #define ECB_MOVED	3	/* connected to another port */
 #define ECB_VALUE_DIFFERS	4
+#define ECB_PENDING	5	/* a startup command that no session has executed; no difference */
 
 /* flags of ecb_compare() */
 #define ECB_COMPARE_MACHINE	1	/* @found is a machine, which has no names */
@@ -39,15 +40,17 @@ typedef void (*ecb_difference_fn)(void *ctx, const struct ecb_difference *d);
  * @expected: bus, of a file for example
  * @found: bus
  * @flags: ECB_COMPARE_*
- * @fn: called for each difference
+ * @fn: called for each difference, and for what is pending
  * @ctx: for @fn
  *
  * Slaves belong together by alias, identification, serial number, or by name between two files;
  * the others by identity in the order of the bus, so that one slave more is one difference. What
  * is connected behind a slave that is extra or missing is not moved by that.
+ * With %ECB_COMPARE_MACHINE what @expected does not say, and what @known of a slave does not name,
+ * is not compared.
  *
  * Context: The thread of both buses.
- * Return: number of differences, or -ENOMEM.
+ * Return: number of differences without pending ones, or -ENOMEM.
  */
 long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found, unsigned int flags,
 		 ecb_difference_fn fn, void *ctx);

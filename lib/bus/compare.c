@@ -3,26 +3,15 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "fields.h"
-#include "match.h"
-
-struct comparison {
-	unsigned int flags;
-	ecb_difference_fn fn;
-	void *ctx;
-	long count;
-	uint32_t master;
-	const char *slave;
-};
+#include "compare_int.h"
 
 static uint32_t line_of(const void *item)
 {
 	return item ? *(const uint32_t *)item : 0;
 }
 
-/* @a: what is expected, @b: what is found; items or NULL */
-static void differ(struct comparison *c, unsigned int kind, const char *key, const void *a,
-		   const char *expected, const void *b, const char *found, const char *remedy)
+void differ(struct comparison *c, unsigned int kind, const char *key, const void *a,
+	    const char *expected, const void *b, const char *found, const char *remedy)
 {
 	struct ecb_difference d = {
 		.kind = kind, .master = c->master, .line = line_of(a), .found_line = line_of(b),
@@ -30,7 +19,7 @@ static void differ(struct comparison *c, unsigned int kind, const char *key, con
 		.remedy = c->flags & ECB_COMPARE_MACHINE ? remedy : "",
 	};
 
-	c->count++;
+	c->count += kind != ECB_PENDING;
 	c->fn(c->ctx, &d);
 }
 
@@ -42,9 +31,6 @@ static const char *remedy_of(const struct field *f)
 		return "install the expected device, or change the number in the file";
 	return "change the slave, or the file";
 }
-
-static void compare_items(struct comparison *c, const struct type *type, const char *path,
-			  const void *a, const void *b);
 
 static void print(const struct field *f, const void *from, char *buf, size_t size)
 {
@@ -60,6 +46,16 @@ static bool same_bytes(const struct ecb_bytes *a, const struct ecb_bytes *b)
 	return a->size == b->size && (!a->size || !memcmp(a->data, b->data, a->size));
 }
 
+/* a lease of a machine is a number of cycles */
+static bool same_lease(const struct comparison *c, const struct field *f, const void *x,
+		       const void *y)
+{
+	int64_t d = f->kind == K_TIME ? *(const int64_t *)x - *(const int64_t *)y : 0;
+
+	return c->flags & ECB_COMPARE_MACHINE && !strcmp(f->key, "lease") && d &&
+		(d < 0 ? -d : d) < c->cycle;
+}
+
 static void compare_scalars(struct comparison *c, const struct field *f, const char *path,
 			    const void *a, const void *b)
 {
@@ -71,158 +67,17 @@ static void compare_scalars(struct comparison *c, const struct field *f, const c
 		return;
 	print(f, x, expected, sizeof(expected));
 	print(f, y, found, sizeof(found));
-	if (!strcmp(expected, found) && (f->kind != K_BYTES || same_bytes(x, y)))
+	if ((!strcmp(expected, found) && (f->kind != K_BYTES || same_bytes(x, y))) ||
+	    same_lease(c, f, x, y))
 		return;
 	snprintf(key, sizeof(key), "%s%s", path, f->key);
 	differ(c, ECB_VALUE_DIFFERS, key, a, expected, b, found, remedy_of(f));
 }
 
-/* a name or an index that is unique in its list is the first field of an item */
-static bool has_key(const struct type *type)
+/* whether a machine tells it, and has told it */
+static bool is_told(const struct comparison *c, const struct field *f)
 {
-	return type->fields[0].flags & F_REQUIRED &&
-		(type->fields[0].kind == K_NAME || type->fields[0].kind == K_NUMBER);
-}
-
-static void key_of(const struct type *type, const void *item, size_t i, char *buf, size_t size)
-{
-	if (has_key(type))
-		scalar_print(&type->fields[0], (const char *)item + type->fields[0].at, buf, size);
-	else
-		snprintf(buf, size, "%zu", i + 1);
-}
-
-static const void *same_key(const struct type *type, const void *item, size_t i,
-			    void *const *others, size_t n)
-{
-	char key[ECB_WORD], other[ECB_WORD];
-
-	if (!has_key(type))
-		return i < n ? others[i] : NULL;
-	key_of(type, item, i, key, sizeof(key));
-	for (size_t k = 0; k < n; k++) {
-		key_of(type, others[k], k, other, sizeof(other));
-		if (!strcmp(key, other))
-			return others[k];
-	}
-	return NULL;
-}
-
-static size_t pdo_at(void *const *pdos, size_t n, const struct ecb_pdo *p)
-{
-	size_t i = 0;
-
-	while (i < n && ((const struct ecb_pdo *)pdos[i])->index != p->index)
-		i++;
-	return i;
-}
-
-/* the order of PDOs within a SyncManager is that of their data; one difference for each */
-static void compare_order(struct comparison *c, void *const *x, size_t n, void *const *y, size_t k)
-{
-	size_t last[256], at;
-	const struct ecb_pdo *before[256] = { NULL };
-	char key[64], expected[64], found[64];
-
-	for (size_t i = 0; i < n; i++) {
-		const struct ecb_pdo *p = x[i], *peer;
-
-		at = pdo_at(y, k, p);
-		peer = at < k ? y[at] : NULL;
-		if (!peer || peer->sm != p->sm)
-			continue;
-		if (before[p->sm] && at < last[p->sm]) {
-			snprintf(key, sizeof(key), "pdos 0x%04x order", p->index);
-			snprintf(expected, sizeof(expected), "behind 0x%04x",
-				 before[p->sm]->index);
-			snprintf(found, sizeof(found), "before it");
-			differ(c, ECB_VALUE_DIFFERS, key, p, expected, peer, found,
-			       "assign PDOs in the order of the file, or change the file");
-		}
-		before[p->sm] = p;
-		last[p->sm] = at;
-	}
-}
-
-static void by_slot(const struct ecb_slave *s, const struct ecb_module *to[UINT8_MAX + 1])
-{
-	memset(to, 0, (UINT8_MAX + 1) * sizeof(*to));
-	for (size_t i = 0; i < s->module_count; i++)
-		to[s->modules[i]->slot] = s->modules[i];
-}
-
-static void ident(const struct ecb_module *m, char *buf, size_t size)
-{
-	if (m)
-		snprintf(buf, size, "ident 0x%08x%s%s", m->ident, m->name ? ", " : "",
-			 m->name ? m->name : "");
-	else
-		snprintf(buf, size, "an empty slot");
-}
-
-/* slot by slot */
-static void compare_modules(struct comparison *c, const struct ecb_slave *a,
-			    const struct ecb_slave *b)
-{
-	const struct ecb_module *as[UINT8_MAX + 1], *bs[UINT8_MAX + 1];
-	char key[32], expected[192], found[192], remedy[96];
-
-	if (!a->module_count && (c->flags & ECB_COMPARE_MACHINE || !b->module_count))
-		return;
-	by_slot(a, as);
-	by_slot(b, bs);
-	for (unsigned int slot = 1; slot <= UINT8_MAX; slot++) {
-		const struct ecb_module *x = as[slot], *y = bs[slot];
-
-		if (x ? y && x->ident == y->ident : !y)
-			continue;
-		snprintf(key, sizeof(key), "module in slot %u", slot);
-		ident(x, expected, sizeof(expected));
-		ident(y, found, sizeof(found));
-		if (x)
-			snprintf(remedy, sizeof(remedy),
-				 "plug the expected module into slot %u, or change modules in the file",
-				 slot);
-		else
-			snprintf(remedy, sizeof(remedy),
-				 "remove it from slot %u, or add it to modules in the file", slot);
-		differ(c, ECB_VALUE_DIFFERS, key, x ? (const void *)x : a, expected,
-		       y ? (const void *)y : b, found, remedy);
-	}
-}
-
-static void compare_lists(struct comparison *c, const struct field *f, const char *path,
-			  const void *a, const void *b)
-{
-	void *const *x = *(void *const *const *)((const char *)a + f->at);
-	void *const *y = *(void *const *const *)((const char *)b + f->at);
-	size_t n = *(const size_t *)((const char *)a + f->at + sizeof(void *));
-	size_t k = *(const size_t *)((const char *)b + f->at + sizeof(void *));
-	char sub[128], key[ECB_WORD];
-
-	if (c->flags & ECB_COMPARE_MACHINE && !n)
-		return;
-	for (size_t i = 0; i < n; i++) {
-		const void *peer = same_key(f->type, x[i], i, y, k);
-
-		key_of(f->type, x[i], i, key, sizeof(key));
-		snprintf(sub, sizeof(sub), "%s%s %s%s", path, f->key, key, peer ? " " : "");
-		if (peer)
-			compare_items(c, f->type, sub, x[i], peer);
-		else
-			differ(c, ECB_MISSING, sub, x[i], f->type->name, NULL, "",
-			       "map and assign PDOs as in the file, or change the file");
-	}
-	if (f->type == &type_pdo)
-		compare_order(c, x, n, y, k);
-	for (size_t i = 0; i < k; i++) {
-		if (same_key(f->type, y[i], i, x, n))
-			continue;
-		key_of(f->type, y[i], i, key, sizeof(key));
-		snprintf(sub, sizeof(sub), "%s%s %s", path, f->key, key);
-		differ(c, ECB_EXTRA, sub, NULL, "", y[i], f->type->name,
-		       "map and assign PDOs as in the file, or change the file");
-	}
+	return f->flags & F_MACHINE && (!f->known || c->known & f->known);
 }
 
 static void compare_fields(struct comparison *c, const struct field *f, const char *path,
@@ -230,12 +85,15 @@ static void compare_fields(struct comparison *c, const struct field *f, const ch
 {
 	const void *x = f->kind == K_ITEM ? *(void *const *)((const char *)a + f->at) : NULL;
 	const void *y = f->kind == K_ITEM ? *(void *const *)((const char *)b + f->at) : NULL;
+	bool machine = c->flags & ECB_COMPARE_MACHINE;
 	char sub[128];
 
-	if (f->kind == K_LATER || (c->flags & ECB_COMPARE_MACHINE && !(f->flags & F_MACHINE)))
+	if (f->kind == K_LATER || (machine && !is_told(c, f)))
 		return;
 	if (f->type == &type_module) {
 		compare_modules(c, a, b);
+	} else if (f->type == &type_command && machine) {
+		compare_startup(c, a, b);
 	} else if (f->kind == K_LIST) {
 		compare_lists(c, f, path, a, b);
 	} else if (f->kind != K_ITEM) {
@@ -243,14 +101,14 @@ static void compare_fields(struct comparison *c, const struct field *f, const ch
 	} else if (x && y) {
 		snprintf(sub, sizeof(sub), "%s%s ", path, f->key);
 		compare_items(c, f->type, sub, x, y);
-	} else if (x || y) {
+	} else if (x || (y && !machine)) {
 		differ(c, x ? ECB_MISSING : ECB_EXTRA, f->key, x, x ? f->type->name : "", y,
-		       y ? f->type->name : "", "change the file");
+		       y ? f->type->name : "", "configure it as in the file, or change the file");
 	}
 }
 
-static void compare_items(struct comparison *c, const struct type *type, const char *path,
-			  const void *a, const void *b)
+void compare_items(struct comparison *c, const struct type *type, const char *path, const void *a,
+		   const void *b)
 {
 	for (size_t i = 0; i < type->count; i++)
 		compare_fields(c, &type->fields[i], path, a, b);
@@ -312,6 +170,7 @@ static void compare_slaves(struct comparison *c, const struct match *m, size_t i
 	bool machine = c->flags & ECB_COMPARE_MACHINE;
 	char expected[256], found[256];
 
+	c->known = b->known;
 	if (!same_identity(a, b)) {
 		identity(a, expected, sizeof(expected));
 		identity(b, found, sizeof(found));
@@ -366,6 +225,8 @@ static int compare_masters(struct comparison *c, const struct ecb_master *a,
 	int ret = match_slaves(&m, a, b, !(c->flags & ECB_COMPARE_MACHINE));
 
 	c->slave = "";
+	c->known = b->known;
+	c->cycle = b->cycle;
 	for (size_t i = 0; i < type_master.count && !ret; i++)
 		if (type_master.fields[i].type != &type_slave)
 			compare_fields(c, &type_master.fields[i], "", a, b);
@@ -380,7 +241,7 @@ static int compare_masters(struct comparison *c, const struct ecb_master *a,
 		if (m.b.peer[i] == NO_SLAVE)
 			alone(c, &m, i, false);
 	match_free(&m);
-	return ret;
+	return ret ? ret : c->err;
 }
 
 ECB_API long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found,

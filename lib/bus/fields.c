@@ -61,7 +61,7 @@ static const struct field command_fields[] = {
 	{ "value", K_SIGNED, 0, AT(value), .text = "number, with type" },
 	{ "data", K_BYTES, 0, AT(data), .text = "bytes, instead of type and value" },
 };
-static const struct type type_command = {
+const struct type type_command = {
 	"a startup command", sizeof(struct ecb_command), command_fields, COUNT(command_fields),
 	65535
 };
@@ -82,11 +82,12 @@ static const struct type type_timeouts = {
 
 #define S ecb_clock
 static const struct field clock_fields[] = {
-	{ "assign_activate", K_NUMBER, F_REQUIRED | F_HEX, AT(assign_activate), 0, 0xffff,
+	{ "assign_activate", K_NUMBER, F_REQUIRED | F_HEX | F_MACHINE, AT(assign_activate), 0, 0xffff,
 	  .text = "register 0x0980, from the device description" },
-	{ "sync0", K_TIME, 0, AT(sync0), 0, UINT32_MAX, .text = "period of SYNC0" },
-	{ "sync0_shift", K_TIME, F_SIGN, AT(sync0_shift), 0, INT32_MAX, .text = "shift of SYNC0" },
-	{ "sync1", K_TIME, 0, AT(sync1), 0, UINT32_MAX, .text = "register 0x09A4" },
+	{ "sync0", K_TIME, F_MACHINE, AT(sync0), 0, UINT32_MAX, .text = "period of SYNC0" },
+	{ "sync0_shift", K_TIME, F_SIGN | F_MACHINE, AT(sync0_shift), 0, INT32_MAX,
+	  .known = ECB_KNOWN_SHIFT, .text = "shift of SYNC0" },
+	{ "sync1", K_TIME, F_MACHINE, AT(sync1), 0, UINT32_MAX, .text = "register 0x09A4" },
 };
 static const struct type type_clock = {
 	"a clock", sizeof(struct ecb_clock), clock_fields, COUNT(clock_fields), 1
@@ -124,18 +125,23 @@ static const struct field type_slave_fields[] = {
 	  .text = "explicit device identification; 0 or not given: any" },
 	{ "parent", K_NAME, F_MACHINE, AT(parent), .text = "slave upstream" },
 	{ "port", K_NUMBER, F_MACHINE, AT(port), 0, 3, .def = ECB_NONE8, .text = "port of parent" },
-	{ "group", K_NAME, 0, AT(group), .text = "hot connect group" },
-	{ "sync_unit", K_NAME, 0, AT(sync_unit), .text = "sync unit" },
+	{ "group", K_NAME, F_MACHINE, AT(group), .known = ECB_KNOWN_GROUP,
+	  .text = "hot connect group" },
+	{ "sync_unit", K_NAME, F_MACHINE, AT(sync_unit), .known = ECB_KNOWN_UNIT,
+	  .text = "sync unit" },
 	{ "timeouts", K_ITEM, 0, AT(timeouts), .type = &type_timeouts,
 	  .text = "time limits; not given: those of the master" },
-	{ "clock", K_ITEM, 0, AT(clock), .type = &type_clock, .text = "SYNC signals" },
+	{ "clock", K_ITEM, F_MACHINE, AT(clock), .type = &type_clock,
+	  .known = ECB_KNOWN_CLOCK, .text = "SYNC signals" },
 	{ "modules", K_LIST, F_MACHINE, AT(modules), .type = &type_module,
+	  .known = ECB_KNOWN_MODULES,
 	  .text = "modules by slot, object 0xF050; not given: any" },
 	{ "write_modules", K_BOOL, 0, AT(write_modules),
 	  .text = "the master writes the modules into 0xF030 in PREOP, at each connect" },
-	{ "pdos", K_LIST, F_MACHINE, AT(pdos), .type = &type_pdo,
+	{ "pdos", K_LIST, F_MACHINE, AT(pdos), .type = &type_pdo, .known = ECB_KNOWN_PDOS,
 	  .text = "assigned PDOs; not given: those that the slave has" },
-	{ "startup", K_LIST, 0, AT(startup), .type = &type_command, .text = "startup commands" },
+	{ "startup", K_LIST, F_MACHINE, AT(startup), .type = &type_command,
+	  .known = ECB_KNOWN_STARTUP, .text = "startup commands" },
 	{ "aoe", K_LATER, .text = "AoE" },
 };
 TYPE(type_slave, ecb_slave, "a slave", 65535);
@@ -143,37 +149,37 @@ TYPE(type_slave, ecb_slave, "a slave", 65535);
 
 #define S ecb_unit
 static const struct field unit_fields[] = {
-	{ "name", K_NAME, F_REQUIRED, AT(name), .text = "unique in the master" },
-	{ "policy", K_WORD, 0, AT(policy), .words = policies,
+	{ "name", K_NAME, F_REQUIRED | F_MACHINE, AT(name), .text = "unique in the master" },
+	{ "policy", K_WORD, F_MACHINE, AT(policy), .words = policies,
 	  .text = "what is done when its working counters are incomplete" },
-	{ "limit", K_NUMBER, 0, AT(limit), 1, 65535, .def = 3,
+	{ "limit", K_NUMBER, F_MACHINE, AT(limit), 1, 65535, .def = 3,
 	  .text = "incomplete receives in a row" },
-	{ "lease", K_TIME, 0, AT(lease), 0, HOUR,
+	{ "lease", K_TIME, F_MACHINE, AT(lease), 0, HOUR,
 	  .text = "time without new outputs; 0 or not given: no lease" },
-	{ "lease_end", K_WORD, 0, AT(lease_holds), .words = lease_ends,
+	{ "lease_end", K_WORD, F_MACHINE, AT(lease_holds), .words = lease_ends,
 	  .text = "outputs after the lease" },
-	{ "repeats", K_NUMBER, 0, AT(repeats), 1, 3, .def = 1, .text = "frames in a cycle" },
-	{ "needs_authority", K_BOOL, 0, AT(needs_authority),
+	{ "repeats", K_NUMBER, F_MACHINE, AT(repeats), 1, 3, .def = 1, .text = "frames in a cycle" },
+	{ "needs_authority", K_BOOL, F_MACHINE, AT(needs_authority),
 	  .text = "it begins without authority, and a failure takes it" },
-	{ "offered", K_BOOL, 0, AT(offered), .text = "another application may hold it" },
+	{ "offered", K_BOOL, F_MACHINE, AT(offered), .text = "another application may hold it" },
 };
-static const struct type type_unit = {
+const struct type type_unit = {
 	"a sync unit", sizeof(struct ecb_unit), unit_fields, COUNT(unit_fields), 64
 };
 #undef S
 
 #define S ecb_group
 static const struct field group_fields[] = {
-	{ "name", K_NAME, F_REQUIRED, AT(name), .text = "unique in the master" },
-	{ "alias", K_NUMBER, 0, AT(alias), 0, 0xffff, .text = "station alias of its first slave" },
-	{ "identification", K_NUMBER, 0, AT(identification), 0, 0xffff,
+	{ "name", K_NAME, F_REQUIRED | F_MACHINE, AT(name), .text = "unique in the master" },
+	{ "alias", K_NUMBER, F_MACHINE, AT(alias), 0, 0xffff, .text = "station alias of its first slave" },
+	{ "identification", K_NUMBER, F_MACHINE, AT(identification), 0, 0xffff,
 	  .text = "explicit device identification of its first slave" },
 	{ "parent", K_NAME, 0, AT(parent), .text = "slave at which it has to be connected" },
-	{ "port", K_NUMBER, 0, AT(port), 1, 3, .def = ECB_NONE8, .text = "port of parent" },
-	{ "mandatory", K_BOOL, 0, AT(mandatory), .text = "without it the bus is not complete" },
+	{ "port", K_NUMBER, F_MACHINE, AT(port), 1, 3, .def = ECB_NONE8, .text = "port of parent" },
+	{ "mandatory", K_BOOL, F_MACHINE, AT(mandatory), .text = "without it the bus is not complete" },
 	{ "fast", K_BOOL, 0, AT(fast), .text = "its port is opened as soon as it has a link" },
 };
-static const struct type type_group = {
+const struct type type_group = {
 	"a hot connect group", sizeof(struct ecb_group), group_fields, COUNT(group_fields), 128
 };
 #undef S
@@ -187,9 +193,11 @@ static const struct field type_master_fields[] = {
 	{ "cycle", K_TIME, 0, AT(cycle), 10000, 1000000000, .text = "cycle time" },
 	{ "reference_clock", K_NAME, 0, AT(reference_clock),
 	  .text = "slave; not given: the first one with a clock" },
-	{ "sync_units", K_LIST, 0, AT(sync_units), .type = &type_unit,
+	{ "sync_units", K_LIST, F_MACHINE, AT(sync_units), .type = &type_unit,
+	  .known = ECB_KNOWN_UNIT,
 	  .text = "slaves that are judged together" },
-	{ "groups", K_LIST, 0, AT(groups), .type = &type_group, .text = "hot connect groups" },
+	{ "groups", K_LIST, F_MACHINE, AT(groups), .type = &type_group,
+	  .known = ECB_KNOWN_GROUP, .text = "hot connect groups" },
 	{ "slaves", K_LIST, F_MACHINE, AT(slaves), .type = &type_slave,
 	  .text = "slaves in the order of the bus" },
 	{ "ring", K_LATER, .text = "cable redundancy" },

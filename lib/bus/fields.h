@@ -47,6 +47,7 @@ struct field {
 	uint64_t min;
 	uint64_t max;
 	uint64_t def;		/* value of what is not given */
+	uint32_t known;		/* F_MACHINE: only if the machine has told this, ECB_KNOWN_* */
 	const char *const *words;
 	const struct type *type;
 	const char *text;	/* for the schema */
@@ -63,6 +64,9 @@ struct type {
 extern const struct type type_bus;
 extern const struct type type_master;
 extern const struct type type_slave;
+extern const struct type type_command;
+extern const struct type type_unit;
+extern const struct type type_group;
 extern const struct type type_module;
 extern const struct type type_pdo;
 extern const struct type type_entry;

@@ -11,6 +11,7 @@
 #define WEIGHT_PLACE	6
 #define WEIGHT_SIGN	12
 #define WORK_MAX	(16u << 20)	/* pairs that are compared; beyond it only in order */
+#define UNKNOWN		(NO_SLAVE - 1)
 
 static int side_init(struct side *s, const struct ecb_master *m)
 {
@@ -21,10 +22,14 @@ static int side_init(struct side *s, const struct ecb_master *m)
 	s->count = m->slave_count;
 	s->peer = malloc((s->count + 1) * sizeof(*s->peer));
 	s->parent = malloc((s->count + 1) * sizeof(*s->parent));
-	if (!s->peer || !s->parent || table_init(&names, s->count + 1))
+	s->path = malloc((s->count + 1) * sizeof(*s->path));
+	s->up = malloc((s->count + 1) * sizeof(*s->up));
+	s->up_port = calloc(s->count + 1, sizeof(*s->up_port));
+	if (!s->peer || !s->parent || !s->path || !s->up || !s->up_port || table_init(&names, s->count + 1))
 		return -ENOMEM;
 	for (size_t i = 0; i < s->count; i++) {
 		s->peer[i] = s->parent[i] = NO_SLAVE;
+		s->up[i] = UNKNOWN;
 		seat = table_find(&names, s->slaves[i]->name);
 		seat->key = s->slaves[i]->name;
 		seat->value = i;
@@ -40,12 +45,19 @@ static int side_init(struct side *s, const struct ecb_master *m)
 	return 0;
 }
 
+static void side_free(struct side *s)
+{
+	free(s->peer);
+	free(s->parent);
+	free(s->path);
+	free(s->up);
+	free(s->up_port);
+}
+
 void match_free(struct match *m)
 {
-	free(m->a.peer);
-	free(m->a.parent);
-	free(m->b.peer);
-	free(m->b.parent);
+	side_free(&m->a);
+	side_free(&m->b);
 }
 
 static void join(struct match *m, size_t a, size_t b)
@@ -54,40 +66,121 @@ static void join(struct match *m, size_t a, size_t b)
 	m->b.peer[b] = a;
 }
 
-static bool same_sign(const struct ecb_slave *a, const struct ecb_slave *b, unsigned int step)
+/* signs of slaves, the surest first */
+enum sign { ALIAS, IDENTIFICATION, SERIAL, NAME, SIGNS };
+
+static bool has_sign(const struct ecb_slave *s, enum sign sign)
 {
-	switch (step) {
-	case 0:
-		return a->alias && a->alias == b->alias;
-	case 1:
-		return a->identification && a->identification == b->identification;
-	case 2:
-		return a->serial && a->serial == b->serial && same_identity(a, b);
-	default:
-		return !strcmp(a->name, b->name) && same_identity(a, b);
+	return sign == ALIAS ? s->alias : sign == IDENTIFICATION ? s->identification :
+		sign == SERIAL ? s->serial : true;
+}
+
+static int order(uint32_t a, uint32_t b)
+{
+	return a < b ? -1 : a > b;
+}
+
+static int by_sign(const struct ecb_slave *a, const struct ecb_slave *b, enum sign sign)
+{
+	int ret = 0;
+
+	if (sign == ALIAS)
+		return order(a->alias, b->alias);
+	if (sign == IDENTIFICATION)
+		return order(a->identification, b->identification);
+	if (sign == SERIAL)
+		ret = order(a->serial, b->serial);
+	else
+		ret = strcmp(a->name, b->name);
+	if (!ret)
+		ret = order(a->vendor, b->vendor);
+	return ret ? ret : order(a->product, b->product);
+}
+
+/* a slave to be found by its sign; @next of the first one of equals: where those left begin */
+struct signed_slave {
+	const struct ecb_slave *slave;
+	size_t at;
+	size_t next;
+	enum sign sign;
+};
+
+static int compare_signs(const void *a, const void *b)
+{
+	const struct signed_slave *x = a, *y = b;
+	int ret = by_sign(x->slave, y->slave, x->sign);
+
+	return ret ? ret : (x->at > y->at) - (x->at < y->at);
+}
+
+/* the first one of @n sorted ones that has the sign of @s, otherwise where it would be */
+static size_t first_of(const struct signed_slave *v, size_t n, const struct ecb_slave *s,
+		       enum sign sign)
+{
+	size_t low = 0, high = n;
+
+	while (low < high) {
+		size_t mid = low + (high - low) / 2;
+
+		if (by_sign(v[mid].slave, s, sign) < 0)
+			low = mid + 1;
+		else
+			high = mid;
+	}
+	return low;
+}
+
+/* the first one without peer that has the sign of @s, or NO_SLAVE */
+static size_t next_of(const struct match *m, struct signed_slave *v, size_t n,
+		      const struct ecb_slave *s, enum sign sign)
+{
+	size_t first = first_of(v, n, s, sign), at;
+
+	if (first == n || by_sign(v[first].slave, s, sign))
+		return NO_SLAVE;
+	at = v[first].next > first ? v[first].next : first;
+	while (at < n && !by_sign(v[at].slave, s, sign) && m->b.peer[v[at].at] != NO_SLAVE)
+		at++;
+	v[first].next = at;
+	return at < n && !by_sign(v[at].slave, s, sign) ? v[at].at : NO_SLAVE;
+}
+
+static void by_one_sign(struct match *m, struct signed_slave *v, enum sign sign)
+{
+	size_t n = 0;
+
+	for (size_t i = 0; i < m->b.count; i++)
+		if (has_sign(m->b.slaves[i], sign))
+			v[n++] = (struct signed_slave){ m->b.slaves[i], i, 0, sign };
+	qsort(v, n, sizeof(*v), compare_signs);
+	for (size_t i = 0; i < m->a.count; i++) {
+		const struct ecb_slave *a = m->a.slaves[i];
+		size_t k;
+
+		if (m->a.peer[i] != NO_SLAVE || !has_sign(a, sign))
+			continue;
+		/* most often it is in its place */
+		if (i < m->b.count && m->b.peer[i] == NO_SLAVE &&
+		    !by_sign(a, m->b.slaves[i], sign))
+			k = i;
+		else
+			k = next_of(m, v, n, a, sign);
+		if (k != NO_SLAVE)
+			join(m, i, k);
 	}
 }
 
 /* slaves with a sign of their own, wherever they are */
-static void by_signs(struct match *m, bool by_name)
+static int by_signs(struct match *m, bool by_name)
 {
-	for (unsigned int step = 0; step < (by_name ? 4 : 3); step++)
-		for (size_t i = 0; i < m->a.count; i++) {
-			const struct ecb_slave *a = m->a.slaves[i];
-			size_t k = 0;
+	struct signed_slave *v = calloc(m->b.count + 1, sizeof(*v));
 
-			if (m->a.peer[i] != NO_SLAVE || !same_sign(a, a, step))
-				continue;
-			/* most often it is in its place */
-			if (i < m->b.count && m->b.peer[i] == NO_SLAVE &&
-			    same_sign(a, m->b.slaves[i], step))
-				k = i;
-			while (k < m->b.count && (m->b.peer[k] != NO_SLAVE ||
-						  !same_sign(a, m->b.slaves[k], step)))
-				k++;
-			if (k < m->b.count)
-				join(m, i, k);
-		}
+	if (!v)
+		return -ENOMEM;
+	for (unsigned int sign = ALIAS; sign < (by_name ? SIGNS : NAME); sign++)
+		by_one_sign(m, v, sign);
+	free(v);
+	return 0;
 }
 
 /* those without peer */
@@ -185,27 +278,60 @@ static int in_order(struct match *m)
 
 size_t match_parent(const struct side *s, size_t i, unsigned int *port)
 {
-	size_t p = i, steps = 0;
+	*port = s->up_port[i];
+	return s->up[i];
+}
+
+/* the nearest slave upstream that has a peer; @work: steps that are left for all */
+static size_t upstream(const struct side *s, size_t i, unsigned int *port, size_t *work)
+{
+	size_t p = i;
 
 	do {
 		*port = s->slaves[p]->port;
 		p = s->parent[p];
-	} while (p != NO_SLAVE && s->peer[p] == NO_SLAVE && steps++ < s->count);
+		*work -= *work > 0;
+	} while (p != NO_SLAVE && s->peer[p] == NO_SLAVE && *work);
 	return p;
+}
+
+/* for match_parent(): a slave without peer passes on what is upstream of it */
+static void find_parents(struct side *s)
+{
+	size_t *path = s->path, n, p;
+
+	for (size_t i = 0; i < s->count; i++) {
+		for (n = 0, p = i; s->up[p] == UNKNOWN; p = s->parent[p]) {
+			path[n++] = p;
+			s->up[p] = s->parent[p];
+			s->up_port[p] = s->slaves[p]->port;
+			if (s->parent[p] == NO_SLAVE || s->peer[s->parent[p]] != NO_SLAVE)
+				break;
+		}
+		while (n--) {
+			p = s->parent[path[n]];
+			if (p == NO_SLAVE || s->peer[p] != NO_SLAVE)
+				continue;
+			s->up_port[path[n]] = s->up_port[p];
+			s->up[path[n]] = s->up[p];
+		}
+	}
 }
 
 /* another device at the port of one that is missing; without ports in the next place */
 static void by_place(struct match *m)
 {
-	for (size_t i = 0; i < m->a.count; i++) {
+	size_t work = WORK_MAX;
+
+	for (size_t i = 0; i < m->a.count && work; i++) {
 		size_t k = i ? m->a.peer[i - 1] + 1 : 0, pa, pb;
 		unsigned int port_a, port_b;
 
 		if (m->a.peer[i] != NO_SLAVE || (i && m->a.peer[i - 1] == NO_SLAVE) ||
 		    k >= m->b.count || m->b.peer[k] != NO_SLAVE)
 			continue;
-		pa = match_parent(&m->a, i, &port_a);
-		pb = match_parent(&m->b, k, &port_b);
+		pa = upstream(&m->a, i, &port_a, &work);
+		pb = upstream(&m->b, k, &port_b, &work);
 		if (port_a == ECB_NONE8 ||
 		    (pa != NO_SLAVE && m->a.peer[pa] == pb && port_a == port_b))
 			join(m, i, k);
@@ -224,8 +350,9 @@ int match_slaves(struct match *m, const struct ecb_master *a, const struct ecb_m
 	rest = malloc((m->a.count + m->b.count + 1) * sizeof(*rest));
 	if (!rest)
 		return -ENOMEM;
-	by_signs(m, by_name);
-	ret = in_order(m);
+	ret = by_signs(m, by_name);
+	if (!ret)
+		ret = in_order(m);
 	/* the same device elsewhere */
 	n = left(&m->a, rest);
 	k = left(&m->b, rest + n);
@@ -237,6 +364,8 @@ int match_slaves(struct match *m, const struct ecb_master *a, const struct ecb_m
 				break;
 			}
 	by_place(m);
+	find_parents(&m->a);
+	find_parents(&m->b);
 	free(rest);
 	return ret;
 }

@@ -13,6 +13,9 @@ struct side {
 	size_t count;
 	size_t *peer;		/* index on the other side, or NO_SLAVE */
 	size_t *parent;		/* index on this side, or NO_SLAVE */
+	size_t *up;		/* of match_parent() */
+	unsigned int *up_port;
+	size_t *path;
 	bool placed;		/* parents are known */
 };
 
@@ -25,7 +28,7 @@ struct match {
 int match_slaves(struct match *m, const struct ecb_master *a, const struct ecb_master *b,
 		 bool by_name);
 void match_free(struct match *m);
-/* the nearest slave upstream that has a peer, and the port there */
+/* of match_slaves(): the nearest slave upstream that has a peer, and the port there */
 size_t match_parent(const struct side *s, size_t i, unsigned int *port);
 
 static inline bool same_identity(const struct ecb_slave *a, const struct ecb_slave *b)

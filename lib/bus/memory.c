@@ -170,6 +170,52 @@ ECB_API struct ecb_module *ecb_module_add(struct ecb_bus *bus, struct ecb_slave 
 	return ecb_append((struct whole *)bus, &slave->modules, &type_module);
 }
 
+ECB_API struct ecb_clock *ecb_clock_add(struct ecb_bus *bus, struct ecb_slave *slave)
+{
+	slave->clock = ecb_alloc((struct whole *)bus, sizeof(*slave->clock));
+	return slave->clock;
+}
+
+ECB_API struct ecb_command *ecb_startup_add(struct ecb_bus *bus, struct ecb_slave *slave,
+					    const void *data, size_t size)
+{
+	struct whole *w = (struct whole *)bus;
+	const char *copy = data ? ecb_copy(w, data, size) : NULL;
+	struct ecb_command *c;
+
+	if (data && !copy)
+		return NULL;
+	c = ecb_append(w, &slave->startup, &type_command);
+	if (c && data)
+		c->data = (struct ecb_bytes){ (const uint8_t *)copy, size };
+	return c;
+}
+
+ECB_API struct ecb_unit *ecb_unit_add(struct ecb_bus *bus, struct ecb_master *master)
+{
+	return ecb_append((struct whole *)bus, &master->sync_units, &type_unit);
+}
+
+ECB_API struct ecb_group *ecb_group_add(struct ecb_bus *bus, struct ecb_master *master)
+{
+	return ecb_append((struct whole *)bus, &master->groups, &type_group);
+}
+
+ECB_API struct ecb_bytes ecb_command_data(const struct ecb_command *command, uint8_t number[8])
+{
+	static const uint8_t sizes[] = {
+		[ECB_TYPE_BOOL] = 1, [ECB_TYPE_INT8] = 1, [ECB_TYPE_INT16] = 2,
+		[ECB_TYPE_INT32] = 4, [ECB_TYPE_INT64] = 8, [ECB_TYPE_UINT8] = 1,
+		[ECB_TYPE_UINT16] = 2, [ECB_TYPE_UINT32] = 4, [ECB_TYPE_UINT64] = 8,
+	};
+
+	if (!command->type || command->type >= ECB_TYPE_REAL32)
+		return command->data;
+	for (size_t i = 0; i < 8; i++)
+		number[i] = (uint8_t)((uint64_t)command->value >> 8 * i);
+	return (struct ecb_bytes){ number, sizes[command->type] };
+}
+
 ECB_API int ecb_bus_finish(struct ecb_bus *bus, const char *file, struct ecb_error *error)
 {
 	return ecb_rules((struct whole *)bus, file ? file : "bus", error);

@@ -4,6 +4,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #include "../../include/ethercat-bus.h"
 
@@ -291,7 +292,7 @@ static void note(void *ctx, const struct ecb_difference *d)
 {
 	static const char kinds[] = {
 		[ECB_MISSING] = '-', [ECB_EXTRA] = '+', [ECB_EXCHANGED] = 'x', [ECB_MOVED] = 'm',
-		[ECB_VALUE_DIFFERS] = 'v',
+		[ECB_VALUE_DIFFERS] = 'v', [ECB_PENDING] = 'p',
 	};
 	char *to = ctx;
 
@@ -343,6 +344,10 @@ static void differences(const char *x, const char *y, unsigned int flags, const 
 		printf("%s\n", e.text);
 		exit(1);
 	}
+	/* as a machine tells it: all */
+	for (size_t side = 0; side < 2; side++)
+		for (size_t i = 0; i < (side ? b : a)->masters[0]->slave_count; i++)
+			(side ? b : a)->masters[0]->slaves[i]->known = ~0U;
 	if (ecb_compare(a, b, flags, note, got) != ecb_compare(b, a, flags, note, back) ||
 	    strcmp(got, expected)) {
 		printf("%s\n%s\n: '%s', back '%s', expected '%s'\n", x, y, got, back, expected);
@@ -365,6 +370,69 @@ static void compared(void)
 		    PDOS("{index: 2, sm: 3}, {index: 1, sm: 3}"), ECB_COMPARE_MACHINE, "va ");
 	differences(PDOS("{index: 1, sm: 2}, {index: 2, sm: 3}"),
 		    PDOS("{index: 2, sm: 3}, {index: 1, sm: 2}"), ECB_COMPARE_MACHINE, "");
+#define MODULES(x)	SLAVE "    name: a\n    modules: [" x "]\n"
+	differences(MODULES("{slot: 1, ident: 7}, {slot: 3, ident: 8}"),
+		    MODULES("{slot: 3, ident: 9, name: x}, {slot: 2, ident: 7}"), 0, "va va va ");
+	differences(MODULES("{slot: 1, ident: 7}, {slot: 3, ident: 8}"),
+		    MODULES("{slot: 3, ident: 8}, {slot: 1, ident: 7}"), ECB_COMPARE_MACHINE, "");
+#define CLOCK(x)	SLAVE "    name: a\n    clock: {assign_activate: 0x300" x "}\n"
+	differences(CLOCK(", sync0: 1 ms, sync0_shift: 5 us"),
+		    CLOCK(", sync0: 2 ms, sync0_shift: 6 us"), ECB_COMPARE_MACHINE, "va va ");
+#define START(x)	SLAVE "    name: a\n    startup: [" x "]\n"
+	/* the last one of an object counts; as bytes */
+	differences(START("{at: op, sdo: 0x8000:01, type: int16, value: -2}, "
+			  "{at: op, sdo: 0x8000:01, type: int16, value: 5}"),
+		    START("{at: preop, sdo: 0x8000:01, data: \"05 00\"}"), ECB_COMPARE_MACHINE, "");
+	differences(START("{at: op, sdo: 0x8000:01, type: int16, value: 5}"),
+		    START("{at: preop, sdo: 0x8000:01, data: \"05 01\"}"), ECB_COMPARE_MACHINE, "pa ");
+}
+
+static struct ecb_bus *largest(int reversed)
+{
+	struct ecb_bus *bus = ecb_bus_new();
+	struct ecb_master *m = ecb_master_add(bus);
+	struct ecb_error e;
+	char name[16];
+
+	for (unsigned int i = 0; i < 65535; i++) {
+		struct ecb_slave *s = ecb_slave_add(bus, m);
+
+		snprintf(name, sizeof(name), "s%u", reversed ? 65534 - i : i);
+		s->name = ecb_bus_text(bus, name);
+		s->vendor = s->product = 1;
+		if (i && !reversed) {
+			s->parent = m->slaves[i - 1]->name;
+			s->port = 1;
+		}
+		for (unsigned int k = 0; i < 200 && k < 1024; k++)
+			ecb_pdo_add(bus, s)->index = (uint16_t)(reversed ? 0x2000 - k : 0x1c00 + k);
+	}
+	if (ecb_bus_finish(bus, NULL, &e))
+		bad++;
+	return bus;
+}
+
+static void count(void *ctx, const struct ecb_difference *d)
+{
+	(void)d;
+	++*(long *)ctx;
+}
+
+/* a hostile file: the largest lists, nothing where it was, in a time that does not grow as n^2 */
+static void large(void)
+{
+	struct ecb_bus *a = largest(0), *b = largest(1);
+	clock_t from = clock();
+	long n = 0, got;
+
+	got = ecb_compare(a, b, 0, count, &n) + ecb_compare(a, b, ECB_COMPARE_MACHINE, count, &n);
+	if (got <= 65535 || n != got || clock() - from > 15 * CLOCKS_PER_SEC) {
+		printf("65,535 slaves: %ld differences in %.1f s\n", got,
+		       (double)(clock() - from) / CLOCKS_PER_SEC);
+		bad++;
+	}
+	ecb_bus_free(a);
+	ecb_bus_free(b);
 }
 
 int main(int argc, char **argv)
@@ -377,5 +445,6 @@ int main(int argc, char **argv)
 	made();
 	matches();
 	compared();
+	large();
 	return bad != 0;
 }

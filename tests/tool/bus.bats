@@ -106,6 +106,33 @@ differs() {	# differs SED EXPECTED
 		json 'd["masters"][0]["slaves"][2]["values"][0]["name"] == "el7201.controlword"'
 }
 
+@test "bus show shows branches below a parent that stands behind them" {
+	cat >"$BATS_TEST_TMPDIR/behind" <<-'END'
+		ethercat: 1
+		masters:
+		- slaves:
+		  - {name: leaf, vendor: 1, product: 1, parent: branch, port: 1}
+		  - {name: branch, vendor: 1, product: 1, parent: root, port: 2}
+		  - {name: root, vendor: 1, product: 1}
+	END
+	run ethercat bus show "$BATS_TEST_TMPDIR/behind"
+	[ "$status" -eq 0 ]
+	[[ ${lines[1]} == "    leaf "* && ${lines[2]} == "    branch "* && ${lines[3]} == "  root "* ]]
+}
+
+@test "bus diff and bus show name modules by slot" {
+	cp "$HERE/../busfile/whole.yaml" "$BATS_TEST_TMPDIR/a"
+	sed '/slot: 1,/d; s/slot: 3/slot: 2/' "$BATS_TEST_TMPDIR/a" >"$BATS_TEST_TMPDIR/b"
+	run ethercat bus diff "$BATS_TEST_TMPDIR/a" "$BATS_TEST_TMPDIR/b"
+	[ "$status" -eq 1 ]
+	[[ ${lines[0]} == *"slave 'axis1' module in slot 1 differs: expected ident 0x00119800, FSoE, found an empty slot" ]]
+	[[ ${lines[1]} == *"module in slot 2 differs: expected an empty slot, found ident 0x00020192" ]]
+	[[ ${lines[2]} == *"module in slot 3 differs: expected ident 0x00020192, found an empty slot" ]]
+	ethercat bus show "$BATS_TEST_TMPDIR/a" | grep -q 'slot 3  module 0x00020192$'
+	ethercat bus show -j "$BATS_TEST_TMPDIR/a" |
+		json 'd["masters"][0]["slaves"][1]["modules"][0] == {"slot": 1, "ident": 0x119800, "name": "FSoE"}'
+}
+
 @test "bus refuses a file with its line and exits with 2" {
 	sed -i 's/vendor/vender/' "$f"
 	for verb in "check $f" "diff $f $f" "show $f"; do
