@@ -31,6 +31,7 @@
 #include "ethercat-tools/mail.h"
 #include "ethercat-tools/mailbox.h"
 #include "ethercat-tools/master.h"
+#include "ethercat-tools/record.h"
 #include "ethercat-tools/run.h"
 #include "ethercat-tools/slave.h"
 #include "ethercat-tools/topology.h"

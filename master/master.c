@@ -81,6 +81,7 @@ static void destroy(struct ec_master *m)
 	ec_monitor_stop(m);
 	ec_event_readers_exit(m);
 	ec_mail_readers_exit(m);
+	ec_record_readers_exit(m);
 	ec_slave_devices_stop(&m->slave_devices);
 	ec_eoe_stop(&m->eoe);
 	ec_dc_exit(&m->dc);
@@ -107,6 +108,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 	ec_event_readers_init(m);
 	ec_eoe_init(&m->eoe);
 	ec_mail_readers_init(m);
+	ec_record_readers_init(m);
 	m->sessions.base = m->base;
 	m->sessions.links = &m->links;
 	m->sessions.bus = &m->bus;

@@ -13,7 +13,7 @@ const struct opt opts[] = {
 	{ 'p', "position", "LIST", "ring positions, positions relative to --alias, or ALIAS:LIST; default any" },
 	{ 'd', "domain", "LIST", "domain indices; default all" },
 	{ 't', "type", "NAME", "data type of the value, see 'ethercat help types'" },
-	{ 'o', "output-file", "FILE", "foe_read: file to write to; foe_write: file name on the slave" },
+	{ 'o', "output-file", "FILE", "record, foe_read: file to write to; foe_write: file name on the slave" },
 	{ 's', "skin", "NAME", "form of the output: default, etherlab" },
 	{ 'e', "emergency", NULL, "address by ring position, without the scan result" },
 	{ 'f', "force", NULL, "override a safety check" },
@@ -46,6 +46,11 @@ const struct opt opts[] = {
 	{ 'x', "decode", NULL, "what the bytes mean" },
 	{ 'Z', "whole", NULL, "all that is known" },
 	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
+	{ 'X', "when", "CONDITION", "begin when it is true" },
+	{ 'B', "before", "SECONDS", "also what was before that, 0 to 600" },
+	{ 'Y', "after", "SECONDS", "end so long after that, 0 to 86400000" },
+	{ 'V', "time", "SECONDS", "end after that time, 0.001 to 86400000" },
+	{ 'n', "count", "NUMBER", "end after so many records" },
 	{ 'j', "json", NULL, "JSON on stdout, errors as JSON on stderr" },
 	{ 'h', "help", NULL, "this text" },
 	{ 0 },
@@ -90,6 +95,11 @@ static const struct option longs[] = {
 	{ "decode", no_argument, NULL, 'x' },
 	{ "whole", no_argument, NULL, 'Z' },
 	{ "follow", no_argument, NULL, 'F' },
+	{ "when", required_argument, NULL, 'X' },
+	{ "before", required_argument, NULL, 'B' },
+	{ "after", required_argument, NULL, 'Y' },
+	{ "time", required_argument, NULL, 'V' },
+	{ "count", required_argument, NULL, 'n' },
 	{ "json", no_argument, NULL, 'j' },
 	{ "help", no_argument, NULL, 'h' },
 	{ 0 },
@@ -182,6 +192,25 @@ static int lease(const char *text, u32 *ms)
 		return usage_error("invalid time '%s' for --lease: expected 0.01 to 86400 seconds",
 				   text);
 	*ms = (u32)(s * 1000 + 0.5);
+	return 0;
+}
+
+/* a time of a recording */
+static int duration(const char *text, const char *name, double least, double most, double *s)
+{
+	if (!seconds(text, s) || *s < least || *s > most)
+		return usage_error("invalid time '%s' for --%s: expected %g to %.0f seconds", text,
+				   name, least, most);
+	return 0;
+}
+
+static int count(const char *text, u64 *n)
+{
+	size_t digits = strspn(text, "0123456789");
+
+	if (!digits || digits > 18 || text[digits] || !strtoull(text, NULL, 10))
+		return usage_error("invalid number '%s' for --count: expected 1 or more", text);
+	*n = strtoull(text, NULL, 10);
 	return 0;
 }
 
@@ -330,6 +359,17 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 	case 'g':
 		t->names = true;
 		return 0;
+	case 'X':
+		t->when = optarg;
+		return 0;
+	case 'B':
+		return duration(optarg, "before", 0, 600, &t->before_s);
+	case 'Y':
+		return duration(optarg, "after", 0, 86400000, &t->after_s);
+	case 'V':
+		return duration(optarg, "time", 0.001, 86400000, &t->time_s);
+	case 'n':
+		return count(optarg, &t->count);
 	case 'R':
 		t->retry = true;
 		return 0;
@@ -386,7 +426,7 @@ int options_parse(struct tool *t, int argc, char **argv, char **args, int *nargs
 	size_t n = 0;
 	int c, ret;
 
-	*t = (struct tool){ .wait_s = -1, .compare_slave = -1 };
+	*t = (struct tool){ .wait_s = -1, .compare_slave = -1, .after_s = -1 };
 	*nargs = 0;
 	*help = false;
 	opterr = 0;

@@ -13,7 +13,7 @@
 #define EC_TOOL_VERSION		"0.1.0"
 #endif
 
-#define EC_TOOL_COMMANDS	64	/* at most */
+#define EC_TOOL_COMMANDS	80	/* at most */
 
 /* bits of struct cmd.flags */
 #define CMD_ONE_MASTER		1	/* -m must leave exactly one */
@@ -63,6 +63,11 @@
  * @hold: --hold
  * @lease_ms: argument of --lease, 0: not given
  * @names: --names
+ * @when: --when, NULL when not given
+ * @before_s: argument of --before in seconds, 0: not given
+ * @after_s: argument of --after in seconds, negative: not given
+ * @time_s: argument of --time in seconds, 0: not given
+ * @count: argument of --count, 0: not given
  */
 struct tool {
 	struct list masters;
@@ -104,6 +109,11 @@ struct tool {
 	bool hold;
 	u32 lease_ms;
 	bool names;
+	const char *when;
+	double before_s;
+	double after_s;
+	double time_s;
+	u64 count;
 };
 
 /**

@@ -29,6 +29,7 @@
 #include "ethercat_mail.h"
 #include "ethercat_map.h"
 #include "ethercat_mbox.h"
+#include "ethercat_record.h"
 #include "ethercat_unit.h"
 
 /*
@@ -78,6 +79,7 @@
 #define EC_IOC_SLAVE_WHY	EC_IOC_RW(0x1f, struct ec_ioc_slave_why)
 #define EC_IOC_UNIT_INFO	EC_IOC_RW(0x15, struct ec_ioc_unit_info)
 #define EC_IOC_MAIL		EC_IOC_RW(0x16, struct ec_ioc_mail)
+#define EC_IOC_RECORDER		EC_IOC_RW(0x3e, struct ec_ioc_recorder)
 
 /* opened for writing: traffic or change */
 #define EC_IOC_SDO_UPLOAD	EC_IOC_RW(0x20, struct ec_ioc_sdo)

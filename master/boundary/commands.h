@@ -48,6 +48,7 @@ CMD(EC_IOC_EMERGENCIES, ec_ioc_emergencies, 0, SLAVE(ec_ioc_emergencies),
 	OUT(ec_ioc_emergencies, EC_EMERGENCIES * sizeof(struct ec_emergency)))
 CMD(EC_IOC_EVENTS, ec_ioc_events, 0, FLAGS(EC_EVENTS_FLAG_NEW))
 CMD(EC_IOC_MAIL, ec_ioc_mail, 0, FLAGS(0))
+CMD(EC_IOC_RECORDER, ec_ioc_recorder, 0, IN(ec_ioc_recorder, EC_MAX_IMAGE / 4), FLAGS(0))
 CMD(EC_IOC_DOMAIN, ec_ioc_domain, 0, SHOW_DOMAIN(ec_ioc_domain))
 CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
 	RSV1(ec_ioc_domain_fmmu), OLDEST(ec_ioc_domain_fmmu, offset))

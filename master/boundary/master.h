@@ -14,6 +14,7 @@
 #include "../eoe/netdevs.h"
 #include "event_readers.h"
 #include "mail_readers.h"
+#include "record_readers.h"
 #include "slave_devices.h"
 
 struct ec_api;
@@ -41,6 +42,8 @@ struct ec_master {
 	struct ec_event_readers readers;
 	/** @mail_readers: open files that read mailbox messages */
 	struct ec_mail_readers mail_readers;
+	/** @record_readers: open files that read records of process data */
+	struct ec_record_readers record_readers;
 	/** @slave_devices: slaves for the rest of Linux */
 	struct ec_slave_devices slave_devices;
 	/** @eoe: network devices of slaves */

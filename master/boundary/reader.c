@@ -39,6 +39,22 @@ void ec_readers_wake(struct ec_readers *rs)
 }
 
 /**
+ * ec_reader_init() - prepare a reader that is in no list
+ * @r: zeroed; kfree() frees it
+ * @kind: what it reads
+ * @source: of the records
+ *
+ * Context: Any.
+ */
+void ec_reader_init(struct ec_reader *r, const struct ec_reader_kind *kind, const void *source)
+{
+	r->kind = kind;
+	r->source = source;
+	mutex_init(&r->lock);
+	ec_waiters_init(&r->waiters);
+}
+
+/**
  * ec_reader_new() - a reader that is in no list
  * @kind: what it reads
  * @source: of the records
@@ -50,12 +66,8 @@ struct ec_reader *ec_reader_new(const struct ec_reader_kind *kind, const void *s
 {
 	struct ec_reader *r = kzalloc(sizeof(*r), GFP_KERNEL_ACCOUNT);
 
-	if (!r)
-		return NULL;
-	r->kind = kind;
-	r->source = source;
-	mutex_init(&r->lock);
-	ec_waiters_init(&r->waiters);
+	if (r)
+		ec_reader_init(r, kind, source);
 	return r;
 }
 

@@ -59,6 +59,7 @@ struct ec_reader {
 
 void ec_readers_init(struct ec_readers *rs);
 void ec_readers_wake(struct ec_readers *rs);
+void ec_reader_init(struct ec_reader *r, const struct ec_reader_kind *kind, const void *source);
 struct ec_reader *ec_reader_new(const struct ec_reader_kind *kind, const void *source);
 int ec_reader_enter(struct ec_reader *r, struct ec_readers *rs, struct ec_file *f);
 void ec_reader_end(struct ec_file *f);

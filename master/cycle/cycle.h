@@ -18,6 +18,7 @@
 
 struct ec_cycle;
 struct ec_cycle_thread;
+struct ec_recorder;
 struct ec_cyc_units;
 struct ec_waiters;
 
@@ -90,6 +91,8 @@ struct ec_cycles {
 	 * configuration, read under RCU
 	 */
 	struct ec_cycle __rcu *by_kernel;
+	/** @recorder: copies of each cycle, NULL: they have no reader */
+	struct ec_recorder __rcu *recorder;
 };
 
 /** struct ec_cycle_setup - what an application has set; under the lock of the configuration */

@@ -7,6 +7,7 @@
 #include "../base/once64.h"
 #include "../carry/flight.h"
 #include "../kernel/trace.h"
+#include "recorder.h"
 #include "send.h"
 #include "units_run.h"
 #include "../clock/dc_app.h"
@@ -242,6 +243,8 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	ec_links_flush(l);
 	rcu_read_unlock();
 	ec_write64(&c->sends, c->sends + 1);
+	if (ec_recorder_wanted(c))
+		ec_recorder_put(c, what->queued, send.now);
 	if (trace_ec_cycle_enabled())
 		trace_send(c);
 	return 0;

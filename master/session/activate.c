@@ -9,6 +9,7 @@
 #include "../config/why.h"
 #include "../cycle/cycle_stats.h"
 #include "../cycle/cycle_thread.h"
+#include "../cycle/recorder.h"
 #include "../cycle/units.h"
 #include "../cycle/wire_time.h"
 #include "activate.h"
@@ -277,6 +278,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_detached_end(s);
 	ec_cycle_set_active(ss->cycles, NULL);
 	ec_cycle_thread_stop(&s->cycle);
+	ec_recorder_end(ss->cycles);
 	ec_session_note_counts(s, false, true);
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_cycle_stats_end(&s->cycle);
