@@ -218,8 +218,9 @@ static bool is_over(const struct record *x, s64 now_ns)
 {
 	double limit = x->t->time_s;
 
-	if (x->triggered && x->t->after_s >= 0 && x->when)
-		return (double)(now_ns - x->zero_ns) > x->t->after_s * 1e9;
+	if (x->triggered && x->t->after_s >= 0 &&
+	    (double)(now_ns - x->zero_ns) > x->t->after_s * 1e9)
+		return true;
 	return limit > 0 && x->began_ns && (double)(now_ns - x->began_ns) >= limit * 1e9;
 }
 

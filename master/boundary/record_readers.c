@@ -104,6 +104,13 @@ static int record_copy(struct ec_reader *r, u64 *at, void __user *to)
 	return copy_to_user(to, x->record, x->record->size) ? -EFAULT : 1;
 }
 
+/* Numbers are not reused; the cycle may still add one without a reader. */
+static void number_after(struct ec_record_readers *rs, const struct ec_recorder *ring)
+{
+	lockdep_assert_held(&rs->readers.lock);
+	rs->next = max(rs->next, ec_recorder_head(ring) + 1);
+}
+
 /* The ring goes with its last reader. */
 static void ring_put(struct ec_record_readers *rs, struct ec_recorder *ring)
 {
@@ -114,8 +121,7 @@ static void ring_put(struct ec_record_readers *rs, struct ec_recorder *ring)
 	if (rs->ring == ring)
 		rs->ring = NULL;
 	rs->rings--;
-	/* numbers are not reused; the cycle may still add one without a reader */
-	rs->next = max(rs->next, ec_recorder_head(ring) + 1);
+	number_after(rs, ring);
 	kvfree_rcu(ring, rcu);
 }
 
@@ -211,12 +217,17 @@ static struct ec_cycle *show_cycle(struct ec_master *m, int *ret)
 static int ring_new(struct ec_record_readers *rs, const struct ec_recorder_form *f)
 {
 	struct ec_master *m = record_master(rs);
-	struct ec_recorder *r = rs->rings < RINGS_MAX ? ec_recorder_new(f, rs->next) : NULL;
+	struct ec_recorder *r;
 	struct ec_cycle *c;
 	int ret;
 
+	if (rs->rings == RINGS_MAX)
+		return -EUSERS;
+	if (rs->ring)
+		number_after(rs, rs->ring);
+	r = ec_recorder_new(f, rs->next);
 	if (!r)
-		return rs->rings < RINGS_MAX ? -ENOMEM : -EUSERS;
+		return -ENOMEM;
 	c = show_cycle(m, &ret);
 	if (c) {
 		/* else another session has begun */

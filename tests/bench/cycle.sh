@@ -9,8 +9,9 @@
 # host and is printed only; the CPU time of the host that it needs is gated.
 # profile.sh shows in which functions the instructions are.
 #
-# usage: cycle.sh [--gates] [--cycles N]
+# usage: cycle.sh [--gates|--record] [--cycles N]
 #   --gates   what has a limit only, and each limit once: for make check
+#   --record  only what a recording costs the cycle
 #   N         cycles of the long run, default 10000
 
 set -u
@@ -18,10 +19,11 @@ cd "$(dirname "$0")/../.." || exit 1
 . tests/vm/places.sh
 kernel=${EC_KERNEL:-6.1-rt}
 build=$PWD/build/system-$kernel
-cycles=10000 all=1
+cycles=10000 all=1 only=
 while [ $# -gt 0 ]; do
 	case $1 in
 	--gates) all= ;;
+	--record) only=record ;;
 	--cycles) cycles=${2:-} && shift ;;
 	*) echo "cycle.sh: unknown option '$1'" >&2 && exit 2 ;;
 	esac
@@ -362,6 +364,38 @@ native_cost() {
 	done
 }
 
+# Drives of 44 bytes: the copy of all process data is one of 8 bytes by an instruction, two where
+# the outputs are sent from the buffer of an application. Ten drives have 110 values of 4 bytes.
+record_cost() {
+	local n who copies took limit
+	local -A costs=() bytes=()
+
+	echo "# instructions of a cycle for a reader that records all process data"
+	for n in 10 100; do
+		run "drive$n, recorded" "${icount[@]}" -- virtual drive$n.seg --cycles 300 \
+			+ rec --cycles 300 --record + kernel --cycles 300 --kernel timer \
+			+ krec --cycles 300 --kernel timer --record || return
+		gate "$n drive(s): ${v[rec_recorded]} and ${v[krec_recorded]} records of 350 cycles, ${v[rec_lost]} and ${v[krec_lost]} frames lost" \
+			"${v[rec_recorded]} >= 350 && ${v[krec_recorded]} >= 349 && ${v[rec_lost]} == 0 &&
+			 ${v[krec_lost]} == 0"
+		costs[own$n]=$((v[rec_send_median] - v[send_median]))
+		costs[kernel$n]=$((v[krec_work_median] - v[kernel_work_median]))
+		bytes[$n]=${v[image_bytes]}
+	done
+	for who in own kernel; do
+		copies=$([ $who = own ] && echo 1 || echo 2)
+		took=$((costs[${who}100] - costs[${who}10]))
+		# a word of a copy is counted twice by some
+		limit=$(((bytes[100] - bytes[10]) * copies * (slack > 100 ? 2 : 1) / 8 * 105 / 100))
+		echo "# cycle of $who: ${costs[${who}10]} instructions for ${bytes[10]} bytes, ${costs[${who}100]} for ${bytes[100]}: $(ratio $took $((bytes[100] - bytes[10]))) a byte"
+		row "${costs[${who}10]}" $((110 * 12)) "instructions of a recorded cycle of $who more: 110 values of 4 bytes"
+		gate "cycle of $who: ${costs[${who}10]} instructions for 110 values, at most 12 each" \
+			"${costs[${who}10]} > 0 && ${costs[${who}10]} <= 110 * 12"
+		gate "cycle of $who: $took instructions for $((bytes[100] - bytes[10])) bytes more, at most $limit: $copies for 8 bytes" \
+			"took > 0 && took <= limit"
+	done
+}
+
 # calls DEVICE DRIVES [OPTION...]: of the application's cycle, mean, in $calls
 calls() {
 	run "$2 drives, $1" "${icount[@]}" --nics -- "$1" "drive$2.seg" --cycles 300 \
@@ -446,7 +480,14 @@ in_real_time() {
 	echo "# lateness: median ${v[late_ns_median]} ns, 99.9 % ${v[late_ns_p999]} ns, max ${v[late_ns_max]} ns"
 }
 
+if [ "$only" = record ]; then
+	record_cost
+	echo "$passed passed, $failed failed"
+	[ $failed = 0 ]
+	exit
+fi
 long_run
+record_cost
 generic_cost
 # not 4000: the phase to the clock tick of 4 ms would count
 native_cost 4100

@@ -58,6 +58,7 @@ struct bench {
 	bool units;	/* each domain is a sync unit */
 	bool extras;	/* call what a careful application calls, too */
 	bool syscalls;	/* count them instead of instructions */
+	bool record;	/* another process records all process data */
 	bool trace;	/* switch ftrace on while measuring */
 	bool floor;	/* measure nothing but cycles in which nothing is done */
 	unsigned int uploads;	/* slaves of which others upload an object meanwhile */
@@ -81,6 +82,7 @@ struct bench {
 	uint32_t *samples[PARTS];	/* of @cycles cycles each */
 	uint32_t entry;			/* of a refused system call */
 	unsigned int operational;
+	unsigned long long recorded;	/* records, with SETTLE cycles before */
 	unsigned long long lost;	/* frames, while measured */
 	unsigned long long late;	/* frames */
 	unsigned int wc_errors;
@@ -107,6 +109,10 @@ void frame_counters(const struct bench *b, unsigned long long *lost,
 		    unsigned long long *late);
 uint32_t syscall_entry(const struct bench *b);
 bool in_interrupt(const struct bench *b);
+
+/* record.c */
+int record_begin(const struct bench *b);
+unsigned long long record_end(void);
 
 /* extras.c */
 int extras_setup(struct bench *b);

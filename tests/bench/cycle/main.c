@@ -289,9 +289,10 @@ static int run(struct bench *b)
 		t = ticks() - t;
 		b->tick = t < b->tick ? (unsigned int)t : b->tick;
 	}
-	if (uploads_start(b))
+	if (uploads_start(b) || (b->record && record_begin(b)))
 		return -1;
 	measure(b, &at);
+	b->recorded = b->record ? record_end() : 0;
 	while (uploads_running())
 		one_cycle(b, &at, cost);
 	uploads_join(b);
@@ -318,6 +319,8 @@ static void report(struct bench *b)
 	       b->cycles);
 	if (b->uploads)
 		printf("uploads_done %u\nupload_errors %u\n", b->uploads_done, b->upload_errors);
+	if (b->record)
+		printf("recorded %llu\n", b->recorded);
 	if (b->extras)
 		printf("requests_done %u\n", b->requests_done);
 	printf("lost %llu\nlate_frames %llu\nwc_errors %u\ncall_errors %u\noverruns %u\n",
@@ -393,6 +396,7 @@ static void usage(FILE *out)
 		"  --domains N    spread the slaves over N domains, default 1\n"
 		"  --units        each of them is a sync unit\n"
 		"  --extras       clocks, states, emergencies and requests, too\n"
+		"  --record       a reader of records of all process data\n"
 		"  --uploads N    meanwhile others upload an object of each of N slaves, again and again\n"
 		"  --kernel HOW   the kernel runs the cycle; how the application waits:\n"
 		"                 wait (a system call), spin, timer (one of its own)\n"
@@ -442,6 +446,7 @@ static void parse(struct bench *b, int argc, char **argv)
 		{ "uploads", required_argument, NULL, 'u' },
 		{ "units", no_argument, NULL, 'U' },
 		{ "extras", no_argument, NULL, 'e' },
+		{ "record", no_argument, NULL, 'R' },
 		{ "syscalls", no_argument, NULL, 's' },
 		{ "kernel", required_argument, NULL, 'k' },
 		{ "trace", no_argument, NULL, 't' },
@@ -470,6 +475,8 @@ static void parse(struct bench *b, int argc, char **argv)
 			b->units = true;
 		else if (c == 'e')
 			b->extras = true;
+		else if (c == 'R')
+			b->record = true;
 		else if (c == 's')
 			b->syscalls = true;
 		else if (c == 't')

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "plot.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "tool.h"
+
+static double time_at(const struct plot_view *v, size_t row)
+{
+	return v->time ? v->time[row] : (double)row;
+}
+
+void plot_view(const struct plot_data *p, struct plot_view *v)
+{
+	const struct plot_column *time = plot_find(p, "time_s"), *lost = plot_find(p, "lost");
+
+	*v = (struct plot_view){
+		.data = p, .time = time ? time->v : NULL, .lost = lost ? lost->v : NULL,
+	};
+	if (!p->rows)
+		return;
+	v->from = time_at(v, 0);
+	v->to = v->from;
+	for (size_t i = 1; i < p->rows; i++) {
+		v->from = fmin(v->from, time_at(v, i));
+		v->to = fmax(v->to, time_at(v, i));
+	}
+	if (!(v->to > v->from))
+		v->to = v->from + 1;
+}
+
+static size_t bin_at(const struct plot_view *v, size_t row, size_t n)
+{
+	double at = (time_at(v, row) - v->from) / (v->to - v->from) * (double)n;
+
+	return at >= (double)n ? n - 1 : at > 0 ? (size_t)at : 0;
+}
+
+static void add(struct plot_bin *b, double value)
+{
+	b->min = b->any ? fmin(b->min, value) : value;
+	b->max = b->any ? fmax(b->max, value) : value;
+	b->last = value;
+	b->any = true;
+}
+
+/* A value is valid until the next record, unless some are missing in between. */
+void plot_bins(const struct plot_view *v, const struct plot_column *c, struct plot_bin *bins,
+	       size_t n)
+{
+	size_t before = 0;
+
+	for (size_t i = 0; i < n; i++)
+		bins[i] = (struct plot_bin){ 0 };
+	for (size_t row = 0; row < v->data->rows; row++) {
+		size_t at = bin_at(v, row, n);
+		bool gap = v->lost && v->lost[row] > 0;
+
+		for (size_t i = before + 1; row && i < at; i++)
+			if (gap)
+				bins[i].gap = true;
+			else
+				add(&bins[i], bins[before].last);
+		/* a step is drawn where it happens */
+		if (row && !gap && at > before)
+			add(&bins[at], bins[before].last);
+		bins[at].gap |= gap;
+		add(&bins[at], c->v[row]);
+		before = at;
+	}
+}
+
+struct plot_axis plot_axis(double min, double max, unsigned int labels)
+{
+	double raw, unit;
+
+	if (!isfinite(min) || !isfinite(max))
+		return (struct plot_axis){ 0, 1, 1 };
+	if (!(max > min)) {
+		double around = fabs(min) > 1 ? fabs(min) / 10 : 1;
+
+		min -= around;
+		max += around;
+	}
+	raw = (max - min) / labels;
+	unit = pow(10, floor(log10(raw)));
+	for (unsigned int i = 0; i < 4; i++) {
+		static const double steps[] = { 1, 2, 5, 10 };
+
+		if (steps[i] * unit >= raw * 0.999)
+			return (struct plot_axis){ min, max, steps[i] * unit };
+	}
+	return (struct plot_axis){ min, max, 10 * unit };
+}
+
+/* Values that are no numbers have no place. */
+struct plot_axis plot_range(const struct plot_column *c, size_t rows, unsigned int labels)
+{
+	double min = INFINITY, max = -INFINITY;
+
+	if (c->flag)
+		return (struct plot_axis){ 0, 1, 1 };
+	for (size_t i = 0; i < rows; i++)
+		if (isfinite(c->v[i])) {
+			min = fmin(min, c->v[i]);
+			max = fmax(max, c->v[i]);
+		}
+	return plot_axis(min, max, labels);
+}
+
+/* the first label */
+double plot_first(const struct plot_axis *a)
+{
+	return ceil(a->min / a->step - 1e-9) * a->step;
+}
