@@ -311,6 +311,8 @@ static void summary(const struct record *x)
 
 static int end(struct record *x, int ret)
 {
+	int err;
+
 	if (!x->triggered) {
 		record_file_drop(&x->file);
 		if (ret)
@@ -318,8 +320,9 @@ static int end(struct record *x, int ret)
 		return x->when ? fail("the condition was never true: nothing is written") :
 				 fail("no cycle was sent: nothing is written");
 	}
+	err = record_file_close(&x->file);
 	summary(x);
-	return max(record_file_close(&x->file), ret);
+	return err ? err : ret;
 }
 
 static int check_options(const struct tool *t)

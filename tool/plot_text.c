@@ -169,7 +169,7 @@ int plot_text(FILE *to, const struct plot_view *v, const struct plot_column *con
 	if (*v->data->since)
 		fprintf(to, ", 0 is %.40s", v->data->since);
 	if (gaps)
-		fprintf(to, "; %c: records are missing", GAP_MARK);
+		fprintf(to, "; %c: records missing", GAP_MARK);
 	fputc('\n', to);
 	free(t.dots);
 	free(t.bins);

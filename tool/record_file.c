@@ -37,9 +37,12 @@ static int new_file(struct record_file *f, const char *path, bool force)
 	mask = umask(0);
 	umask(mask);
 	f->fd = mkstemp(f->part);
-	if (f->fd >= 0 && !fchmod(f->fd, 0666 & ~mask))
-		return 0;
-	return fail("cannot write '%s': %s", f->part, strerror(errno));
+	if (f->fd < 0)
+		return fail("cannot write '%s': %s", f->part, strerror(errno));
+	/* permissions of a file that is created by its name */
+	if (fchmod(f->fd, 0666 & ~mask))
+		note("cannot change the permissions of '%s': %s", f->part, strerror(errno));
+	return 0;
 }
 
 int record_file_open(struct record_file *f, const char *path, bool force,
@@ -56,7 +59,11 @@ int record_file_open(struct record_file *f, const char *path, bool force,
 	f->buf = malloc(f->room);
 	if (!f->buf)
 		return fail("out of memory");
-	return path ? new_file(f, path, force) : 0;
+	if (!path || !new_file(f, path, force))
+		return 0;
+	free(f->part);
+	free(f->buf);
+	return 1;
 }
 
 /* Whole rows of @n bytes that were written of the buffer */
@@ -67,6 +74,18 @@ static size_t whole(const struct record_file *f, size_t n)
 	while (n && f->buf[n - 1] != '\n')
 		n--;
 	return n;
+}
+
+/* Rows behind the first @n bytes of the buffer, which are whole rows */
+static u64 rows_behind(const struct record_file *f, size_t n)
+{
+	u64 rows = 0;
+
+	if (f->npy)
+		return (f->used - n) / record_npy_row(f);
+	for (; n < f->used; n++)
+		rows += f->buf[n] == '\n';
+	return rows;
 }
 
 /* After a failure the file ends with the last row that is whole. */
@@ -83,6 +102,7 @@ void record_file_flush(struct record_file *f)
 	}
 	done = whole(f, done);
 	f->written += done;
+	f->rows -= min(f->rows, rows_behind(f, done));
 	f->used = 0;
 	if (f->err && f->path && ftruncate(f->fd, (off_t)(f->head + f->written)))
 		note("cannot shorten '%s': %s", f->path, strerror(errno));

@@ -60,6 +60,8 @@ void fake_run_slave(struct fake_slave *s);
 int fake_events(unsigned long request, void *arg);
 int fake_mail(unsigned long request, void *arg);
 bool fake_mail_read(void *buf, unsigned long size, long *bytes);
+int fake_recorder(unsigned long request, void *arg);
+bool fake_recorder_read(void *buf, unsigned long size, long *bytes);
 
 void fake_why(unsigned long request, void *arg);
 bool fake_why_unit(struct ec_ioc_unit_info *x);

@@ -239,7 +239,8 @@ static int answer(int fd, unsigned long request, void *arg)
 		return -1;
 	}
 	/* the numbers below 0x20 are used up */
-	if (nr >= 0x20 && nr != _IOC_NR(EC_IOC_EOE) && !writable[fd - FD])
+	if (nr >= 0x20 && nr != _IOC_NR(EC_IOC_EOE) &&
+	    nr != _IOC_NR(EC_IOC_RECORDER) && !writable[fd - FD])
 		return fake_fail(EPERM, "the file is open for reading only");
 	switch (request) {
 	case EC_IOC_VERSION:
@@ -287,6 +288,8 @@ static int answer(int fd, unsigned long request, void *arg)
 			ret = fake_events(request, arg);
 		if (ret == FAKE_OTHER)
 			ret = fake_mail(request, arg);
+		if (ret == FAKE_OTHER)
+			ret = fake_recorder(request, arg);
 		if (ret != FAKE_OTHER)
 			return ret;
 		errno = ENOTTY;
