@@ -77,8 +77,12 @@ struct ect_port {
 	uint32_t receive_time;	/* ns */
 	uint32_t delay_to_next_dc;	/* ns */
 	uint16_t next_slave;	/* ring position behind the port, ECT_NONE16: none */
-	uint16_t reserved;
-	uint32_t reserved2[4];
+	uint16_t errors_known;	/* of the next four, from the first on; 0: not read */
+	/* as the master has read them last, those that it has cleared included; no traffic */
+	uint32_t invalid;	/* frames that were damaged on the way to this port */
+	uint32_t receiver;	/* errors of the receiver, also between frames */
+	uint32_t forwarded;	/* frames that an upstream slave has found damaged */
+	uint32_t lost_link;	/* up to 255 */
 };
 
 struct ect_slave {

@@ -154,6 +154,13 @@ struct ec_ioc_port {
 	 */
 	__u32 cleared[3];
 	__u32 reserved2;
+	/*
+	 * errors of this port as the master has read them last, with those that it has cleared:
+	 * invalid frames, errors of the receiver, forwarded errors, lost links
+	 */
+	__u32 errors[4];
+	__u32 errors_known;	/* of them, from the first on; 0: not read */
+	__u32 errors_age_ms;	/* time since they were read */
 };
 
 #define EC_PORT_NOT_KEPT	0

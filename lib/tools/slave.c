@@ -28,6 +28,11 @@ static void convert_port(struct ect_port *to, const struct ec_ioc_port *from)
 	COPY(receive_time);
 	COPY(next_slave);
 	COPY(delay_to_next_dc);
+	to->errors_known = (u16)from->errors_known;
+	to->invalid = from->errors[0];
+	to->receiver = from->errors[1];
+	to->forwarded = from->errors[2];
+	to->lost_link = from->errors[3];
 }
 
 static void convert_mailbox(struct ect_slave *to, const struct ec_ioc_slave *from)

@@ -225,6 +225,7 @@ int ec_ioc_port(struct ec_call *call)
 	i->delay_to_next_dc = way(s, p);
 	i->kept = ec_ports_kept(s, p, &i->wait_s);
 	ec_line_errors_cleared(s, p, i->cleared);
+	i->errors_known = ec_line_errors_seen(s, p, i->errors, &i->errors_age_ms);
 	if (ec_port_text(i->kept)->device && ec_border_get(s->bus, s->device, p, &is)) {
 		i->vendor_id = is.vendor;
 		i->product_code = is.product;

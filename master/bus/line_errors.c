@@ -44,8 +44,7 @@ module_param_cb(line_errors, &limit_ops, &ec_line_errors_limit, 0644);
 MODULE_PARM_DESC(line_errors,
 		 "Errors of a cable in 10 s from which on it is reported, up to 250; 0: error counters are not read (10)");
 
-/* Place of a register in @regs. */
-#define AT(reg)		((reg) - EC_REG_ERRORS)
+#define AT(reg)		EC_LINE_AT(reg)
 
 static u16 links_of(const struct ec_slave *s)
 {
@@ -249,6 +248,7 @@ static void line_take(struct ec_slave *s, const struct ec_dg *dg, const u8 *now)
 	e->emptying = false;
 	if (is_full(now) && !e->kept)
 		empty(s);
+	ec_line_errors_show(e);
 }
 
 /* Are the counts of a period above the limit? */
@@ -418,46 +418,4 @@ void ec_line_errors_look(struct ec_bus *bus, bool links_changed)
 		return;
 	w->period_ns = now;
 	judge(bus);
-}
-
-/**
- * ec_line_errors_cleared() - errors that the registers of a port do not contain any more
- * @s: slave
- * @port: its port
- * @cleared: result: invalid frames, errors of the receiver, forwarded errors that the master has
- *	cleared since another one did
- *
- * Context: Any.
- */
-void ec_line_errors_cleared(const struct ec_slave *s, unsigned int port, u32 cleared[3])
-{
-	/* zeros in it before the pointer */
-	const struct ec_line_errors *e = smp_load_acquire(&s->lines);
-
-	memset(cleared, 0, 3 * sizeof(*cleared));
-	/* and in its counts, before the flag is cleared */
-	if (!e || smp_load_acquire(&e->void_cleared))
-		return;
-	cleared[0] = READ_ONCE(e->cleared[AT(EC_REG_ERR_RX(port))]);
-	cleared[1] = READ_ONCE(e->cleared[AT(EC_REG_ERR_PHY(port))]);
-	cleared[2] = READ_ONCE(e->cleared[AT(EC_REG_ERR_FWD(port))]);
-}
-
-/**
- * ec_line_errors_written() - a user has written to registers of a slave
- * @s: slave
- * @reg: first register
- * @n: bytes
- *
- * If they are error counters, those that the master has cleared do not count any more.
- *
- * Context: Any.
- */
-void ec_line_errors_written(struct ec_slave *s, u32 reg, u32 n)
-{
-	/* zeros in it before the pointer */
-	struct ec_line_errors *e = smp_load_acquire(&s->lines);
-
-	if (e && reg < EC_REG_ERRORS + EC_LINE_RX_BYTES && reg + n > EC_REG_ERRORS)
-		WRITE_ONCE(e->void_cleared, true);
 }

@@ -10,6 +10,7 @@ struct ec_bus;
 struct ec_slave;
 
 #define EC_LINE_RX_BYTES	12	/* a write to one of these clears them all */
+#define EC_LINE_AT(reg)		((reg) - EC_REG_ERRORS)	/* place of a register in @regs */
 
 /**
  * struct ec_line_port - what a port has counted
@@ -50,6 +51,9 @@ struct ec_line_port {
  * @cleared: counts that the registers do not contain any more, as the master has cleared them
  * @void_cleared: a user has cleared the registers: @cleared are 0; any thread sets it
  * @port: counts of each port
+ * @shown: of each port, what ec_line_errors_seen() gives; the monitor writes it
+ * @shown_n: counts of a port in @shown that the slave has, 0: none was read
+ * @shown_at: when they were read (jiffies)
  */
 struct ec_line_errors {
 	u8 regs[EC_ERRORS_SIZE];
@@ -67,12 +71,17 @@ struct ec_line_errors {
 	u32 cleared[EC_LINE_RX_BYTES];
 	bool void_cleared;
 	struct ec_line_port port[EC_MAX_PORT];
+	u32 shown[EC_MAX_PORT][4];
+	u32 shown_n;
+	unsigned long shown_at;
 };
 
 /* errors of a cable in 10 s, 0: none; module parameter line_errors */
 extern unsigned int ec_line_errors_limit;
 
 void ec_line_errors_look(struct ec_bus *bus, bool links_changed);
+void ec_line_errors_show(struct ec_line_errors *e);
+u32 ec_line_errors_seen(const struct ec_slave *s, unsigned int port, u32 errors[4], u32 *age_ms);
 void ec_line_errors_cleared(const struct ec_slave *s, unsigned int port, u32 cleared[3]);
 void ec_line_errors_written(struct ec_slave *s, u32 reg, u32 n);
 

@@ -271,6 +271,17 @@ static u32 cleared(struct bus *b, u16 position, u32 port)
 	return p.cleared[0];
 }
 
+/* What is shown without traffic: @errors of a port; returns how many are known. */
+static u32 seen(struct bus *b, u16 position, u32 port, u32 errors[4])
+{
+	struct ec_ioc_port p = { .slave = { .position = position }, .port = port };
+
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_PORT, &p), 0);
+	KUNIT_EXPECT_LT(b->test, p.errors_age_ms, 20000u);
+	memcpy(errors, p.errors, sizeof(p.errors));
+	return p.errors_known;
+}
+
 /* 'ethercat crc reset' */
 static void clear_by_user(struct bus *b, u16 position)
 {
@@ -306,6 +317,7 @@ static void line_errors_full_counter_is_cleared(struct kunit *test)
 	const struct full *f = test->param_value;
 	struct bus *b = begin(test, f->set, 0);
 	struct reports r = watch(b);
+	u32 n[4];
 
 	ec_sim_set_bug(b->sim, f->bug);
 	bus_command(b, "errors a2.1 add=7");
@@ -317,6 +329,11 @@ static void line_errors_full_counter_is_cleared(struct kunit *test)
 	/* what the registers have lost is kept here */
 	KUNIT_EXPECT_EQ(test, cleared(b, A2, 0), f->kept ? 0u : 255u);
 	KUNIT_EXPECT_EQ(test, cleared(b, A2, 1), f->kept ? 0u : 7u);
+	/* it is in what is shown without traffic */
+	KUNIT_EXPECT_EQ(test, seen(b, A2, 0, n), 4u);
+	KUNIT_EXPECT_EQ(test, n[0], 255u);
+	KUNIT_EXPECT_EQ(test, seen(b, A2, 1, n), 4u);
+	KUNIT_EXPECT_EQ(test, n[0], 7u);
 	msleep(CALM_MS);
 	none(&r, "full");
 	bus_command(b, "errors a2.0 add=30");
@@ -325,10 +342,15 @@ static void line_errors_full_counter_is_cleared(struct kunit *test)
 		none(&r, "it cannot be seen");
 	else
 		one(&r, A2, 0, A1, 30, "more");
+	seen(b, A2, 0, n);
+	KUNIT_EXPECT_EQ_MSG(test, n[0], f->kept ? 255u : 285u, "beyond a register");
 	if (!f->kept) {
 		clear_by_user(b, A2);
 		KUNIT_EXPECT_EQ_MSG(test, cleared(b, A2, 0), 0u, "the user counts anew, at once");
+		KUNIT_EXPECT_EQ_MSG(test, seen(b, A2, 0, n), 0u, "not known before the next read");
 		msleep(10000);
+		KUNIT_EXPECT_EQ(test, seen(b, A2, 0, n), 4u);
+		KUNIT_EXPECT_EQ(test, n[0], 0u);
 		KUNIT_EXPECT_EQ(test, cleared(b, A2, 0), 0u);
 		/* and if it is another program, when the master notices it */
 		bus_command(b, "errors a2.0 add=255");
@@ -368,7 +390,7 @@ static void line_errors_absent_registers_disturb_nothing(struct kunit *test)
 {
 	struct bus *b = begin(test, 0, 0);
 	struct reports r = watch(b);
-	u32 i;
+	u32 i, n[4];
 
 	for (i = 0; i < N; i++)
 		memset(regs(b, i), 0, EC_ERRORS_SIZE);
@@ -378,6 +400,7 @@ static void line_errors_absent_registers_disturb_nothing(struct kunit *test)
 	msleep(40000);
 	one(&r, C2, 0, C1, 10, "8 bytes");
 	KUNIT_EXPECT_EQ(test, counts(b, C2)->bytes, EC_REG_ERR_FWD(0) - EC_REG_ERRORS);
+	KUNIT_EXPECT_EQ(test, seen(b, C2, 0, n), 2u);
 	bus_fault(b, EC_SIM_FAULT_DAMAGE, C2, 0, 0, 0);
 }
 

@@ -437,6 +437,10 @@ static int port(struct ec_ioc_port *x)
 		x->cleared[1] = 7;
 		x->cleared[2] = 2;
 	}
+	/* slave 0 was not read yet, and slave 1 has no counter of lost links */
+	x->errors_known = s.position < 2 ? s.position * 3u : 4;
+	if (s.position == 1)
+		memcpy(x->errors, (const __u32[]){ 300, 7, x->port, 0 }, sizeof(x->errors));
 	return 0;
 }
 
