@@ -40,7 +40,7 @@ for group; do
 	uml)	p="xz-utils python3"
 		[ "$release" != 12 ] || p="$p linux-source-6.1" ;;
 	python)	p="python3-venv" ;;
-	json)	p="gojq python3-jsonschema python3-yaml" ;;
+	json)	p="gojq python3-jsonschema python3-prometheus-client python3-yaml" ;;
 	doc)	p="python3-sphinx" ;;
 	cmake)	p="cmake" ;;
 	# any cargo does that is new enough, Debian's "cargo" is not

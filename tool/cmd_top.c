@@ -3,48 +3,11 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "dev.h"
+#include "facts.h"
 #include "out.h"
 #include "screen.h"
 
 #define EVERY_S		1.0
-
-/* what is shown, whether as a table or as JSON */
-struct view {
-	struct ect_master m;
-	struct ect_cycle c;
-	struct ect_list *devices;
-	struct slaves slaves;
-};
-
-static int view_read(struct dev *d, struct view *v)
-{
-	int err;
-
-	*v = (struct view){ .c = { .struct_size = sizeof(v->c) } };
-	if (dev_master(d, &v->m) || dev_devices(d, &v->devices) || dev_slaves(d, &v->slaves))
-		return 1;
-	err = ect_cycle_read(d->h, &v->c);
-	return err ? dev_fail(d, err, "Master%u: cannot read cycle statistics", d->master) : 0;
-}
-
-static void view_free(struct view *v)
-{
-	ect_list_free(v->devices);
-	slaves_free(&v->slaves);
-}
-
-static const char *session_text(const struct ect_master *m)
-{
-	switch (m->session) {
-	case ECT_SESSION_NONE:
-		return "no application";
-	case ECT_SESSION_DETACHED:
-		return m->left ? "'ethercat run'" : "detached session";
-	default:
-		return m->owner;
-	}
-}
 
 /* text goes to the terminal, and to a pipe without what moves a cursor */
 static void line(bool screen, unsigned int columns, const char *text)
@@ -55,57 +18,55 @@ static void line(bool screen, unsigned int columns, const char *text)
 		out_text("%.*s\n", (int)columns - 1, text);
 }
 
-static void show_head(const struct view *v, bool screen, unsigned int columns, unsigned int master)
+static void show_head(const struct facts *f, bool screen, unsigned int columns)
 {
 	const struct ect_device *n;
 	char text[256];
 
-	snprintf(text, sizeof(text), "Master%u  %u slave(s), %u reply  %s", master,
-		 v->m.slave_count, v->m.slaves_responding, session_text(&v->m));
+	snprintf(text, sizeof(text), "Master%u  %u slave(s), %u reply  %s", f->master,
+		 f->m.slave_count, f->m.slaves_responding, facts_session(&f->m));
 	line(screen, columns, text);
-	for (size_t i = 0; (n = ect_list_get(v->devices, i)); i++) {
+	for (size_t i = 0; (n = facts_device(f, i)); i++) {
 		snprintf(text, sizeof(text), "Link %zu: %s  %.1f frames/s  %.1f kB/s  lost %llu",
 			 i, n->link_up ? "up" : "down", (double)n->tx_frame_rate[0],
 			 n->tx_byte_rate[0] / 1024.0, (unsigned long long)n->lost);
 		line(screen, columns, text);
 	}
-	if (v->c.kind == ECT_CYCLE_BY_NOBODY || !v->c.active) {
+	if (f->c.kind == ECT_CYCLE_BY_NOBODY || !f->c.active) {
 		line(screen, columns, "Cycle: none");
 		return;
 	}
 	snprintf(text, sizeof(text),
 		 "Cycle: %g ms  wire %.1f %%  deviation 99.9 %% %.1f us  max %.1f us  overruns %llu",
-		 v->c.interval_ns / 1e6,
-		 v->c.interval_ns ? 100.0 * v->m.cycle_wire_ns / v->c.interval_ns : 0,
-		 (double)ect_cycle_quantile(&v->c, 999) / 1000, v->c.late_max / 1000.0,
-		 (unsigned long long)v->c.overruns);
+		 f->c.interval_ns / 1e6,
+		 f->c.interval_ns ? 100.0 * f->m.cycle_wire_ns / f->c.interval_ns : 0,
+		 (double)ect_cycle_quantile(&f->c, 999) / 1000, f->c.late_max / 1000.0,
+		 (unsigned long long)f->c.overruns);
 	line(screen, columns, text);
 }
 
-static void show_domains(struct dev *d, const struct view *v, bool screen, unsigned int columns)
+static void show_domains(const struct facts *f, bool screen, unsigned int columns)
 {
-	for (unsigned int i = 0; i < v->m.domain_count; i++) {
-		struct ect_domain dom = { .struct_size = sizeof(dom) };
+	for (size_t i = 0; i < f->domain_count; i++) {
+		const struct ect_domain *dom = &f->domains[i];
 		char text[128];
 
-		if (ect_domain_read(d->h, i, &dom))
-			return;
-		snprintf(text, sizeof(text), "Domain %u: %u bytes  working counter %u of %u%s", i,
-			 dom.size, dom.working_counter, dom.expected,
-			 dom.wc_state == ECT_WC_COMPLETE ? "" : "  INCOMPLETE");
+		snprintf(text, sizeof(text), "Domain %zu: %u bytes  working counter %u of %u%s", i,
+			 dom->size, dom->working_counter, dom->expected,
+			 dom->wc_state == ECT_WC_COMPLETE ? "" : "  INCOMPLETE");
 		line(screen, columns, text);
 	}
 }
 
 /* the slaves from @first on, @room of them; those with a fault alone after the key e */
-static void show_slaves(const struct view *v, bool screen, unsigned int columns, size_t first,
+static void show_slaves(const struct facts *f, bool screen, unsigned int columns, size_t first,
 			size_t room, bool faults)
 {
 	size_t skipped = 0, shown = 0;
 
 	line(screen, columns, "  pos  state         name");
-	for (size_t i = 0; i < v->slaves.n && shown < room; i++) {
-		const struct ect_slave *s = &v->slaves.v[i];
+	for (size_t i = 0; i < f->slaves.n && shown < room; i++) {
+		const struct ect_slave *s = &f->slaves.v[i];
 		char state[16], name[ECT_STRING], text[512];
 
 		if (faults && !s->error && !s->why[0])
@@ -121,33 +82,33 @@ static void show_slaves(const struct view *v, bool screen, unsigned int columns,
 	}
 }
 
-static void json(const struct dev *d, const struct view *v)
+static void json(const struct facts *f)
 {
 	out_object(NULL);
-	out_u("master", d->master, NULL);
-	out_u("slaves", v->m.slave_count, NULL);
-	out_u("slaves_responding", v->m.slaves_responding, NULL);
-	out_str("session", session_text(&v->m), NULL);
-	out_u("interval_ns", v->c.active ? v->c.interval_ns : 0, NULL);
-	out_u("wire_ns", v->m.cycle_wire_ns, NULL);
-	out_u("overruns", v->c.overruns, NULL);
-	out_u("late_max_ns", v->c.late_max, NULL);
+	out_u("master", f->master, NULL);
+	out_u("slaves", f->m.slave_count, NULL);
+	out_u("slaves_responding", f->m.slaves_responding, NULL);
+	out_str("session", facts_session(&f->m), NULL);
+	out_u("interval_ns", f->c.active ? f->c.interval_ns : 0, NULL);
+	out_u("wire_ns", f->m.cycle_wire_ns, NULL);
+	out_u("overruns", f->c.overruns, NULL);
+	out_u("late_max_ns", f->c.late_max, NULL);
 	out_end();
 }
 
-static void show(struct dev *d, const struct view *v, bool screen, size_t first, bool faults)
+static void show(const struct facts *f, bool screen, size_t first, bool faults)
 {
 	unsigned int lines = 24, columns = 80;
-	size_t head = 5 + v->m.domain_count + v->m.device_count;
+	size_t head = 5 + f->m.domain_count + f->m.device_count;
 
 	if (screen)
 		screen_size(&lines, &columns);
 	if (screen)
 		screen_begin();
-	show_head(v, screen, columns, d->master);
-	show_domains(d, v, screen, columns);
-	show_slaves(v, screen, columns, first,
-		    screen ? lines > head ? lines - head : 1 : v->slaves.n, faults);
+	show_head(f, screen, columns);
+	show_domains(f, screen, columns);
+	show_slaves(f, screen, columns, first,
+		    screen ? lines > head ? lines - head : 1 : f->slaves.n, faults);
 	if (!screen)
 		return;
 	screen_line(columns, "q: end  j, k: down, up  e: %s", faults ? "all" : "faults only");
@@ -165,14 +126,14 @@ static int top(const struct tool *t, struct dev *d)
 	if (screen)
 		screen_grab();
 	while (!ret && key != 'q' && !screen_ended()) {
-		struct view v;
+		struct facts f;
 
-		ret = view_read(d, &v);
+		ret = facts_read(d, &f);
 		if (!ret && out_is_json())
-			json(d, &v);
+			json(&f);
 		else if (!ret)
-			show(d, &v, screen, first, faults);
-		view_free(&v);
+			show(&f, screen, first, faults);
+		facts_free(&f);
 		/* in a pipe once, unless a time was given */
 		if (ret || (!screen && !t->watch_s))
 			break;

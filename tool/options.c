@@ -45,6 +45,7 @@ const struct opt opts[] = {
 	{ 'i', "file", "FILE", "EEPROM image of a file instead of a slave; - for stdin" },
 	{ 'x', "decode", NULL, "what the bytes mean" },
 	{ 'Z', "whole", NULL, "all that is known" },
+	{ 'k', "http", NULL, "reply to a request of HTTP on stdin" },
 	{ 'F', "follow", NULL, "also what comes later, until the command is ended" },
 	{ 'X', "when", "CONDITION", "begin when it is true" },
 	{ 'B', "before", "SECONDS", "also what was before that, 0 to 600" },
@@ -94,6 +95,7 @@ static const struct option longs[] = {
 	{ "file", required_argument, NULL, 'i' },
 	{ "decode", no_argument, NULL, 'x' },
 	{ "whole", no_argument, NULL, 'Z' },
+	{ "http", no_argument, NULL, 'k' },
 	{ "follow", no_argument, NULL, 'F' },
 	{ "when", required_argument, NULL, 'X' },
 	{ "before", required_argument, NULL, 'B' },
@@ -327,6 +329,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'F':
 		t->follow = true;
+		return 0;
+	case 'k':
+		t->http = true;
 		return 0;
 	case 'U':
 		t->unsafe = true;

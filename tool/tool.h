@@ -51,6 +51,7 @@
  * @texts: --texts, NULL when not given
  * @tree: --tree
  * @watch_s: argument of --watch in seconds, 0: not given
+ * @http: --http
  * @follow: --follow
  * @unsafe: --allow-unreachable
  * @repair: --repair-checksum
@@ -97,6 +98,7 @@ struct tool {
 	const char *texts;
 	bool tree;
 	double watch_s;
+	bool http;
 	bool follow;
 	bool unsafe;
 	bool repair;

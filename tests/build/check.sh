@@ -224,9 +224,13 @@ expected() {
 	.$prefix/bin/ethercat-sim
 	./usr/local/lib/modprobe.d/ethercat.conf
 	./usr/local/lib/systemd/system/ethercat.service
+	./usr/local/lib/systemd/system/ethercat-metrics.socket
+	./usr/local/lib/systemd/system/ethercat-metrics@.service
+	./usr/local/lib/systemd/system/ethercat-run@.service
 	.$prefix/sbin/ethercatctl
 	.$prefix/share/ethercat/conf.sh
 	.$prefix/share/ethercat/devices.sh
+	.$prefix/share/ethercat/trusted.sh
 	.$prefix/share/man/man8/ethercat-sim.8
 	.$prefix/share/man/man8/ethercatctl.8
 	./etc/ethercat.conf

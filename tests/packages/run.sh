@@ -176,6 +176,17 @@ boots() {
 		wait_until "slaves PREOP 22"
 		ethercat slaves | head -n 3
 		ethercatctl status
+		# from the package to a live value with two commands
+		ethercat run
+		timeout 2 ethercat watch "el1008.*" | grep -m 1 "el1008.channel_1.input = "
+		ethercat stop
+		wait_until "slaves PREOP 22"
+		systemctl start ethercat-metrics.socket
+		python3 -c "import urllib.request as u
+print(u.urlopen(\"http://127.0.0.1:9488/metrics\", timeout=20).read().decode())" >/tmp/metrics
+		grep -x "ethercat_slaves{master=.0.} 22" /tmp/metrics
+		grep -x "# EOF" /tmp/metrics
+		systemctl stop ethercat-metrics.socket
 		insmod /srv/mini/ec_mini.ko position=16
 		rmmod ec_mini
 		[ "$(stat -c "%G %a" /dev/EtherCAT0)" = "ethercat 664" ]

@@ -1,0 +1,96 @@
+#!/usr/bin/env bats
+# SPDX-License-Identifier: GPL-2.0-only
+# Units for systemd beside ethercat.service, as far as they show without a bus: a guest of
+# tests/packages starts them.
+
+top=$BATS_TEST_DIRNAME/../..
+
+setup_file() {
+	export root=$BATS_FILE_TMPDIR/root
+
+	make -s -C "$top/operation" prefix=/usr DESTDIR="$root" install
+	# what the units start
+	mkdir -p "$root/usr/bin"
+	install -m 755 /bin/true "$root/usr/bin/ethercat"
+}
+
+units="$BATS_TEST_DIRNAME/../../operation"
+
+@test "units have no mistake that systemd finds, and start programs that are installed" {
+	cd "$root/usr/lib/systemd/system"
+	cp ethercat-run@.service ethercat-run@line.service
+	cp ethercat-metrics@.service ethercat-metrics@1.service
+	run systemd-analyze verify --man=no --root="$root" --recursive-errors=no \
+		ethercat-run@line.service ethercat-metrics@1.service ethercat-metrics.socket
+	echo "$output"
+	[ "$status" = 0 ]
+	[ -z "$output" ]
+	rm "$root/usr/bin/ethercat"
+	run systemd-analyze verify --man=no --root="$root" --recursive-errors=no \
+		ethercat-run@line.service
+	install -m 755 /bin/true "$root/usr/bin/ethercat"
+	[[ $output == *"/usr/bin/ethercat is not executable"* ]]
+}
+
+# exposure UNIT: of systemd, 0 to 100
+exposure() {
+	systemd-analyze security --offline=yes --no-pager "$root/usr/lib/systemd/system/$1" |
+		sed -n 's/.*exposure level for .*: \([0-9.]*\) .*/\1/p' | tr -d .
+}
+
+@test "the programs of the units run in a sandbox" {
+	cd "$root/usr/lib/systemd/system"
+	cp ethercat-run@.service ethercat-run@line.service
+	cp ethercat-metrics@.service ethercat-metrics@1.service
+	run=$(exposure ethercat-run@line.service) metrics=$(exposure ethercat-metrics@1.service)
+	echo "# exposure by systemd-analyze security, of 100: ethercat-run@ $run, ethercat-metrics@ $metrics" >&3
+	[ "$run" -le 20 ]
+	[ "$metrics" -le 15 ]
+}
+
+# refused PATTERN FILE
+refused() {
+	run "$units/trusted.sh" "$2"
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output == *"$1"* ]]
+}
+
+@test "a bus file that others can change is refused" {
+	local d
+
+	# the folders of a test are in one that all may write to
+	d=$(mktemp -d "$HOME/.ec-units.XXXXXX")
+	mkdir "$d/etc"
+	echo 'cycle: 1 ms' >"$d/etc/line.yaml"
+	chmod 644 "$d/etc/line.yaml"
+	chmod 755 "$d" "$d/etc"
+	"$units/trusted.sh" "$d/etc/line.yaml"
+	chmod g+w "$d/etc/line.yaml"
+	refused "others may write to $d/etc/line.yaml (mode 664)" "$d/etc/line.yaml"
+	chmod g-w,o+w "$d/etc/line.yaml"
+	refused "others may write to $d/etc/line.yaml (mode 646)" "$d/etc/line.yaml"
+	chmod 644 "$d/etc/line.yaml"
+	# an exchange of the file, or of its folder
+	chmod 1777 "$d/etc"
+	refused "others may write to $d/etc (mode 1777)" "$d/etc/line.yaml"
+	chmod 755 "$d/etc"
+	chmod 775 "$d"
+	refused "others may write to $d (mode 775)" "$d/etc/line.yaml"
+	chmod 755 "$d"
+	# the place that a link leads to counts
+	echo 'cycle: 1 ms' >"$BATS_TEST_TMPDIR/other.yaml"
+	chmod 666 "$BATS_TEST_TMPDIR/other.yaml"
+	ln -s "$BATS_TEST_TMPDIR/other.yaml" "$d/etc/link.yaml"
+	refused "others may write to $BATS_TEST_TMPDIR/other.yaml" "$d/etc/link.yaml"
+	ln -s "$d/etc/line.yaml" "$d/etc/same.yaml"
+	"$units/trusted.sh" "$d/etc/same.yaml"
+	refused "there is no file" "$d/etc/none.yaml"
+	refused "is no regular file" /dev/null
+	refused "is no regular file" "$d/etc"
+	if [ "$(id -u)" = 0 ]; then
+		chown 65534 "$d/etc/line.yaml"
+		refused "belongs to user 65534" "$d/etc/line.yaml"
+	fi
+	rm -r "$d"
+}
