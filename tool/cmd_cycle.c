@@ -2,7 +2,7 @@
 /* Cycle statistics: send deviations, execution times, the thread of a kernel cycle. */
 #include <string.h>
 
-#include "dev.h"
+#include "cycle_text.h"
 #include "out.h"
 
 #define BAR	40	/* length of the longest */
@@ -108,33 +108,16 @@ static void work(const struct ect_cycle *st)
 	out_u("work_max_ns", st->work_max, ", max %.3f\n", st->work_max / 1000.0);
 }
 
-static const char *state_text(const struct ect_cycle *i)
-{
-	if (!i->active)
-		return "ended";
-	switch (i->state) {
-	case ECT_CYCLE_STALLED:
-		return "stalled";
-	case ECT_CYCLE_STOPPED:
-		return "stopped";
-	case ECT_CYCLE_WAITING:
-		return "waiting";
-	default:
-		return "running";
-	}
-}
-
 static void who(const struct ect_cycle *i)
 {
-	static const char *const by[] = { "nobody", "application", "kernel" };
-	const char *name = i->kind < ARRAY_SIZE(by) ? by[i->kind] : "unknown";
+	const char *name = cycle_by(i);
 
 	if (i->kind == ECT_CYCLE_BY_NOBODY) {
 		out_str("by", name, "  Cycle: none yet\n");
 		return;
 	}
 	out_str("by", name, "  Cycle: run by the %s, ", name);
-	out_str("state", state_text(i), "%s\n", state_text(i));
+	out_str("state", cycle_state(i), "%s\n", cycle_state(i));
 	out_u("interval_ns", i->interval_ns, "  Interval: %.3f us (", i->interval_ns / 1000.0);
 	out_bool("interval_configured", i->interval_set, "%s)\n", i->interval_set ? "configured" : "measured");
 }

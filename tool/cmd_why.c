@@ -6,6 +6,7 @@
 #include "config_info.h"
 #include "dev.h"
 #include "out.h"
+#include "why_text.h"
 
 #define S(n)	((n) == 1 ? "" : "s")
 
@@ -132,18 +133,12 @@ static void affected(const struct report *r, size_t i)
 		out_text("\n");
 }
 
-/* in the order in which they are shown: faults first, as they explain more */
-#define LEVELS	(ECT_WARNING + 1)
-
-static const char *const level_keys[LEVELS] = { "fault", "under_way", "warning" };
-static const char *const level_names[LEVELS] = { "Fault", "Under way", "Warning" };
-
 static void show(const struct report *r, size_t i)
 {
 	const struct ect_finding *f = finding(r, i);
 
 	out_object(NULL);
-	out_str("level", level_keys[f->level], "%s: ", level_names[f->level]);
+	out_str("level", why_level_keys[f->level], "%s: ", why_level_names[f->level]);
 	out_str("cause", f->cause, NULL);
 	out_str("text", f->text, "%s\n", f->text);
 	place(r, f);
@@ -156,23 +151,9 @@ static void show(const struct report *r, size_t i)
 	out_end();
 }
 
-static const char *application(const struct report *r)
-{
-	switch (r->checked->session) {
-	case ECT_SESSION_NONE:
-		return "no application: no slave has to be in OP";
-	case ECT_SESSION_RESERVED:
-		return "an application has reserved the master and not activated it: no slave has to be in OP";
-	case ECT_SESSION_DETACHED:
-		return "detached session: the kernel runs the cycle, the application has exited";
-	default:
-		return "application active";
-	}
-}
-
 /* findings that were shown, and faults of what is not selected */
 struct count {
-	size_t n[LEVELS];
+	size_t n[WHY_LEVELS];
 	size_t elsewhere;
 	bool nothing;		/* is selected here */
 };
@@ -191,7 +172,7 @@ static void checked(const struct report *r)
 	out_text("Checked: link, cycle, %u slave%s, %u configuration%s, %u of them in OP, %u domain%s, emergencies, clocks%s; %s.\n",
 		 c->slaves, S(c->slaves), c->configs, S(c->configs), c->in_op, c->domains,
 		 S(c->domains), c->counters ? ", error counters of the ports" : "",
-		 application(r));
+		 why_application(r->checked));
 	if (!c->counters)
 		out_text("Not checked: error counters of the ports; reading them needs write access to %s.\n",
 			 ect_path(r->d->h));
@@ -211,7 +192,7 @@ static void summary(const struct report *r, const struct count *n)
 	else
 		out_bool("well", well, NULL);
 	out_u("faults_elsewhere", n->elsewhere, NULL);
-	out_str("application", application(r), NULL);
+	out_str("application", why_application(r->checked), NULL);
 	out_bool("error_counters_read", r->checked->counters && !r->checked->silent, NULL);
 	if (n->nothing && well)
 		return;
@@ -259,7 +240,7 @@ static void show_all(const struct report *r, const struct chosen *c, struct coun
 {
 	const struct ect_finding *f;
 
-	for (u32 level = ECT_FAULT; level < LEVELS; level++) {
+	for (u32 level = ECT_FAULT; level < WHY_LEVELS; level++) {
 		for (size_t i = 0; (f = finding(r, i)); i++) {
 			if (f->level != level)
 				continue;

@@ -94,6 +94,15 @@ void facts_free(struct facts *f)
 	*f = (struct facts){ 0 };
 }
 
+size_t facts_errors(const struct ect_port *p, u32 counts[FACTS_ERRORS])
+{
+	const u32 all[FACTS_ERRORS] = { p->invalid, p->receiver, p->forwarded, p->lost_link };
+
+	for (size_t i = 0; i < FACTS_ERRORS; i++)
+		counts[i] = all[i];
+	return p->type < 2 ? 0 : min((size_t)p->errors_known, (size_t)FACTS_ERRORS);
+}
+
 /* the owner of a master, in words */
 const char *facts_session(const struct ect_master *m)
 {

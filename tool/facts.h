@@ -40,6 +40,10 @@ int facts_read(struct dev *d, struct facts *f);
 int facts_read_more(struct dev *d, struct facts *f);
 void facts_free(struct facts *f);
 
+#define FACTS_ERRORS	4	/* invalid frames, receiver errors, forwarded errors, lost links */
+
+/* returns how many of @counts are known, from the first on */
+size_t facts_errors(const struct ect_port *p, u32 counts[FACTS_ERRORS]);
 const char *facts_session(const struct ect_master *m);
 /* NULL behind the last one */
 const struct ect_device *facts_device(const struct facts *f, size_t i);

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* One request of HTTP on stdin and its reply on stdout, as systemd starts a program for a socket. */
+/* A request of HTTP on stdin and its reply on stdout, as systemd starts a program for it. */
 #ifndef EC_TOOL_HTTP_H
 #define EC_TOOL_HTTP_H
 

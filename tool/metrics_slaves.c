@@ -118,10 +118,9 @@ static void port_errors(FILE *f, const struct metric_family *m, const struct fac
 {
 	for (size_t i = 0; i < facts->slaves.n; i++)
 		for (unsigned int p = 0; p < ECT_PORTS; p++) {
-			const struct ect_port *x = &facts->slaves.v[i].ports[p];
-			const u32 counts[] = { x->invalid, x->receiver, x->forwarded, x->lost_link };
+			u32 counts[FACTS_ERRORS];
 
-			if (x->type < 2 || x->errors_known <= m->at)
+			if (facts_errors(&facts->slaves.v[i].ports[p], counts) <= m->at)
 				continue;
 			port_begin(f, m, "_total", facts, i, p);
 			metric_count(f, counts[m->at]);

@@ -13,7 +13,7 @@ const struct opt opts[] = {
 	{ 'p', "position", "LIST", "ring positions, positions relative to --alias, or ALIAS:LIST; default any" },
 	{ 'd', "domain", "LIST", "domain indices; default all" },
 	{ 't', "type", "NAME", "data type of the value, see 'ethercat help types'" },
-	{ 'o', "output-file", "FILE", "record, foe_read: file to write to; foe_write: file name on the slave" },
+	{ 'o', "output-file", "FILE", "file to write to; foe_write: file name on the slave" },
 	{ 's', "skin", "NAME", "form of the output: default, etherlab" },
 	{ 'e', "emergency", NULL, "address by ring position, without the scan result" },
 	{ 'f', "force", NULL, "override a safety check" },

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#define _GNU_SOURCE
 #include "save.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
@@ -67,6 +69,42 @@ int save_begin(struct save *s, const char *path)
 }
 
 /**
+ * save_new() - write a file that must not exist
+ * @s: result
+ * @path: name, valid until save_end()
+ *
+ * Return: 0, or 1 after printing what failed.
+ */
+int save_new(struct save *s, const char *path)
+{
+	struct stat st;
+
+	if (!lstat(path, &st))
+		return fail("'%s' exists; replace it with --force", path);
+	if (save_begin(s, path))
+		return 1;
+	s->fresh = true;
+	return 0;
+}
+
+/* another one may have made it meanwhile; a file system without that check replaces it */
+static int put_in_place(const struct save *s)
+{
+	if (s->fresh && !renameat2(AT_FDCWD, s->part, AT_FDCWD, s->path, RENAME_NOREPLACE))
+		return 0;
+	return s->fresh && errno != EINVAL ? -1 : rename(s->part, s->path);
+}
+
+/* The file is not wanted: one to be replaced is unchanged. */
+void save_cancel(struct save *s)
+{
+	fclose(s->f);
+	if (s->part)
+		remove(s->part);
+	free(s->part);
+}
+
+/**
  * save_end() - the file is whole
  * @s: of save_begin(); its stream is closed
  *
@@ -78,7 +116,7 @@ int save_end(struct save *s)
 
 	if (fclose(s->f) && !err)
 		err = errno;
-	if (s->part && !err && rename(s->part, s->path))
+	if (s->part && !err && put_in_place(s))
 		err = errno;
 	if (s->part && err)
 		remove(s->part);

@@ -74,6 +74,19 @@ struct ect_why;
 int ect_why(struct ect_handle *h, struct ect_why **w);
 
 /**
+ * ect_why_quiet() - as ect_why(), without traffic
+ * @h: master
+ * @w: result, to be freed with ect_why_free()
+ *
+ * Error counters are as the master has read them last; a slave whose counters were not read yet
+ * counts as @silent in struct ect_checked.
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: As ect_why().
+ */
+int ect_why_quiet(struct ect_handle *h, struct ect_why **w);
+
+/**
  * ect_why_free() - free a result and all that was got from it
  * @w: result, or NULL
  *

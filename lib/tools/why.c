@@ -187,9 +187,9 @@ static struct ect_why *result(struct why *w, bool unreachable)
 	return r;
 }
 
-int ect_why(struct ect_handle *h, struct ect_why **to)
+static int find_out(struct ect_handle *h, struct ect_why **to, bool quiet)
 {
-	struct why w = { .h = h };
+	struct why w = { .h = h, .quiet = quiet };
 	int ret = read_all(&w);
 	bool unreachable = !ret && apply_rules(&w);
 
@@ -202,6 +202,16 @@ int ect_why(struct ect_handle *h, struct ect_why **to)
 	ect_list_free(w.configs);
 	ect_list_free(w.findings);
 	return ret ? ret : ect_no_memory(h);
+}
+
+int ect_why(struct ect_handle *h, struct ect_why **to)
+{
+	return find_out(h, to, false);
+}
+
+int ect_why_quiet(struct ect_handle *h, struct ect_why **to)
+{
+	return find_out(h, to, true);
 }
 
 void ect_why_free(struct ect_why *w)

@@ -19,6 +19,7 @@
  * @absent: struct ect_absent
  * @configs: struct ect_explained
  * @findings: struct ect_finding
+ * @quiet: error counters are those that the master has read
  * @counters: the user may read the error counters of the ports
  * @silent: slaves whose error counters could not be read
  * @late: there are late frames, so working counters show nothing about slaves
@@ -33,6 +34,7 @@ struct why {
 	struct ect_list *absent;
 	struct ect_list *configs;
 	struct ect_list *findings;
+	bool quiet;
 	bool counters;
 	u32 silent;
 	bool late;

@@ -118,23 +118,57 @@ static void port_errors(struct why *w, const struct ect_errors *all, unsigned in
 	f->port = (int)port;
 }
 
+/* as the master has read them last, up to 255 as from the registers */
+static void known_counters(struct why *w, struct ect_errors *all)
+{
+	for (size_t i = 0; i < w->bus->n; i++) {
+		bool known = false;
+
+		for (unsigned int p = 0; p < ECT_PORTS; p++) {
+			const struct ect_port *from = &why_slave(w, i)->ports[p];
+
+			known |= from->errors_known;
+			/* there is no such port */
+			if (from->type < 2)
+				continue;
+			all[i].ports[p] = (struct ect_port_errors){
+				.invalid = (u8)min(from->invalid, 255U),
+				.receiver = (u8)min(from->receiver, 255U),
+				.forwarded = (u8)min(from->forwarded, 255U),
+				.lost_link = (u8)min(from->lost_link, 255U),
+			};
+		}
+		w->silent += !known;
+	}
+}
+
+static void read_counters(struct why *w, struct ect_errors *all)
+{
+	struct ect_handle *h = ect_new();
+
+	w->failed |= !h;
+	w->counters = h && !ect_open_path(h, w->h->path, ECT_OPEN_WRITE);
+	/* one that does not reply for long has its own finding */
+	for (size_t i = 0; w->counters && i < w->bus->n; i++)
+		w->silent += !!ect_get_errors(h, why_slave(w, i)->device, &all[i]);
+	ect_free(h);
+}
+
 /**
- * why_counters() - error counters of the ports, if the user may read registers
+ * why_counters() - error counters of the ports
  * @w: what is known; @counters and @silent say what was read
  */
 void why_counters(struct why *w)
 {
 	struct ect_errors *all = calloc(w->bus->n + 1, sizeof(*all));
-	struct ect_handle *h = ect_new();
 
-	w->failed |= !all || !h;
-	if (all && h && !ect_open_path(h, w->h->path, ECT_OPEN_WRITE)) {
+	w->failed |= !all;
+	if (all && w->quiet) {
 		w->counters = true;
-		/* one that does not reply for long has its own finding */
-		for (size_t i = 0; i < w->bus->n; i++)
-			w->silent += !!ect_get_errors(h, why_slave(w, i)->device, &all[i]);
+		known_counters(w, all);
+	} else if (all) {
+		read_counters(w, all);
 	}
-	ect_free(h);
 	for (unsigned int i = 0; all && i < w->bus->n; i++)
 		for (unsigned int p = 0; p < ECT_PORTS; p++)
 			port_errors(w, all, i, p);

@@ -41,7 +41,9 @@ fetch() {
 		dpkg -x prometheus_*.deb . && mv usr/bin/prometheus .. && cd .. && rm -r new
 }
 
-free_port() { python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'; }
+free_port() {
+	python3 -c 'import socket; s = socket.create_server(("127.0.0.1", 0)); print(s.getsockname()[1])'
+}
 
 # query EXPRESSION: the values of all series, in a line
 query() {
