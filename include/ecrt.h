@@ -141,6 +141,10 @@
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
+/* ecrt_master_leave(): the master keeps the cycle; in userspace */
+#define EC_HAVE_LEAVE
+/* ecrt_master_set_data(), ecrt_master_data(): for libraries above this one; in userspace */
+#define EC_HAVE_MASTER_DATA
 #endif
 
 #ifndef EC_PUBLIC_API
@@ -1339,6 +1343,53 @@ EC_PUBLIC_API int ecrt_master_cycle_inputs(const ec_master_t *master,
  * cycle.
  */
 EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
+
+/**
+ * ecrt_master_leave() - leave the running cycle to the master, as "ethercat run" does
+ * @master: an active master whose cycle the kernel runs, with @stall_cycles 0
+ *
+ * Extension (%EC_HAVE_LEAVE). The cycle continues without any process until "ethercat stop" or
+ * ecrt_master_end_detached(). Outputs become zero; "ethercat set" sets them. No application can
+ * take the cycle over. Sync units with a lease, authority or a policy are refused.
+ *
+ * On success @master is as after ecrt_open_master(): handles and pointers obtained since the
+ * reservation are invalid. After a failure call ecrt_release_master(), which ends the session.
+ * In userspace only.
+ *
+ * Context: Process. Sleeps until the next cycle has begun. No other thread uses @master.
+ * Return: 0; %-EINVAL not active, the application runs the cycle, an output stall, or such a sync
+ * unit; %-EBUSY another process has memory of the session mapped; %-ETIMEDOUT the cycle does not
+ * run; %-ENOMEM.
+ */
+EC_PUBLIC_API int ecrt_master_leave(ec_master_t *master);
+
+/**
+ * ecrt_master_set_data() - keep data of another library as long as its handles are valid
+ * @master: an opened master
+ * @data: data of the caller; NULL: none any more
+ * @release: frees @data; it also is the key of the data
+ *
+ * Extension (%EC_HAVE_MASTER_DATA). Calls @release with the earlier data of the same key; with the
+ * last ones when the handles of configurations and domains become invalid: by
+ * ecrt_master_deactivate(), ecrt_master_leave() and ecrt_release_master(). In userspace only.
+ *
+ * Context: Process. One thread at a time.
+ * Return: 0; %-EINVAL @master or @release is NULL; %-ENOMEM, and @release is not called.
+ */
+EC_PUBLIC_API int ecrt_master_set_data(ec_master_t *master, void *data,
+		void (*release)(void *data));
+
+/**
+ * ecrt_master_data() - get the data of ecrt_master_set_data()
+ * @master: an opened master
+ * @release: key
+ *
+ * Extension (%EC_HAVE_MASTER_DATA). In userspace only.
+ *
+ * Context: Any; not beside ecrt_master_set_data(). RT-safe: bounded, no sleep, no allocation.
+ * Return: the data; NULL: none.
+ */
+EC_PUBLIC_API void *ecrt_master_data(const ec_master_t *master, void (*release)(void *data));
 #endif
 
 /**

@@ -46,6 +46,7 @@ struct ec_master {
 
 	struct ec_domain *domains;
 	struct ec_slave_config *configs;
+	struct ec_master_data *data;
 };
 
 /*
@@ -128,6 +129,7 @@ static inline int ec_inactive(const struct ec_master *m)
 }
 
 void ec_master_free_session(struct ec_master *m);
+void ec_master_free_data(struct ec_master *m);
 void ec_master_unmap(struct ec_master *m);
 void *ec_master_map(struct ec_master *m, void *at, size_t size, int prot, __u64 offset);
 

@@ -14,6 +14,7 @@ void ec_master_free_session(struct ec_master *m)
 	struct ec_slave_config *sc;
 	struct ec_domain *d;
 
+	ec_master_free_data(m);
 	ec_app_requests_free(m);
 	while ((d = m->domains)) {
 		m->domains = d->next;
@@ -292,6 +293,23 @@ int ecrt_master_deactivate(ec_master_t *master)
 	ec_master_unmap(master);
 	ec_master_free_session(master);
 	master->cycle.next.app_time = 0;	/* the next session has its own */
+	return 0;
+}
+
+int ecrt_master_leave(ec_master_t *master)
+{
+	int ret;
+
+	if (!master || !master->active)
+		return ec_inactive(master);
+	/* the kernel refuses to take it while memory is mapped, by which a process could write */
+	ec_master_unmap(master);
+	ret = ec_do(master, EC_IOC_DETACH, NULL, "leave the cycle of master %u", master->index);
+	if (ret)
+		return ret;
+	master->reserved = false;
+	ec_master_free_session(master);
+	master->cycle.next.app_time = 0;
 	return 0;
 }
 

@@ -77,7 +77,11 @@ static void compare_scalars(struct comparison *c, const struct field *f, const c
 /* whether a machine tells it, and has told it */
 static bool is_told(const struct comparison *c, const struct field *f)
 {
-	return f->flags & F_MACHINE && (!f->known || c->known & f->known);
+	uint32_t known = c->known;
+
+	if (c->flags & ECB_COMPARE_SLAVES)
+		known &= ECB_KNOWN_MODULES;
+	return f->flags & F_MACHINE && (!f->known || known & f->known);
 }
 
 static void compare_fields(struct comparison *c, const struct field *f, const char *path,

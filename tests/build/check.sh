@@ -197,7 +197,8 @@ t "ec_master exports ecrt.h" exports_ecrt
 flags="-O2 -Wall -Wextra -Werror"
 t "library without a warning" make -s -C lib O="$tmp/lib" CFLAGS="$flags" all
 t "library of the tools without a warning" make -s -C lib/tools O="$tmp/libtools" CFLAGS="$flags" all
-t "library of bus files without a warning" make -s -C lib/bus O="$tmp/libbus" CFLAGS="$flags" all
+t "library of bus files without a warning" make -s -C lib/bus O="$tmp/libbus" LIB="$tmp/lib" \
+	CFLAGS="$flags" all
 t "tool without a warning" make -s -C tool O="$tmp/tool" CFLAGS="$flags"
 t "simulator without a warning" make -s -C tool/sim O="$tmp/sim" CFLAGS="$flags"
 t "demo without a warning" make -s -C tests/apps O="$tmp/apps" LIB="$tmp/lib" CFLAGS="$flags" all

@@ -199,14 +199,20 @@ says_why() {	# needs library_works
 cyclic_is_silent() { ! grep 'Failed to \(send\|receive\|process\|queue\)' "$o/session.err"; }
 
 # --- libethercat-tools, libethercat-bus: LIBRARY is tools or bus ---
-declare -A begins=([tools]=ect [bus]=ecb)
+# libethercat-bus has functions of applications as well, in load.h
+declare -A begins=([tools]=ect [bus]='ec[br]t*')
 
 map_of() {	# map_of LIBRARY
 	sed -n "s/^\t\t\(${begins[$1]}_[a-z0-9_]*\);/\1/p" "$top/lib/$1/libethercat-$1.map" | sort
 }
 
+other_headers() {	# other_headers LIBRARY
+	echo "#include <ethercat-$1.h>"
+	[ "$1" = tools ] || echo '#include <ethercat-bus/load.h>'
+}
+
 other_declares() {	# other_declares LIBRARY
-	echo "#include \"ethercat-$1.h\"" | $CC -E -P -I"$top/include" - | tr '\n' ' ' |
+	other_headers "$1" | $CC -E -P -D__ECRT_H__ -I"$top/include" - | tr '\n' ' ' |
 		grep -o "${begins[$1]}_[a-z0-9_]*([^(){};]*) *;" | grep -o '^[a-z0-9_]*' | sort
 }
 
@@ -237,7 +243,7 @@ needs_only() {	# needs_only LIBRARY PATTERN
 }
 
 other_header_compiles() {	# other_header_compiles LIBRARY COMPILER STANDARD LANGUAGE
-	echo "#include <ethercat-$1.h>" | $2 -std=$3 -x $4 $warn -I"$top/include" -fsyntax-only -
+	other_headers "$1" | $2 -std=$3 -x $4 $warn -I"$top/include" -fsyntax-only -
 }
 
 # what the tests of the tool do not show: handles, sizes, failures, threads
@@ -260,6 +266,13 @@ bus_file() {
 	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" -o "$o/bus-file" \
 		bus_file.c "$top"/lib/bus/*.c "$top/lib/tools/text.c" -lyaml &&
 		"$o/bus-file" "$here"/../busfile/*.yaml
+}
+
+# with a recorder in the place of libethercat
+bus_load() {
+	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" -o "$o/bus-load" bus_load.c \
+		"$top"/lib/{data,real}.c "$top"/lib/bus/*.c "$top"/lib/bus/load/*.c \
+		"$top/lib/tools/text.c" -lyaml -lm && "$o/bus-load"
 }
 
 demo_builds() {
@@ -325,7 +338,8 @@ done
 for std in c++11 c++20; do
 	t "ethercat-tools.h compiles as $std" other_header_compiles tools $CXX $std c++
 done
-t "libethercat-bus builds" $MAKE -s -C "$top/lib/bus" O="$o/bus" CFLAGS="-O2 -Werror" all
+t "libethercat-bus builds" $MAKE -s -C "$top/lib/bus" O="$o/bus" LIB="$o/lib" \
+	CFLAGS="-O2 -Werror" all
 t "ethercat-bus.h declares what the map has" diff <(map_of bus) <(other_declares bus)
 t "each function of libethercat-bus is described" described bus
 t "libethercat-bus exports them and nothing else" diff <(map_of bus) <(other_exports bus)
@@ -333,10 +347,11 @@ t "the package of libethercat-bus has them" packaged bus
 ! command -v dpkg-gensymbols >/dev/null || t "dpkg-gensymbols agrees with libethercat-bus" \
 	gensymbols libethercat-bus1 bus/libethercat-bus.so.1.0.0
 t "soname of libethercat-bus" has_soname bus
-t "libethercat-bus needs libc and libyaml only" needs_only bus \
-	'libc\.so\|ld-linux\|libyaml-0\.so\.2'
+t "libethercat-bus needs libc, libyaml and libethercat only" needs_only bus \
+	'libc\.so\|libm\.so\|ld-linux\|libyaml-0\.so\.2\|libethercat\.so\.1'
 t "names of slaves and values" bus_names
 t "bus files" bus_file
+t "bus files become configurations, by ecrt.h" bus_load
 for std in c99 c17; do
 	t "ethercat-bus.h compiles as $std" other_header_compiles bus $CC $std c
 done

@@ -247,6 +247,41 @@ static void detached(void)
 	CALL(ecrt_release_master)(m);
 }
 
+static unsigned int released;
+
+static void release_number(void *data)
+{
+	released += *(unsigned int *)data;
+}
+
+/* Left to the master: no application has it, and its handles are gone. */
+static void left_to_master(void)
+{
+	static unsigned int one = 1, ten = 10;
+	ec_cycle_config_t c = config;
+	struct bench b;
+
+	c.flags = 0;
+	c.stall_cycles = 0;
+	NEED(bench_request(&b) && bench_configure(&b));
+	SILENT(CALL(ecrt_master_leave)(b.m), -EINVAL);
+	IS(CALL(ecrt_master_set_cycle)(b.m, &c), 0);
+	YES(!CALL(ecrt_master_data)(b.m, release_number));
+	IS(CALL(ecrt_master_set_data)(b.m, &one, release_number), 0);
+	IS(CALL(ecrt_master_set_data)(b.m, &ten, release_number), 0);
+	IS(released, 1);
+	YES(CALL(ecrt_master_data)(b.m, release_number) == &ten);
+	NEED(bench_activate(&b) && until_op(&b));
+	IS(CALL(ecrt_master_leave)(b.m), 0);
+	IS(released, 11);
+	YES(!CALL(ecrt_master_data)(b.m, release_number));
+	SILENT(CALL(ecrt_master_leave)(b.m), -EPERM);
+	SAYS(CALL(ecrt_master_reserve)(b.m), -EBUSY);
+	SILENT(CALL(ecrt_master_end_detached)(b.m), 0);
+	IS(CALL(ecrt_master_reserve)(b.m), 0);
+	bench_down(&b);
+}
+
 const struct api_case kcycle_cases[] = {
 	{ "what cannot be is refused", refused },
 	{ "it runs", runs },
@@ -254,5 +289,6 @@ const struct api_case kcycle_cases[] = {
 	{ "a domain now and then", divided },
 	{ "from slave to slave", copied },
 	{ "it survives its application", detached },
+	{ "it is left to the master", left_to_master },
 	{ NULL, NULL },
 };

@@ -3,6 +3,8 @@
  * A handle of NULL, as from a call that failed and was not checked, is answered
  * and does no harm. These calls do not count as tests of the functions.
  */
+#include <stdlib.h>
+
 #include "api.h"
 
 static void master(void)
@@ -47,6 +49,9 @@ static void master(void)
 	IS(ecrt_master_sdo_upload(NULL, 0, 1, 1, data, 4, &size, &time), -EINVAL);
 	IS(ecrt_master_activate(NULL), -EINVAL);
 	IS(ecrt_master_deactivate(NULL), -EINVAL);
+	IS(ecrt_master_leave(NULL), -EINVAL);
+	IS(ecrt_master_set_data(NULL, data, free), -EINVAL);
+	YES(!ecrt_master_data(NULL, free));
 	IS(ecrt_master_set_late_cycles(NULL, 1), -EINVAL);
 	IS(ecrt_master_group(NULL, NULL), -EINVAL);
 	YES(!ecrt_master_group_config(NULL, 0, 0, 1, 1));
