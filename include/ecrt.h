@@ -143,6 +143,8 @@
 #define EC_HAVE_EVENTS
 /* ecrt_master_leave(): the master keeps the cycle; in userspace */
 #define EC_HAVE_LEAVE
+/* ecrt_master_set_names(): names of values for tools; in userspace */
+#define EC_HAVE_NAMES
 /* ecrt_master_set_data(), ecrt_master_data(): for libraries above this one; in userspace */
 #define EC_HAVE_MASTER_DATA
 #endif
@@ -1362,6 +1364,21 @@ EC_PUBLIC_API int ecrt_master_cycle_fd(const ec_master_t *master);
  * run; %-ENOMEM.
  */
 EC_PUBLIC_API int ecrt_master_leave(ec_master_t *master);
+
+/**
+ * ecrt_master_set_names() - say what tools call the values of this application
+ * @master: a reserved master
+ * @text: a bus file with one master, whose slaves are in the order of the configurations
+ * @size: bytes, at most 4 MiB; 0: no names
+ *
+ * Extension (%EC_HAVE_NAMES). "ethercat data --names", "watch" and "set" use the names, types,
+ * units and scaling of the text, as long as the configuration exists. The master does not read it.
+ * ecrt_master_load() of libethercat-bus calls this function. In userspace only.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EPERM not reserved; %-E2BIG too long; %-EDQUOT, %-ENOMEM; %-EINVAL @master is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_set_names(ec_master_t *master, const char *text, size_t size);
 
 /**
  * ecrt_master_set_data() - keep data of another library as long as its handles are valid

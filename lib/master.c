@@ -298,19 +298,32 @@ int ecrt_master_deactivate(ec_master_t *master)
 
 int ecrt_master_leave(ec_master_t *master)
 {
+	struct ec_ioc_detach arg = { 0 };
 	int ret;
 
 	if (!master || !master->active)
 		return ec_inactive(master);
 	/* the kernel refuses to take it while memory is mapped, by which a process could write */
 	ec_master_unmap(master);
-	ret = ec_do(master, EC_IOC_DETACH, NULL, "leave the cycle of master %u", master->index);
+	ret = ec_do(master, EC_IOC_DETACH, &arg, "leave the cycle of master %u", master->index);
 	if (ret)
 		return ret;
 	master->reserved = false;
 	ec_master_free_session(master);
 	master->cycle.next.app_time = 0;
 	return 0;
+}
+
+int ecrt_master_set_names(ec_master_t *master, const char *text, size_t size)
+{
+	struct ec_ioc_names arg = { .size = (__u32)size, .data = (uintptr_t)text };
+
+	if (!master || (size && !text))
+		return -EINVAL;
+	if (size > EC_UAPI_NAMES_MAX)
+		return ec_fail(NULL, -E2BIG, "set %zu bytes of names, limit %u", size,
+			       EC_UAPI_NAMES_MAX);
+	return ec_do(master, EC_IOC_SET_NAMES, &arg, "set names of master %u", master->index);
 }
 
 /* cycle --------------------------------------------------------------------*/

@@ -19,4 +19,14 @@ struct bus_wish {
 /* 0 with @bus, to be freed with ecb_bus_free(), or 1 after printing the error */
 int bus_of_machine(const struct tool *t, const struct bus_wish *wish, struct ecb_bus **bus);
 
+/* cmd_bus.c: names of the two sides of a comparison, and whether they have several masters */
+struct bus_names {
+	const char *expected;
+	const char *found;
+	bool several;
+};
+
+/* prints a difference; @ctx: struct bus_names */
+void bus_show_difference(void *ctx, const struct ecb_difference *d);
+
 #endif

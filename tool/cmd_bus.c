@@ -92,21 +92,15 @@ static int save(struct tool *t, int argc, char **argv)
 	return ret;
 }
 
-struct names {
-	const char *expected;
-	const char *found;
-	bool several;		/* masters */
-};
-
 static const char *const kinds[] = {
 	[ECB_MISSING] = "missing", [ECB_EXTRA] = "extra", [ECB_EXCHANGED] = "exchanged",
 	[ECB_MOVED] = "moved", [ECB_VALUE_DIFFERS] = "value",
 	[ECB_PENDING] = "pending",
 };
 
-static void show_difference(void *ctx, const struct ecb_difference *d)
+void bus_show_difference(void *ctx, const struct ecb_difference *d)
 {
-	const struct names *n = ctx;
+	const struct bus_names *n = ctx;
 
 	out_object(NULL);
 	out_str("kind", kinds[d->kind], NULL);
@@ -139,11 +133,11 @@ static void show_difference(void *ctx, const struct ecb_difference *d)
 static int compare(const struct ecb_bus *a, const char *a_name, const struct ecb_bus *b,
 		   const char *b_name, unsigned int flags)
 {
-	struct names names = { a_name, b_name, a->master_count > 1 || b->master_count > 1 };
+	struct bus_names names = { a_name, b_name, a->master_count > 1 || b->master_count > 1 };
 	long n;
 
 	out_array("differences");
-	n = ecb_compare(a, b, flags, show_difference, &names);
+	n = ecb_compare(a, b, flags, bus_show_difference, &names);
 	out_end();
 	if (n < 0)
 		return fail("out of memory"), 2;

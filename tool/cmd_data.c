@@ -57,7 +57,10 @@ static void show_value(const struct current *l, const struct ect_value *v, int w
 	out_str("direction", v->dir == ECT_DIR_OUTPUT ? "output" : "input", "  %-3s",
 		v->dir == ECT_DIR_OUTPUT ? "out" : "in");
 	out_str("type", type.name, "  %-8s", type.name);
-	out_str("value", text, "  %s\n", text);
+	out_str("value", text, "  %s", text);
+	if (*current_unit_text(l, v))
+		out_str("unit", current_unit_text(l, v), " %s", current_unit_text(l, v));
+	out_text("\n");
 	out_u("domain", v->domain, NULL);
 	out_u("bit", v->bit, NULL);
 	out_u("bits", v->bits, NULL);
@@ -118,9 +121,10 @@ const struct cmd cmd_data = {
 		"\n"
 		"With --names one line for each value instead: name, direction, type, value. A name is\n"
 		"SLAVE.ENTRY, of the order number of the slave and of its PDO entry, or SLAVE.PDO.ENTRY\n"
-		"where a slave has two of the same name. Types are those of the EEPROM.\n",
+		"where a slave has two of the same name. Types are those of the EEPROM.\n"
+		"An application that was configured by a bus file names, scales and types its values.\n",
 	.json = "masters[]: master, domains[]: index, size_bytes, data_hex; with --names values[]\n"
-		"instead: name, direction (input, output), type, value (text), domain, bit (in the\n"
+		"instead: name, direction (input, output), type, value (text), unit, domain, bit (in the\n"
 		"domain), bits, index, subindex",
 	.flags = CMD_HISTORIC,
 };

@@ -5,10 +5,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "dev.h"
 #include "out.h"
+#include "run.h"
 
-#define PERIOD_NS	1000000
 #define WAIT_S		30.0
 
 /**
@@ -140,25 +139,26 @@ static void show_plan(const struct plan *p, bool dry)
 	out_end();
 }
 
-static int in_op(struct dev *d, const struct plan *p, size_t *n)
+static int in_op(struct dev *d, size_t configs, size_t *n)
 {
 	*n = 0;
-	for (unsigned int i = 0; i < p->n; i++) {
+	for (unsigned int i = 0; i < configs; i++) {
 		struct ect_config c = { .struct_size = sizeof(c) };
 		int err = ect_config_read(d->h, i, &c);
 
 		if (err)
 			return dev_fail(d, err, "Master%u: cannot read a configuration",
 					d->master);
-		*n += c.in_op;
+		/* a hot connect group may be absent */
+		*n += c.in_op || (c.group && !c.group_mandatory && c.slave_position < 0);
 	}
 	return 0;
 }
 
 /* Configurations without a slave in OP, on stderr */
-static void name_others(struct dev *d, const struct plan *p)
+static void name_others(struct dev *d, size_t configs)
 {
-	for (unsigned int i = 0; i < p->n; i++) {
+	for (unsigned int i = 0; i < configs; i++) {
 		struct ect_config_why w = { .struct_size = sizeof(w) };
 
 		if (!ect_config_why(d->h, i, &w) && w.text[0])
@@ -166,24 +166,24 @@ static void name_others(struct dev *d, const struct plan *p)
 	}
 }
 
-static int wait_op(struct dev *d, const struct tool *t, const struct plan *p, size_t *n)
+int run_wait_op(struct dev *d, const struct tool *t, size_t configs, size_t *n)
 {
 	double end = now_s() + (t->wait_s >= 0 ? t->wait_s : WAIT_S);
 
 	for (;;) {
-		if (in_op(d, p, n))
+		if (in_op(d, configs, n))
 			return 1;
-		if (*n == p->n)
+		if (*n == configs)
 			return 0;
 		if (now_s() >= end)
 			break;
 		sleep_ms(20);
 	}
-	name_others(d, p);
+	name_others(d, configs);
 	if (t->force)
 		return 0;
 	return fail("Master%u: %zu of %zu slave(s) not in OP, so the bus does not run; 'ethercat why' says more, --force runs the others",
-		    d->master, p->n - *n, p->n);
+		    d->master, configs - *n, configs);
 }
 
 static void show_cycle(struct dev *d)
@@ -200,11 +200,18 @@ static void show_cycle(struct dev *d)
 		out_text("SCHED_OTHER: no right to real-time priority (RLIMIT_RTPRIO), frames may be late\n");
 }
 
+void run_show(struct dev *d, size_t n)
+{
+	out_u("in_op", n, "Master%u runs: %zu slave(s) in OP", d->master, n);
+	show_cycle(d);
+	out_text("Outputs are zero. 'ethercat watch' shows values, 'ethercat set' sets outputs, 'ethercat stop' ends it.\n");
+}
+
 static int start(struct dev *d, const struct tool *t, struct plan *p)
 {
 	struct ect_run how = {
 		.struct_size = sizeof(how), .cpu = -1,
-		.period_ns = t->period_us ? 1000 * t->period_us : PERIOD_NS,
+		.period_ns = t->period_us ? 1000 * t->period_us : RUN_PERIOD_NS,
 	};
 	size_t n;
 	int err = 0;
@@ -220,21 +227,26 @@ static int start(struct dev *d, const struct tool *t, struct plan *p)
 	err = ect_run_start(d->h, &how);
 	if (err)
 		return dev_fail(d, err, "Master%u: cannot start the cycle", d->master);
-	if (wait_op(d, t, p, &n))
+	if (run_wait_op(d, t, p->n, &n))
 		return 1;
-	out_u("in_op", n, "Master%u runs: %zu slave(s) in OP", d->master, n);
-	show_cycle(d);
-	out_text("Outputs are zero. 'ethercat watch' shows values, 'ethercat set' sets outputs, 'ethercat stop' ends it.\n");
+	run_show(d, n);
 	return 0;
+}
+
+int run_finish_output(void)
+{
+	int err = out_finish();
+
+	return err ? fail("cannot write the output (%s); the bus does not run", strerror(-err)) : 0;
 }
 
 /* The last step: when the process ends before it, the session ends as well. */
 static int leave(struct dev *d)
 {
-	int err = out_finish();
+	int err = run_finish_output();
 
 	if (err)
-		return fail("cannot write the output (%s); the bus does not run", strerror(-err));
+		return err;
 	err = ect_run_leave(d->h);
 	if (err)
 		return dev_fail(d, err,
@@ -257,7 +269,7 @@ static int run_master(const struct tool *t, struct dev *d)
 	if (!ret && t->dry_run)
 		out_text("Master%u: %zu of %zu slave(s) would go to OP with the PDOs that they have now, outputs zero, cycle %g ms:\n",
 			 d->master, p.n, p.all.n,
-			 (t->period_us ? t->period_us : PERIOD_NS / 1000) / 1e3);
+			 (t->period_us ? t->period_us : RUN_PERIOD_NS / 1000) / 1e3);
 	if (!ret)
 		show_plan(&p, t->dry_run);
 	if (!ret && !p.n)
@@ -275,10 +287,11 @@ static int run(struct tool *t, int argc, char **argv)
 	struct dev d;
 	int ret;
 
-	(void)argc, (void)argv;
+	if (argc && t->include)
+		return usage_error("FILE and --include exclude each other: the file names what runs");
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = run_master(t, &d);
+	ret = argc ? run_file(t, &d, argv[0]) : run_master(t, &d);
 	/* without ect_run_leave() the session ends here, and with the process */
 	dev_close(&d);
 	return ret;
@@ -287,7 +300,7 @@ static int run(struct tool *t, int argc, char **argv)
 const struct cmd cmd_run = {
 	.name = "run",
 	.run = run,
-	.args = "",
+	.args = "[<FILE>]",
 	.opts = "mDfGPw",
 	.summary = "Run the bus without an application",
 	.help = "All slaves go to OP with the PDOs that they have now, and the kernel exchanges their\n"
@@ -304,9 +317,17 @@ const struct cmd cmd_run = {
 		"with FSoE or Safety. Nothing of this is certain: use --dry-run first. Clocks of slaves\n"
 		"are not synchronized, and no startup commands are written.\n"
 		"\n"
+		"With a bus file ('ethercat bus save') all slaves of the file run, as it says: PDOs,\n"
+		"startup commands, time limits, clocks, sync units, hot connect groups, cycle. Other\n"
+		"slaves are omitted and named. When slaves differ from the file nothing runs, and each\n"
+		"difference is named; with --force the slaves run that are there. A file that the group\n"
+		"or others may write, or that belongs to another user, is refused.\n"
+		"\n"
 		"With the right to it (CAP_SYS_NICE or RLIMIT_RTPRIO) the cycle has SCHED_FIFO 50,\n"
 		"otherwise SCHED_OTHER, which the command reports.\n",
 	.json = "master, dry_run, slaves[]: position, name, kind (io, drive, safety, unknown), runs;\n"
+		"with FILE: file, differences[] as in 'bus check', slaves[]: name, runs;\n"
 		"without --dry-run: in_op (slaves), period_ns, priority (0: SCHED_OTHER)",
 	.flags = CMD_ONE_MASTER,
+	.max_args = 1,
 };

@@ -17,7 +17,7 @@ static int set(const struct tool *t, struct dev *d, const struct current *l, cha
 		return fail("%s is an input: only outputs can be set", v->name);
 	if (!v->device)
 		return fail("%s: its slave is disconnected", v->name);
-	if (current_parse(v, argv[1], &o.value))
+	if (current_parse(l, v, argv[1], &o.value))
 		return 1;
 	o.domain = v->domain;
 	o.device = v->device;
@@ -31,6 +31,8 @@ static int set(const struct tool *t, struct dev *d, const struct current *l, cha
 	out_u("master", d->master, NULL);
 	out_str("name", v->name, "%s", v->name);
 	out_u("bits", o.value, " is %s", argv[1]);
+	if (*current_unit_text(l, v))
+		out_str("unit", current_unit_text(l, v), " %s", current_unit_text(l, v));
 	out_u("lease_ms", o.lease_ms, NULL);
 	if (o.lease_ms)
 		out_text(" for %g s, then zero\n", o.lease_ms / 1e3);
@@ -68,8 +70,9 @@ const struct cmd cmd_set = {
 		"'set' of the same output begins its lease again. With --hold the value stays until it\n"
 		"is set again or the bus is stopped; a slave that was disconnected and returns gets it\n"
 		"again. The outputs of an application are refused: only the application sets them.\n"
-		"VALUE: a number of the type of the output; on and off as well.\n",
-	.json = "master, name, bits (the value as a number without sign), lease_ms (0: it stays)",
+		"VALUE: a number of the type of the output; on and off as well. In its unit if a bus\n"
+		"file scales it.\n",
+	.json = "master, name, bits (the raw value as a number without sign), unit, lease_ms (0: it stays)",
 	.flags = CMD_ONE_MASTER | CMD_NEGATIVE,
 	.min_args = 2,
 	.max_args = 2,

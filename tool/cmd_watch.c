@@ -92,7 +92,11 @@ static void print_changes(const struct dev *d, struct watch *w, double from)
 		out_u("master", d->master, NULL);
 		out_f("time_s", now_s() - from, "%9.3f", now_s() - from);
 		out_str("name", v->name, "  %s", v->name);
-		out_str("value", text, " = %s\n", text);
+		out_str("value", text, " = %s", text);
+		if (*current_unit_text(&w->l, v))
+			out_str("unit", current_unit_text(&w->l, v), " %s",
+				current_unit_text(&w->l, v));
+		out_text("\n");
 		out_end();
 	}
 	fflush(stdout);
@@ -118,6 +122,9 @@ static void redraw(const struct dev *d, struct watch *w)
 		memcpy(w->before[i], text, sizeof(text));
 		if (i + 3 > lines)
 			continue;
+		if (*current_unit_text(&w->l, v))
+			snprintf(text + strlen(text), sizeof(text) - strlen(text), " %.8s",
+				 current_unit_text(&w->l, v));
 		screen_line(columns, "%c %-*.*s %-3s %20s",
 			    w->changed[i] && now - w->changed[i] < MARK_S ? '*' : ' ', room, room,
 			    v->name, v->dir == ECT_DIR_OUTPUT ? "out" : "in", text);
@@ -177,7 +184,7 @@ const struct cmd cmd_watch = {
 		"each value, then for each change: seconds, name, value. Values are read ten\n"
 		"times a second, or in the time of --watch: what is shorter is not seen. It only reads,\n"
 		"also the session of an application, and sends no frame.\n",
-	.json = "each line is an object: master, time_s, name, value (text)",
+	.json = "each line is an object: master, time_s, name, value (text), unit",
 	.flags = CMD_ONE_MASTER | CMD_LINES,
 	.max_args = 1000,
 };

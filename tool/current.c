@@ -44,7 +44,7 @@ static int read_values(struct dev *d, struct current *l)
 int current_read(struct dev *d, struct current *l)
 {
 	*l = (struct current){ 0 };
-	return read_values(d, l) || current_refresh(d, l);
+	return read_values(d, l) || current_rename(d, l) || current_refresh(d, l);
 }
 
 int current_poll(struct dev *d, struct current *l)
@@ -73,6 +73,9 @@ void current_free(struct current *l)
 		free(l->images[i]);
 	free(l->images);
 	free(l->sizes);
+	for (size_t i = 0; i < l->n && l->units; i++)
+		free(l->units[i].text);
+	free(l->units);
 	ect_list_free(l->list);
 	*l = (struct current){ 0 };
 }
@@ -136,6 +139,13 @@ struct ec_type current_type(const struct ect_value *v)
 	return (struct ec_type){ .bits = v->bits, .kind = EC_KIND_UINT, .name = name };
 }
 
+static double number_of(const struct ec_type *t, const u8 *data, u64 bits)
+{
+	if (t->kind == EC_KIND_FLOAT)
+		return value_real(data, t->bits / 8u);
+	return t->kind == EC_KIND_INT ? (double)value_signed(t, data, t->bits / 8u) : (double)bits;
+}
+
 void current_format(const struct current *l, const struct ect_value *v, char *buf, size_t size)
 {
 	struct ec_type t = current_type(v);
@@ -148,7 +158,9 @@ void current_format(const struct current *l, const struct ect_value *v, char *bu
 	}
 	for (unsigned int i = 0; i < 8; i++)
 		data[i] = (u8)(bits >> 8 * i);
-	if (t.kind == EC_KIND_FLOAT)
+	if (current_is_scaled(l, v))
+		snprintf(buf, size, "%.9g", current_scaled(l, v, number_of(&t, data, bits)));
+	else if (t.kind == EC_KIND_FLOAT)
 		snprintf(buf, size, "%.7g", value_real(data, t.bits / 8u));
 	else if (t.kind == EC_KIND_INT)
 		snprintf(buf, size, "%lld", (long long)value_signed(&t, data, t.bits / 8u));
@@ -185,15 +197,21 @@ static int parse_bits(const struct ect_value *v, const char *text, u64 *bits)
 	return 0;
 }
 
-int current_parse(const struct ect_value *v, const char *text, u64 *bits)
+int current_parse(const struct current *l, const struct ect_value *v, const char *text, u64 *bits)
 {
 	struct ec_type t = current_type(v);
+	char raw[400];	/* of the largest double */
 	const char *why = "";
 	u8 data[8] = { 0 };
 	size_t size;
 
 	if (v->bits > 64)
 		return fail("%s has %u bits, at most 64 can be set", v->name, v->bits);
+	if (current_is_scaled(l, v)) {
+		if (!current_unscaled(l, v, text, raw, sizeof(raw)))
+			return fail("%s is scaled: '%s' is no number", v->name, text);
+		text = raw;
+	}
 	if (t.kind != EC_KIND_FLOAT && t.kind != EC_KIND_INT)
 		return parse_bits(v, text, bits);
 	if (value_parse(&t, text, strlen(text), data, sizeof(data), &size, &why))

@@ -8,9 +8,17 @@
 
 #define CURRENT_TEXT	64	/* bytes of a value as text */
 
+/** struct current_unit - raw number * @scale + @offset, in @text (NULL: none) */
+struct current_unit {
+	double scale;
+	double offset;
+	char *text;
+};
+
 /**
  * struct current - values of a running session
  * @list: struct ect_value
+ * @units: of each value; NULL: the application names none
  * @n: of them
  * @images: data of each domain
  * @sizes: of them in bytes
@@ -18,6 +26,7 @@
  */
 struct current {
 	struct ect_list *list;
+	struct current_unit *units;
 	size_t n;
 	u8 **images;
 	size_t *sizes;
@@ -42,11 +51,35 @@ const struct ect_value *current_find(const struct dev *d, const struct current *
 /* whether a name is meant by @pattern, with * and ? */
 bool current_matches(const struct ect_value *v, const char *pattern);
 
+/* NULL: none of them has one */
+static inline const struct current_unit *current_unit(const struct current *l,
+						      const struct ect_value *v)
+{
+	return l->units ? &l->units[v - current_at(l, 0)] : NULL;
+}
+
+/* "": none */
+static inline const char *current_unit_text(const struct current *l, const struct ect_value *v)
+{
+	const struct current_unit *u = current_unit(l, v);
+
+	return u && u->text ? u->text : "";
+}
+
+/* current_names.c */
+int current_rename(struct dev *d, struct current *l);
+bool current_is_scaled(const struct current *l, const struct ect_value *v);
+double current_scaled(const struct current *l, const struct ect_value *v, double raw);
+/* the raw number of a scaled value, as text; false: @text is no number */
+bool current_unscaled(const struct current *l, const struct ect_value *v, const char *text,
+		      char *buf, size_t size);
+
 /* the lowest 64 bits; false: it is longer */
 bool current_bits(const struct current *l, const struct ect_value *v, u64 *bits);
 struct ec_type current_type(const struct ect_value *v);
+/* scaled, without unit */
 void current_format(const struct current *l, const struct ect_value *v, char *buf, size_t size);
-/* 0, or 1 after printing what is wrong */
-int current_parse(const struct ect_value *v, const char *text, u64 *bits);
+/* @text is scaled; 0, or 1 after printing what is wrong */
+int current_parse(const struct current *l, const struct ect_value *v, const char *text, u64 *bits);
 
 #endif

@@ -27,6 +27,20 @@ extern "C" {
 int ecb_file_read(struct ecb_bus **bus, const char *path, struct ecb_error *error);
 
 /**
+ * ecb_file_read_fd() - read a bus file that is open
+ * @bus: set to the bus, to be freed with ecb_bus_free()
+ * @fd: file, which is read from its position to its end
+ * @name: name of the file for messages
+ * @error: result of a failure
+ *
+ * For a caller that looks at the owner and the permissions of what it reads.
+ *
+ * Context: Any thread.
+ * Return: As ecb_file_read().
+ */
+int ecb_file_read_fd(struct ecb_bus **bus, int fd, const char *name, struct ecb_error *error);
+
+/**
  * ecb_file_parse() - read a bus file out of memory
  * @bus: set to the bus
  * @name: name of the file for messages

@@ -15,6 +15,8 @@ extern "C" {
 
 /* struct ecb_load.flags: slaves that are missing or exchanged are skipped; others may differ */
 #define ECB_LOAD_PARTIAL	1U
+/* ... nothing is configured; needs @found, and no master */
+#define ECB_LOAD_CHECK		2U
 
 /** struct ecb_load - what ecrt_master_load_bus() applies; zeros but for @struct_size and @bus */
 struct ecb_load {
@@ -55,7 +57,7 @@ int ecrt_master_load(ec_master_t *master, const char *path, struct ecb_error *er
 
 /**
  * ecrt_master_load_bus() - configure a master by a bus that was read before
- * @master: as in ecrt_master_load()
+ * @master: as in ecrt_master_load(); NULL with %ECB_LOAD_CHECK
  * @load: the bus, and how
  * @error: as in ecrt_master_load()
  *

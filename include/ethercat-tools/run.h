@@ -134,6 +134,20 @@ struct ect_value {
  */
 int ect_values_read(struct ect_handle *h, struct ect_list **list);
 
+/**
+ * ect_session_names() - what the application of the running session calls its values
+ * @h: master
+ * @text: result: a bus file with one master, whose slaves are in the order of the configurations,
+ * with a 0 behind it, to be freed with free(); NULL: it says nothing
+ * @size: result: bytes without that 0
+ *
+ * The text is of another user, and not checked: ecb_file_parse() does.
+ *
+ * Context: The thread of the handle; no traffic.
+ * Return: 0, -ENOENT without a session, or another negative errno.
+ */
+int ect_session_names(struct ect_handle *h, char **text, size_t *size);
+
 /* outputs that are set */
 struct ect_output {
 	uint32_t struct_size;

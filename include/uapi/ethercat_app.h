@@ -289,6 +289,19 @@ struct ec_ioc_detach {
 	__u32 reserved;
 };
 
+#define EC_UAPI_NAMES_MAX	(4U << 20)	/* bytes */
+
+/*
+ * EC_IOC_SET_NAMES: what the application says of its values, for tools that show them: in the form
+ * of a bus file, which the kernel does not read. It replaces the text before, and is kept as long
+ * as the session. EC_IOC_NAMES: the text of the running session.
+ */
+struct ec_ioc_names {
+	__u32 flags;
+	__u32 size;	/* in: bytes at @data; EC_IOC_NAMES, out: bytes of the text, 0: none */
+	__u64 data;
+};
+
 #define EC_OUTPUT_FLAG_HOLD	1	/* no lease: until it is set again, or the session ends */
 #define EC_OUTPUT_LEASE_MAX_MS	86400000
 

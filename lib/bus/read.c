@@ -363,24 +363,39 @@ static int slurp(int fd, char **data, size_t *size)
 	return -ENOMEM;
 }
 
-ECB_API int ecb_file_read(struct ecb_bus **bus, const char *path, struct ecb_error *error)
+static int cannot_read(const char *name, int err, struct ecb_error *error)
 {
-	bool in = !strcmp(path, "-");
-	int fd = in ? 0 : open(path, O_RDONLY | O_CLOEXEC);
+	ecb_report(error, name, 0, 0, "%s", strerror(-err));
+	return err;
+}
+
+ECB_API int ecb_file_read_fd(struct ecb_bus **bus, int fd, const char *name,
+			     struct ecb_error *error)
+{
 	char *data = NULL;
 	size_t size = 0;
-	int ret;
+	int ret = slurp(fd, &data, &size);
 
 	*bus = NULL;
 	memset(error, 0, sizeof(*error));
-	ret = fd < 0 ? -errno : slurp(fd, &data, &size);
-	if (fd > 0)
-		close(fd);
-	if (ret) {
-		ecb_report(error, path, 0, 0, "%s", strerror(-ret));
-		return ret;
-	}
-	ret = ecb_file_parse(bus, in ? "stdin" : path, data, size, error);
+	if (ret)
+		return cannot_read(name, ret, error);
+	ret = ecb_file_parse(bus, name, data, size, error);
 	free(data);
+	return ret;
+}
+
+ECB_API int ecb_file_read(struct ecb_bus **bus, const char *path, struct ecb_error *error)
+{
+	bool in = !strcmp(path, "-");
+	int fd = in ? 0 : open(path, O_RDONLY | O_CLOEXEC), ret;
+
+	*bus = NULL;
+	memset(error, 0, sizeof(*error));
+	if (fd < 0)
+		return cannot_read(path, -errno, error);
+	ret = ecb_file_read_fd(bus, fd, in ? "stdin" : path, error);
+	if (!in)
+		close(fd);
 	return ret;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 /* A bus that runs without an application: what an application would do, and its outputs. */
 #include <errno.h>
+#include <stdlib.h>
 #include <strings.h>
 
 #include "internal.h"
@@ -76,6 +77,34 @@ int ect_run_leave(struct ect_handle *h)
 	struct ec_ioc_detach d = { 0 };
 
 	return ect_command(h, EC_IOC_DETACH, &d);
+}
+
+int ect_session_names(struct ect_handle *h, char **text, size_t *size)
+{
+	struct ec_ioc_names i = { 0 };
+	int ret;
+
+	*text = NULL;
+	*size = 0;
+	/* the text may have grown between two commands */
+	do {
+		free(*text);
+		*text = NULL;
+		*size = i.size;
+		if (i.size) {
+			*text = calloc(1, (size_t)i.size + 1);
+			if (!*text)
+				return ect_no_memory(h);
+		}
+		i.data = (uintptr_t)*text;
+		ret = ect_command(h, EC_IOC_NAMES, &i);
+	} while (!ret && i.size > *size);
+	*size = i.size;
+	if (!ret && i.size)
+		return 0;
+	free(*text);
+	*text = NULL;
+	return ret;
 }
 
 int ect_output_set(struct ect_handle *h, const struct ect_output *o)

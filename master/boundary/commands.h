@@ -55,6 +55,7 @@ CMD(EC_IOC_DOMAIN_FMMU, ec_ioc_domain_fmmu, 0, SHOW_DOMAIN(ec_ioc_domain_fmmu),
 CMD(EC_IOC_DOMAIN_DATA, ec_ioc_domain_data, 0, SHOW_DOMAIN(ec_ioc_domain_data),
 	OUT(ec_ioc_domain_data, EC_MAX_IMAGE), RSV1(ec_ioc_domain_data))
 CMD(EC_IOC_UNIT_INFO, ec_ioc_unit_info, 0, SHOW)
+CMD(EC_IOC_NAMES, ec_ioc_names, 0, SHOW, OUT(ec_ioc_names, EC_UAPI_NAMES_MAX))
 CMD(EC_IOC_EOE, ec_ioc_eoe, 0, RSV1(ec_ioc_eoe))
 CMD(EC_IOC_CYCLE_STATS, ec_ioc_cycle_stats, 0,
 	OUT(ec_ioc_cycle_stats, sizeof(struct ec_status_cycle)))
@@ -141,6 +142,7 @@ CMD(EC_IOC_SC_REPLAY, ec_ioc_sc_replay, F_WRITE, CONFIG(ec_ioc_sc_replay), RSV1(
 CMD(EC_IOC_HOLD, ec_ioc_hold, F_WRITE, SESSION, RSV1(ec_ioc_hold), FLAGS(EC_HOLD_FLAG_RESUME))
 CMD(EC_IOC_ACTIVATE, ec_ioc_activate, F_WRITE, SESSION,
 	BUFFER(ec_ioc_activate, preset, preset_size, EC_MAX_IMAGE, true, false))
+CMD(EC_IOC_SET_NAMES, ec_ioc_set_names, F_WRITE, SESSION, IN(ec_ioc_names, EC_UAPI_NAMES_MAX))
 CMD(EC_IOC_DETACH, ec_ioc_detach, F_WRITE, SESSION, RSV1(ec_ioc_detach))
 CMD(EC_IOC_DEACTIVATE, ec_ioc_deactivate, F_WRITE)
 CMD(EC_IOC_SLAVES_DOWN, ec_ioc_slaves_down, F_WRITE, SESSION)

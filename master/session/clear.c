@@ -34,6 +34,7 @@ void ec_session_clear(struct ec_session *s)
 	ec_replay_free(&s->wanted.strays);
 	kvfree(s->wanted.configs);
 	kvfree(s->specs);
+	kvfree(s->names);
 	ec_budget_release(&s->wanted.budget, s->wanted.budget.bytes);
 	if (s->handles)
 		ec_session_free(s->handles);

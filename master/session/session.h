@@ -100,6 +100,10 @@ struct ec_session {
 	 * has configured, to which its handles belong; or NULL
 	 */
 	struct ec_session *handles;
+	/** @names: text of the application for tools (EC_IOC_SET_NAMES), or NULL */
+	u8 *names;
+	/** @names_size: bytes of it */
+	u32 names_size;
 	/** @detached: the application has left the session to the master; or NULL */
 	struct ec_detached *detached;
 };

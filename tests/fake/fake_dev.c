@@ -239,7 +239,7 @@ static int answer(int fd, unsigned long request, void *arg)
 		return -1;
 	}
 	/* the numbers below 0x20 are used up */
-	if (nr >= 0x20 && nr != _IOC_NR(EC_IOC_EOE) &&
+	if (nr >= 0x20 && nr != _IOC_NR(EC_IOC_EOE) && nr != _IOC_NR(EC_IOC_NAMES) &&
 	    nr != _IOC_NR(EC_IOC_RECORDER) && !writable[fd - FD])
 		return fake_fail(EPERM, "the file is open for reading only");
 	switch (request) {

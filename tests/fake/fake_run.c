@@ -3,7 +3,7 @@
  * Fake master: a bus that runs without an application. FAKE_BUS=run: it runs, with slaves 1 and 2,
  * or as the application of FAKE_OWNER. Otherwise a program may begin it. FAKE_STUCK: so many of
  * its slaves come to OP. FAKE_CHANGES: so many reads show another position. FAKE_GROWS: after so
- * many reads PDOs have more entries.
+ * many reads PDOs have more entries. FAKE_NAMES: file with the names of the application.
  */
 #include <errno.h>
 #include <stdlib.h>
@@ -272,6 +272,23 @@ static int begin(unsigned long request, void *arg)
 	}
 }
 
+static int names(struct ec_ioc_names *x)
+{
+	const char *path = getenv("FAKE_NAMES");
+	FILE *f = path ? fopen(path, "r") : NULL;
+	__u32 room = x->size;
+
+	x->size = 0;
+	if (!f)
+		return 0;
+	if (room)
+		x->size = (__u32)fread((void *)(uintptr_t)x->data, 1, room, f);
+	while (fgetc(f) != EOF)
+		x->size++;
+	fclose(f);
+	return 0;
+}
+
 int fake_run(unsigned long request, void *arg)
 {
 	int ret = begin(request, arg);
@@ -299,6 +316,8 @@ int fake_run(unsigned long request, void *arg)
 		return fmmu(arg);
 	case EC_IOC_DOMAIN_DATA:
 		return data(arg);
+	case EC_IOC_NAMES:
+		return names(arg);
 	default:
 		return FAKE_OTHER;
 	}

@@ -370,6 +370,27 @@ soon() {
 	cat "$out"
 	grep -qx 'input 6.10 V, output 3.05 V' "$out"
 	[ "$(tail -n 1 "$out")" = "ended after the given time" ]
+
+	# the same by a bus file: values by name, in volts, with a startup command and SYNC0
+	local f=$BATS_TEST_TMPDIR/bus.yaml
+	ethercat bus save --whole "$f"
+	sed -Ei '/object: "0x(6000:11|7000:01)"/s/name: [^,}]*/name: voltage, type: int16, unit: V, scale: 0.000305185/
+		s/^( *)- name: el3062$/&\n\1  startup: [{at: safeop, sdo: "0x8000:15", type: uint16, value: 3}]/
+		s/^( *)- name: el4002$/&\n\1  clock: {assign_activate: 0x0300, sync0: 1 ms}/' "$f"
+	cat "$f"
+	example bus_values "$f" el3062.voltage el4002.voltage 2
+	wait_for 60 json '.masters[0].slaves[] | select(.position == 2) | .sync[0].active' dc
+	wait "$app"
+	cat "$out"
+	grep -qx '6.10 V in, 6.10 V out' "$out"
+	[ "$(ethercat upload -p1 -t uint16 0x8000 0x15)" = "0x0003 3" ]
+	run "$EC_BUILD/examples/bus_values" "$f" el3062.voltage el4002.current 2
+	[[ $status == 1 && $output == "bus_values: the file has no value el4002.current" ]]
+	sed -i s/0x0fa23052/0x0fa23053/ "$f"
+	run "$EC_BUILD/examples/bus_values" "$f" el3062.voltage el4002.voltage 2
+	echo "$output"
+	[[ $status == 1 && $output == *"slave 'el4002' exchanged: expected EL4002"*"product 0x0fa23052"* ]]
+
 	# an output terminal is no input terminal
 	run "$EC_BUILD/examples/analog" 2 1
 	echo "$output"

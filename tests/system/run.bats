@@ -178,6 +178,129 @@ sensor=el1008.channel_1.input
 	ethercat run
 }
 
+@test "run FILE: all slaves of the file, by its PDOs, units and cycle" {
+	local f=$BATS_FILE_TMPDIR/bus.yaml
+
+	ethercat bus save --whole "$f"
+	cat "$f"
+	run ethercat run --dry-run "$f"
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"the slaves of $f would go to OP"*"  el2008  EL2008"* ]]
+	json '.masters[0].session == "none"' master
+	# names are those of the file
+	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    slaves:/; s/name: el2008$/name: lamps/; s/parent: el2008/parent: lamps/
+		s/name: channel_1.input/name: alarm, type: bool, unit: Pa, scale: 20/' "$f"
+	run ethercat run "$f"
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"Master0 runs: 4 slave(s) in OP, cycle 2 ms"* ]]
+	all_slaves_are OP 4
+	! fuser /dev/EtherCAT0 2>/dev/null || false
+	"${reader[@]}" data --names
+	ethercat set lamps.channel_1.output 1
+	wait_for 10 is el1008.alarm 20
+	"${reader[@]}" data --names | grep -q '^el1008.alarm .* 20 Pa$'
+	refused 'no value el2008.channel_1.output' set $lamp 1
+	refused "end that with 'ethercat stop'" run
+	ethercat stop
+	wait_for 60 all_slaves_are PREOP 4
+}
+
+@test "run FILE: what others may write, or has two names, or needs an application, is refused" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml
+
+	no() {	# no PATTERN [OPTION...]
+		run ethercat run "${@:2}" "$f"
+		echo "$output"
+		[ "$status" = 1 ] && [[ "$output" == *"$1"* ]]
+		json '.masters[0].session == "none"' master
+	}
+	ethercat bus save "$f"
+	chmod g+w "$f"
+	no "others may write it (mode 0664), so it is not used; 'chmod go-w $f'"
+	chmod 0602 "$f"
+	no "others may write it"
+	chmod 0644 "$f"
+	chown 1234 "$f"
+	no "belongs to user 1234"
+	chown 0 "$f"
+	sed -i 's/name: el1008/name: el2008/' "$f"
+	no "slave 'el2008' twice"
+	ethercat bus save -f "$f"
+	sed -i 's/^  - slaves:/  - sync_units: [{name: u, policy: zero}]\n    slaves:/
+		s/^\( *\)- name: el1008/&\n\1  sync_unit: u/' "$f"
+	no ":3: sync unit 'u' has a policy, a lease or authority, which need an application"
+	f=/dev/null
+	no "is not a regular file"
+	mkfifo "$BATS_TEST_TMPDIR/pipe"
+	f=$BATS_TEST_TMPDIR/pipe
+	no "is not a regular file"
+	f=$BATS_TEST_TMPDIR/none
+	no "No such file"
+	f=$BATS_TEST_TMPDIR/bus.yaml
+	sed -i 's/^  - sync_units.*/  - index: 3/; /sync_unit/d' "$f"
+	no "has no master 0"
+}
+
+@test "run FILE of yesterday, after one slave was exchanged for another type, names the difference" {
+	local f=$BATS_FILE_TMPDIR/yesterday.yaml
+
+	ethercat bus save --whole "$f"
+	stop
+	sed 's/slave i EL1008/slave i EL3062/; /^connect/d' "$BATS_FILE_TMPDIR/segment" \
+		>"$BATS_TEST_TMPDIR/today"
+	start "$BATS_TEST_TMPDIR/today" 4
+	for option in --dry-run --wait=20; do
+		run ethercat run $option "$f"
+		echo "$output"
+		[ "$status" = 1 ]
+		[[ "$output" == *"slave 'el1008' exchanged: expected EL1008, vendor 0x00000002, product 0x03f03052, found EL3062, vendor 0x00000002, product 0x0bf63052; install the expected device"* ]]
+		[[ "$output" == *"1 difference(s) from $f, so the bus does not run"* ]]
+		json '.masters[0].session == "none"' master
+	done
+	run ethercat run --force "$f"
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"3 slave(s) in OP"* ]]
+	all_slaves_are OP 3
+	ethercat slaves | grep -q 'PREOP.*EL3062'
+	ethercat stop
+	# one more slave is no difference
+	stop
+	sed '/^connect/d' "$BATS_FILE_TMPDIR/segment" >"$BATS_TEST_TMPDIR/today"
+	echo slave more EL1008 >>"$BATS_TEST_TMPDIR/today"
+	start "$BATS_TEST_TMPDIR/today" 5
+	run ethercat run "$f"
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ "$output" == *"el1008_2: omitted, not in $f"*"4 slave(s) in OP"* ]]
+	stop
+	start "$BATS_FILE_TMPDIR/segment" 4
+	chmod o+r /dev/EtherCAT0
+}
+
+@test "run FILE: two at once, and killed before all is in OP" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml
+
+	ethercat bus save "$f"
+	ethercat run "$f" >"$BATS_TEST_TMPDIR/one" 2>&1 3>&- &
+	other=$!
+	ethercat run "$f" >"$BATS_TEST_TMPDIR/two" 2>&1 || true	# one of the two is refused
+	wait $other || true
+	other=
+	cat "$BATS_TEST_TMPDIR/one" "$BATS_TEST_TMPDIR/two"
+	[ "$(cat "$BATS_TEST_TMPDIR/one" "$BATS_TEST_TMPDIR/two" | grep -c 'slave(s) in OP')" = 1 ]
+	ethercat stop
+	wait_for 60 all_slaves_are PREOP 4
+	for after in 0.05 0.2 0.4 0.8; do
+		timeout -s KILL $after "$EC_BUILD/tool/ethercat" run "$f" 3>&- || continue
+		ethercat stop	# it was faster
+	done
+	json '.masters[0].session == "none"' master
+	wait_for 60 all_slaves_are PREOP 4
+}
+
 @test "the module is removed while the bus runs and a lease has not ended" {
 	ethercat run
 	ethercat set $lamp 1

@@ -94,7 +94,7 @@ build() {
 	make -s -C tool/sim O="$EC_BUILD/tool" &&
 	make -s -C tests/bench/cycle O="$EC_BUILD/bench" LIB="$EC_BUILD/lib" &&
 	make -s -C tests/apps O="$EC_BUILD/apps" LIB="$EC_BUILD/lib" all &&
-	make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" all
+	make -s -C examples O="$EC_BUILD/examples" LIB="$EC_BUILD/lib" BUS="$EC_BUILD/tool" all
 }
 
 # a foreign master; its programs are those of this machine

@@ -242,3 +242,86 @@ is_narrow() {
 	done
 	[ "$seen" = 1 ]
 }
+
+# the bus file of a session, whose slaves are in the order of its configurations
+names_of_session() {
+	cat >"$BATS_TEST_TMPDIR/names" <<-'END'
+	ethercat: 1
+	masters:
+	  - slaves:
+	      - name: lamps
+	        vendor: 2
+	        product: 0x07d83052
+	        pdos:
+	          - {index: 0x1600, sm: 0, entries: [{object: "0x7000:01", bits: 1, name: red}]}
+	      - name: axis
+	        vendor: 2
+	        product: 0x1c213052
+	        pdos:
+	          - index: 0x1600
+	            sm: 2
+	            entries: [{object: "0x7010:01", bits: 16, name: power, type: int16, unit: "%", scale: 0.1, offset: 1}]
+	          - index: 0x1a00
+	            sm: 3
+	            entries: [{object: "0x6000:11", bits: 32, name: position, type: int32, unit: mm, scale: 0.5}]
+	END
+	export FAKE_NAMES=$BATS_TEST_TMPDIR/names FAKE_BUS=run
+}
+
+@test "data, watch and set use names, units and scaling of the application's bus file" {
+	names_of_session
+	out data --names >"$BATS_TEST_TMPDIR/out"
+	cat "$BATS_TEST_TMPDIR/out"
+	grep -qx 'lamps.red  *out  bool  *0' "$BATS_TEST_TMPDIR/out"
+	# without a name there it is called as without the file
+	grep -q '^el2008.channel_2.output ' "$BATS_TEST_TMPDIR/out"
+	grep -qx 'axis.power  *out  int16  *2.5 %' "$BATS_TEST_TMPDIR/out"
+	grep -qx 'axis.position  *in  *int32  *-1 mm' "$BATS_TEST_TMPDIR/out"
+	out data --names --json |
+		json '[(v["value"], v.get("unit")) for v in d["masters"][0]["values"]][3] == ("-1", "mm")'
+	FAKE_CHANGES=1 out watch --watch 0.1 'axis.p*' | grep -q 'axis.position = -1 mm' || false
+	[ "$(log_of set axis.power 3)" = 'axis.power is 3 % for 5 s, then zero
+output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
+	log_of set axis.power -- -0.04 >"$BATS_TEST_TMPDIR/said"
+	grep -q '16 bits, 0xfff6,' "$BATS_TEST_TMPDIR/said"
+	err set axis.power 3300 | grep -q "the type int16, 16 bit(s), which '32990' does not fit"
+	err set axis.power on | grep -q "axis.power is scaled: 'on' is no number"
+	err set axis.power nan | grep -q 'is no number'
+	err set el7201.controlword 1 | grep -q 'no value el7201.controlword'
+}
+
+@test "names of an application that are not valid, or of other slaves, change nothing" {
+	names_of_session
+	sed -i 's/0x1c213052/0x1c213053/' "$FAKE_NAMES"
+	out data --names >"$BATS_TEST_TMPDIR/out"
+	grep -q '^lamps.red ' "$BATS_TEST_TMPDIR/out"
+	grep -q '^el7201.position ' "$BATS_TEST_TMPDIR/out"
+	sed -i 's/slaves:/slafes:/' "$FAKE_NAMES"
+	golden data_names data --names
+	printf '\033[2J' >"$FAKE_NAMES"
+	golden data_names data --names
+}
+
+@test "run FILE --dry-run names each difference and what is omitted" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml
+
+	ethercat bus save --whole "$f"
+	[ "$(log_of run --dry "$f")" = "Master0: the slaves of $f would go to OP, outputs zero, cycle 1 ms:
+  ek1100  EK1100
+  el2008  EL2008
+  el7201  EL7201" ]
+	out run --dry --json "$f" | json '[s["name"] for s in d["slaves"]] == ["ek1100", "el2008", "el7201"]'
+	sed -i 's/0x07d83052/0x07d83999/' "$f"
+	run ethercat run --dry "$f"
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ $output == *"bus.yaml:10: slave 'el2008' exchanged: expected EL2008, vendor 0x00000002, product 0x07d83999, found EL2008, "* ]]
+	[[ $output == *"1 difference(s) from $f, so the bus does not run; --force"* ]]
+	ethercat run --dry --force "$f" | grep -q 'would go to OP'
+	sed -i '/name: el2008/,/name: el7201/{/name: el7201/!d}; /parent/d; /port:/d' "$f"
+	ethercat run --dry "$f" >"$BATS_TEST_TMPDIR/out"
+	grep -q "  el2008: omitted, not in $f (EL2008" "$BATS_TEST_TMPDIR/out"
+	chmod g+w "$f"
+	err run --dry "$f" | grep -q "others may write it (mode 0664)"
+	err run --dry "$f" --include el2008 | grep -q "exclude each other"
+}

@@ -88,6 +88,7 @@ static int configure_single(struct load *l, struct plan *p)
 
 	if (p->sc)
 		return 0;
+	p->config = l->n_configs++;
 	p->sc = ecrt_master_slave_config(l->m, alias, alias ? 0 : (uint16_t)p->ring, p->s->vendor,
 					 p->s->product);
 	return p->sc ? 0 : load_failed(l, p->s->line, error_of_handle(),
@@ -136,6 +137,7 @@ static int configure_group(struct load *l, size_t index)
 
 		if (p->group != (long)index)
 			continue;
+		p->config = l->n_configs++;
 		p->sc = ecrt_master_group_config(l->m, (unsigned int)group, member++, p->s->vendor,
 						 p->s->product);
 		if (!p->sc)
@@ -288,6 +290,8 @@ static int apply(struct load *l)
 		ret = register_values(l);
 	if (!ret)
 		ret = set_up_master(l);
+	if (!ret)
+		ret = load_publish_names(l);
 	return ret ? ret : finish(l);
 }
 
@@ -325,8 +329,9 @@ ECB_API int ecrt_master_load_bus(ec_master_t *master, const struct ecb_load *loa
 	memset(error, 0, sizeof(*error));
 	memcpy(&how, load, load->struct_size < sizeof(how) ? load->struct_size : sizeof(how));
 	l.file = how.file ? how.file : "bus";
-	if (!master || !how.bus || how.flags & ~ECB_LOAD_PARTIAL)
-		return BAD(&l, 0, "needs a master, a bus, and known flags");
+	if (!how.bus || how.flags & ~(ECB_LOAD_PARTIAL | ECB_LOAD_CHECK) ||
+	    !(how.flags & ECB_LOAD_CHECK ? (void *)how.found : (void *)master))
+		return BAD(&l, 0, "needs a bus, known flags, and a master, or slaves to check");
 	if (ecrt_master_data(master, loaded_free))
 		return BAD(&l, 0, "a bus is loaded already; release or deactivate the master first");
 	ret = choose_master(&l);
@@ -342,7 +347,7 @@ ECB_API int ecrt_master_load_bus(ec_master_t *master, const struct ecb_load *loa
 		ret = load_place(&l);
 	if (!ret)
 		ret = load_check(&l);
-	if (!ret)
+	if (!ret && !(how.flags & ECB_LOAD_CHECK))
 		ret = apply(&l);
 	free_all(&l);
 	return ret;

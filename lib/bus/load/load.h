@@ -17,6 +17,7 @@
  * @pdos: what it gets, in the order of the file; PDOs without entries are those of @there
  * @n_pdos: how many
  * @sc: configuration
+ * @config: its number
  */
 struct plan {
 	const struct ecb_slave *s;
@@ -28,6 +29,7 @@ struct plan {
 	const struct ecb_pdo **pdos;
 	size_t n_pdos;
 	ec_slave_config_t *sc;
+	size_t config;
 };
 
 /**
@@ -40,6 +42,7 @@ struct plan {
  * @found: slaves of the machine
  * @read: memory of @found if it was read here, else NULL
  * @plans: for each slave of the file
+ * @n_configs: configurations so far
  * @domains: for each sync unit, then the one without
  * @to: result
  */
@@ -52,6 +55,7 @@ struct load {
 	const struct ecb_master *found;
 	struct ecb_bus *read;
 	struct plan *plans;
+	size_t n_configs;
 	ec_domain_t **domains;
 	struct loaded *to;
 };
@@ -74,6 +78,9 @@ int load_configure(struct load *l, struct plan *p);
 ec_direction_t load_direction(const struct load *l, const struct plan *p, unsigned int sm);
 /* time in ns, rounded up */
 uint32_t load_ms(int64_t ns);
+
+/* publish.c */
+int load_publish_names(struct load *l);
 
 /* value.c */
 struct loaded *loaded_new(void);

@@ -264,6 +264,8 @@ static void left_to_master(void)
 	c.flags = 0;
 	c.stall_cycles = 0;
 	NEED(bench_request(&b) && bench_configure(&b));
+	IS(CALL(ecrt_master_set_names)(b.m, "ethercat: 1", 11), 0);
+	SAYS(CALL(ecrt_master_set_names)(b.m, "", 1U << 23), -E2BIG);
 	SILENT(CALL(ecrt_master_leave)(b.m), -EINVAL);
 	IS(CALL(ecrt_master_set_cycle)(b.m, &c), 0);
 	YES(!CALL(ecrt_master_data)(b.m, release_number));

@@ -50,6 +50,7 @@ static void master(void)
 	IS(ecrt_master_activate(NULL), -EINVAL);
 	IS(ecrt_master_deactivate(NULL), -EINVAL);
 	IS(ecrt_master_leave(NULL), -EINVAL);
+	IS(ecrt_master_set_names(NULL, "", 0), -EINVAL);
 	IS(ecrt_master_set_data(NULL, data, free), -EINVAL);
 	YES(!ecrt_master_data(NULL, free));
 	IS(ecrt_master_set_late_cycles(NULL, 1), -EINVAL);

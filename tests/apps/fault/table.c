@@ -96,6 +96,7 @@ const struct cmd cmds[] = {
 	CMD(ACTIVATE, APP, .data = offsetof(struct ec_ioc_activate, preset),
 	    .size = offsetof(struct ec_ioc_activate, preset_size)),
 	CMD(DETACH, APP, RSV1(ec_ioc_detach)),
+	CMD(SET_NAMES, APP, DATA(ec_ioc_names)),
 	CMD(DEACTIVATE, APP),
 	CMD(DOMAIN_OFFSET, APP),
 	CMD(INTERVAL, APP),
@@ -129,6 +130,7 @@ const struct cmd cmds[] = {
 	CMD(UNIT_WRITE, BUS, DATA(ec_ioc_unit_data)),
 	CMD(UNIT_READ, BUS, DATA(ec_ioc_unit_data)),
 	CMD(UNIT_INFO),
+	CMD(NAMES, DATA(ec_ioc_names)),
 	CMD(DOMAIN_AGE, APP, RSV1(ec_ioc_domain_age)),
 	CMD(DOMAIN_OPTIONS, APP, RSV1(ec_ioc_domain_options)),
 };
