@@ -26,6 +26,7 @@ LANGUAGES = {
 C_LINE = re.compile(r"^\s*(\w+ \w+|\w+\(.*\)|for \(;;\)|[\w>.-]+ = .*);?\s*[;{]\s*(/\*.*)?$")
 # what the text around a snippet presumes
 PROGRAM = """#include <ecrt.h>
+#include <ethercat-bus/load.h>
 #include <ethercat-tools.h>
 #include <sched.h>
 #include <stdio.h>
