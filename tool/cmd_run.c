@@ -320,7 +320,7 @@ const struct cmd cmd_run = {
 		"With a bus file ('ethercat bus save') all slaves of the file run, as it says: PDOs,\n"
 		"startup commands, time limits, clocks, sync units, hot connect groups, cycle. Other\n"
 		"slaves are omitted and named. When slaves differ from the file nothing runs, and each\n"
-		"difference is named; with --force the slaves run that are there. A file that the group\n"
+		"difference is named; with --force the other slaves run. A file that the group\n"
 		"or others may write, or that belongs to another user, is refused.\n"
 		"\n"
 		"With the right to it (CAP_SYS_NICE or RLIMIT_RTPRIO) the cycle has SCHED_FIFO 50,\n"

@@ -45,7 +45,7 @@ struct job {
 	struct ecb_load load;
 };
 
-/* What moves machines is written by whom it belongs to. */
+/* A file moves the machine: its owner alone may write it. */
 static int check_owner(const char *path, const struct stat *st)
 {
 	if (!S_ISREG(st->st_mode))
@@ -84,7 +84,7 @@ static int read_open(const char *path, int fd, struct ecb_bus **bus)
 
 static int read_file(struct job *j)
 {
-	/* a pipe that nobody writes must not stop the command */
+	/* a pipe without writer must not stop the command */
 	int fd = open(j->path, O_RDONLY | O_CLOEXEC | O_NONBLOCK), ret;
 
 	if (fd < 0)
@@ -147,11 +147,11 @@ static int compare(struct job *j)
 		return fail("out of memory");
 	if (!j->n || j->t->force)
 		return 0;
-	return fail("Master%u: %zu difference(s) from %s, so the bus does not run; --force runs the slaves that are there",
+	return fail("Master%u: %zu difference(s) from %s, so the bus does not run; --force runs the others",
 		    j->d->master, j->n, j->path);
 }
 
-/* nobody would renew a lease or give authority, and a policy would replace outputs that are set */
+/* no application renews a lease or gives authority; a policy would replace outputs that are set */
 static int check_units(const struct job *j)
 {
 	for (size_t i = 0; i < j->want->sync_unit_count; i++) {
@@ -245,7 +245,7 @@ static int start(const struct job *j, ec_master_t *m)
 		return fail("%s", e.text);
 	err = ecrt_master_loaded(m, &l);
 	if (!err && !l.slaves)
-		return fail("Master%u: none of the slaves of %s is there", j->d->master, j->path);
+		return fail("Master%u: none of the slaves of %s is connected", j->d->master, j->path);
 	if (!err)
 		err = set_cycle(j, m);
 	if (!err)

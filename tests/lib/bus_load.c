@@ -201,6 +201,11 @@ int ecrt_slave_config_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t sub, co
 	return bytes(data, size);
 }
 
+int ecrt_slave_config_sdo32(ec_slave_config_t *sc, uint16_t index, uint8_t sub, uint32_t value)
+{
+	return say("config%u sdo 0x%04x:%02x = 0x%x\n", sc->index, index, sub, value);
+}
+
 int ecrt_slave_config_complete_sdo(ec_slave_config_t *sc, uint16_t index, const uint8_t *data,
 				   size_t size)
 {
@@ -219,7 +224,9 @@ int ecrt_slave_config_command(ec_slave_config_t *sc, ec_step_t step, const ec_co
 {
 	say("config%u step 0x%x kind %d 0x%04x:%u", sc->index, (unsigned int)step, (int)c->kind,
 	    c->index, c->subindex);
-	return bytes(c->data, c->size);
+	if (c->expect)
+		say(" expects");
+	return bytes(c->expect ? c->expect : c->data, c->size);
 }
 
 int ecrt_slave_config_flag(ec_slave_config_t *sc, const char *key, int32_t value)
@@ -475,6 +482,29 @@ static void groups(void)
 	      "domain0: config3 SM0 0.0\n");
 }
 
+/* slot by slot, each time that the slave is configured; an empty slot is expected as such */
+static void modules(void)
+{
+	loads(PART ", modules: [{slot: 1, ident: 0x11}, {slot: 3, ident: 0x33}], write_modules: true,"
+	      "startup: [{at: safeop, sdo: 0x8000:01, type: bool, value: 1}]}\n" INPUTS, 0,
+	      "domain0\n"
+	      "config0 = 0:0 0x2:0x10\n"
+	      "config1 = 5:0 0x2:0x20\n"
+	      "config2 = 0:2 0x2:0x30\n"
+	      "config3 = 0:3 0x2:0x40\n"
+	      "config2 sdo 0xf030:01 = 0x11\n"
+	      "config2 sdo 0xf030:02 = 0x0\n"
+	      "config2 sdo 0xf030:03 = 0x33\n"
+	      "config2 step 0x24 kind 0 0xf050:1 expects 11 00 00 00\n"
+	      "config2 step 0x24 kind 0 0xf050:2 expects 00 00 00 00\n"
+	      "config2 step 0x24 kind 0 0xf050:3 expects 33 00 00 00\n"
+	      "config2 sdo 0x8000:01 01\n"
+	      "domain0: config1 SM0 0.0\n"
+	      "domain0: config2 SM2 0.0\n"
+	      "domain0: config2 SM3 0.0\n"
+	      "domain0: config3 SM0 0.0\n");
+}
+
 static void partial(void)
 {
 	loads(PART "}\n  - {name: more, vendor: 2, product: 0x99}\n", ECB_LOAD_PARTIAL,
@@ -582,6 +612,7 @@ int main(void)
 {
 	refusals();
 	whole();
+	modules();
 	groups();
 	published();
 	partial();

@@ -144,26 +144,12 @@ static int configure_pdos(struct load *l, struct plan *p)
 				 p->s->name) : 0;
 }
 
-/* @data: 8 bytes; what the command writes, little endian */
-static size_t bytes_of(const struct ecb_command *c, uint8_t *data, const uint8_t **from)
-{
-	static const uint8_t sizes[] = {
-		[ECB_TYPE_BOOL] = 1, [ECB_TYPE_INT8] = 1, [ECB_TYPE_INT16] = 2,
-		[ECB_TYPE_INT32] = 4, [ECB_TYPE_INT64] = 8, [ECB_TYPE_UINT8] = 1,
-		[ECB_TYPE_UINT16] = 2, [ECB_TYPE_UINT32] = 4, [ECB_TYPE_UINT64] = 8,
-		[ECB_TYPE_REAL32] = 4, [ECB_TYPE_REAL64] = 8,
-	};
-
-	*from = c->data.size ? c->data.data : data;
-	EC_WRITE_U64(data, (uint64_t)c->value);
-	return c->data.size ? c->data.size : sizes[c->type];
-}
-
 static int startup(struct plan *p, const struct ecb_command *c)
 {
-	const uint8_t *data;
 	uint8_t number[8];
-	size_t size = bytes_of(c, number, &data);
+	const struct ecb_bytes bytes = ecb_command_data(c, number);
+	const uint8_t *data = bytes.data;
+	size_t size = bytes.size;
 	ec_command_t command = { .size = size, .data = data };
 
 	/* SDOs of the step to SAFEOP are written before the PDOs, which they may change */
@@ -189,6 +175,52 @@ static int startup(struct plan *p, const struct ecb_command *c)
 		command.index = (uint16_t)c->reg;
 	}
 	return ecrt_slave_config_command(p->sc, steps[c->at], &command);
+}
+
+static uint32_t ident_of(const struct ecb_slave *s, unsigned int slot)
+{
+	for (size_t i = 0; i < s->module_count; i++)
+		if (s->modules[i]->slot == slot)
+			return s->modules[i]->ident;
+	return 0;
+}
+
+static unsigned int last_slot(const struct ecb_slave *s)
+{
+	unsigned int last = 0;
+
+	for (size_t i = 0; i < s->module_count; i++)
+		if (s->modules[i]->slot > last)
+			last = s->modules[i]->slot;
+	return last;
+}
+
+/* The configured modules, written before all else, each time that the slave is configured. */
+static int write_modules(struct plan *p)
+{
+	int ret = 0;
+
+	for (unsigned int slot = 1; slot <= last_slot(p->s) && !ret; slot++)
+		ret = ecrt_slave_config_sdo32(p->sc, 0xf030, (uint8_t)slot,
+					      ident_of(p->s, slot));
+	return ret;
+}
+
+/* With another module in a slot the slave stays in PREOP, and the reason names it. */
+static int expect_modules(struct plan *p)
+{
+	uint8_t ident[4];
+	ec_command_t c = {
+		.kind = EC_COMMAND_SDO, .index = 0xf050, .size = sizeof(ident), .expect = ident,
+	};
+	int ret = 0;
+
+	for (unsigned int slot = 1; slot <= last_slot(p->s) && !ret; slot++) {
+		EC_WRITE_U32(ident, ident_of(p->s, slot));
+		c.subindex = (uint8_t)slot;
+		ret = ecrt_slave_config_command(p->sc, EC_STEP_PS, &c);
+	}
+	return ret;
 }
 
 static int limits(struct plan *p, const struct ecb_timeouts *t)
@@ -220,6 +252,13 @@ int load_configure(struct load *l, struct plan *p)
 		ret = ecrt_slave_config_flag(p->sc, "ExpectedSerial", (int32_t)s->serial);
 	if (ret)
 		return load_failed(l, s->line, ret, "slave '%s': cannot configure it", s->name);
+	if (s->write_modules)
+		ret = write_modules(p);
+	if (!ret)
+		ret = expect_modules(p);
+	if (ret)
+		return load_failed(l, s->line, ret, "slave '%s': cannot configure its modules",
+				   s->name);
 	for (size_t i = 0; i < s->startup_count; i++) {
 		ret = startup(p, s->startup[i]);
 		if (ret)
