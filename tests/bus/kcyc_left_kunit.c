@@ -342,8 +342,53 @@ static void left_values_are_of_one_device(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, kcyc_output(a, "s2", 2), 0ll);
 }
 
+static int names(struct bus *b, unsigned int cmd, void *data, u32 *size)
+{
+	struct ec_ioc_names i = { .size = *size, .data = (uintptr_t)data };
+	int ret = ec_ioc(&b->app, cmd, &i);
+
+	*size = i.size;
+	return ret;
+}
+
+/* Names stay with the session, also when its application has gone, and end with it. */
+static void left_names_stay(struct kunit *test)
+{
+	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
+	struct bus *b = a->c->b;
+	char text[8] = "axes", more[8] = "x", read[8] = "";
+	u32 size = 0;
+
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), 0);
+	KUNIT_EXPECT_EQ(test, size, 0u);
+	size = 1;
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, more, &size), 0);
+	size = 4;
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, text, &size), 0);
+	size = EC_UAPI_NAMES_MAX + 1;
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, text, &size), -E2BIG);
+	KUNIT_ASSERT_EQ(test, detach(b), 0);
+	bus_end(b);
+	/* the size says what did not fit */
+	size = 2;
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), 0);
+	KUNIT_EXPECT_EQ(test, size, 4u);
+	KUNIT_EXPECT_STREQ(test, read, "ax");
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), 0);
+	KUNIT_EXPECT_STREQ(test, read, "axes");
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, text, &size), -EPERM);
+	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), -ENOENT);
+	a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), 0);
+	KUNIT_EXPECT_EQ(test, size, 0u);
+	size = 0;
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, NULL, &size), 0);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(left_session_continues),
+	KUNIT_CASE(left_names_stay),
 	KUNIT_CASE(left_with_last_outputs),
 	KUNIT_CASE(left_leases_end),
 	KUNIT_CASE(left_lease_is_renewed),

@@ -228,10 +228,11 @@ void check_pointers(void)
 		if (size && !c->cyclic)
 			expect_errno(call(fd, c->nr, at_the_edge(size - 1)), EFAULT,
 				     "%s with its last byte missing", c->name);
-		/* without configuration, domain, emergency or held unit nothing is copied */
+		/* without configuration, domain, emergency, unit or names nothing is copied */
 		if (c->data && c->nr != EC_IOC_CONFIG_SDO && c->nr != EC_IOC_CONFIG_IDN &&
 		    c->nr != EC_IOC_CONFIG_COMMAND && c->nr != EC_IOC_DOMAIN_DATA &&
-		    c->nr != EC_IOC_EMERGENCIES && c->nr != EC_IOC_UNIT_READ)
+		    c->nr != EC_IOC_EMERGENCIES && c->nr != EC_IOC_UNIT_READ &&
+		    c->nr != EC_IOC_NAMES)
 			check_data_pointer(fd, c);
 	}
 	for (unsigned int b = 0; b < BAD_POINTERS; b++)
