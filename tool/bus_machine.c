@@ -2,10 +2,11 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "bus_machine.h"
+#include "bus_int.h"
+#include "present_all.h"
 
 static struct {
-	const struct bus_wish *wish;
+	struct bus_wish *wish;
 	struct ecb_bus *bus;
 } into;
 
@@ -14,117 +15,55 @@ static int no_memory(void)
 	return fail("out of memory");
 }
 
-/* values of a PDO, with the names that ecb_name_entries() makes of the texts of the EEPROM */
-static int name_values(struct ecb_slave *to, char (*texts)[ECT_STRING], size_t n)
-{
-	struct ecb_entry_name *names = calloc(n ? n : 1, sizeof(*names));
-	size_t at = 0;
-	int ret = 0;
-
-	if (!names)
-		return no_memory();
-	for (size_t p = 0; p < to->pdo_count; p++)
-		for (size_t i = 0; i < to->pdos[p]->entry_count; i++, at++) {
-			names[at].text = texts[at];
-			names[at].pdo = to->pdos[p]->name;
-			names[at].pdo_index = to->pdos[p]->index;
-			names[at].index = ECB_INDEX(to->pdos[p]->entries[i]->object);
-			names[at].subindex = ECB_SUBINDEX(to->pdos[p]->entries[i]->object);
-		}
-	if (ecb_name_entries(names, n))
-		ret = no_memory();
-	at = 0;
-	for (size_t p = 0; p < to->pdo_count && !ret; p++)
-		for (size_t i = 0; i < to->pdos[p]->entry_count; i++, at++)
-			to->pdos[p]->entries[i]->name = ecb_bus_text(into.bus, names[at].name);
-	free(names);
-	return ret;
-}
-
-struct texts {
-	char (*v)[ECT_STRING];
-	size_t n;
-};
-
-static int read_entries(struct dev *d, const struct ect_slave *s, unsigned int sm, unsigned int pdo,
-			const struct ect_pdo *p, struct ecb_pdo *to, struct texts *texts)
-{
-	for (unsigned int i = 0; i < p->entry_count; i++) {
-		struct ect_pdo_entry e = { .struct_size = sizeof(e) };
-		struct ecb_entry *entry;
-		void *grown;
-		int err = ect_pdo_entry_read(d->h, s->device, sm, pdo, i, &e);
-
-		if (err)
-			return dev_fail(d, err, "slave %u: cannot read PDO 0x%04x", s->position,
-					p->index);
-		/* neither a gap nor a value */
-		if (!e.bits)
-			continue;
-		grown = realloc(texts->v, (texts->n + 1) * sizeof(*texts->v));
-		if (!grown)
-			return no_memory();
-		texts->v = grown;
-		memcpy(texts->v[texts->n++], e.name, sizeof(e.name));
-		entry = ecb_entry_add(into.bus, to);
-		if (!entry)
-			return no_memory();
-		entry->object = e.index ? (u32)e.index << 8 | e.subindex : 0;
-		entry->bits = e.bits;
-	}
-	return 0;
-}
-
-static int read_pdos(struct dev *d, const struct ect_slave *s, struct ecb_slave *to)
-{
-	struct texts texts = { 0 };
-	int err, ret = 0;
-
-	for (unsigned int i = 0; i < s->sm_count && !ret; i++) {
-		struct ect_sm sm = { .struct_size = sizeof(sm) };
-
-		err = ect_sm_read(d->h, s->device, i, &sm);
-		if (err) {
-			ret = dev_fail(d, err, "slave %u: cannot read SM%u", s->position, i);
-			break;
-		}
-		for (unsigned int k = 0; k < sm.pdo_count && !ret; k++) {
-			struct ect_pdo p = { .struct_size = sizeof(p) };
-			struct ecb_pdo *pdo;
-
-			err = ect_pdo_read(d->h, s->device, i, k, &p);
-			if (err) {
-				ret = dev_fail(d, err, "slave %u: cannot read PDO %u of SM%u",
-					       s->position, k, i);
-				break;
-			}
-			pdo = ecb_pdo_add(into.bus, to);
-			if (!pdo) {
-				ret = no_memory();
-				break;
-			}
-			pdo->index = p.index;
-			pdo->sm = (uint8_t)i;
-			pdo->name = ecb_bus_text(into.bus, p.name);
-			ret = read_entries(d, s, i, k, &p, pdo, &texts);
-		}
-	}
-	if (!ret)
-		ret = name_values(to, texts.v, texts.n);
-	free(texts.v);
-	return ret;
-}
-
-static int read_slave(struct dev *d, const struct ect_slave *s, struct ecb_slave *to)
+static void read_slave(const struct ect_slave *s, struct ecb_slave *to)
 {
 	to->vendor = s->vendor_id;
 	to->product = s->product_code;
 	to->revision = s->revision_number;
 	to->alias = s->alias;
 	to->identification = s->identification;
-	to->serial = into.wish->serial ? s->serial_number : 0;
+	to->serial = into.wish->whole || into.wish->file ? s->serial_number : 0;
 	to->type = ecb_bus_text(into.bus, s->order[0] ? s->order : s->name);
-	return into.wish->pdos ? read_pdos(d, s, to) : 0;
+}
+
+/* what slaves say themselves; @v: one for each */
+static int read_present(const struct tool *t, struct dev *d, const struct ect_list *list,
+		     struct ecb_master *m, struct present *v)
+{
+	size_t n = m->slave_count;
+	unsigned int wish = 0;
+	int ret = 0;
+
+	for (size_t i = 0; i < n && !ret; i++) {
+		ret = bus_present_wish(into.wish, d->master, ect_list_get(list, i), &v[i]);
+		wish |= v[i].wish;
+	}
+	if (!ret && wish)
+		ret = present_read_all(t, d, v, n);
+	for (size_t i = 0; i < n && !ret; i++) {
+		if (v[i].wish & ~v[i].known & ~PRESENT_NAMES) {
+			note("Master%u slave %zu: %s was not read: %s", d->master, i,
+			     v[i].wish & PRESENT_VALUES ? "an object" : "its dictionary", v[i].why);
+			into.wish->unread++;
+		}
+		ret = bus_present_take(into.bus, &v[i], m->slaves[i]);
+		if (!ret && v[i].wish & PRESENT_PDOS)
+			ret = bus_pdos(d, into.bus, &v[i], m->slaves[i]);
+	}
+	return ret;
+}
+
+/* needs the names */
+static int read_more(const struct tool *t, struct dev *d, const struct ect_list *list,
+		     struct ecb_master *m)
+{
+	struct present *v = calloc(m->slave_count + 1, sizeof(*v));
+	int ret = v ? read_present(t, d, list, m, v) : no_memory();
+
+	for (size_t i = 0; v && i < m->slave_count; i++)
+		present_free(&v[i]);
+	free(v);
+	return ret ? ret : bus_session(d, into.bus, list, m);
 }
 
 /* An alias is of one slave in a file: the first one that has it. */
@@ -196,7 +135,6 @@ static int each(const struct tool *t, struct dev *d)
 	struct ecb_error e;
 	int err, ret = 0;
 
-	(void)t;
 	if (!m)
 		return no_memory();
 	m->index = d->master;
@@ -206,10 +144,14 @@ static int each(const struct tool *t, struct dev *d)
 	for (size_t i = 0; (s = ect_list_get(list, i)) && !ret; i++) {
 		struct ecb_slave *to = ecb_slave_add(into.bus, m);
 
-		ret = to ? read_slave(d, s, to) : no_memory();
+		if (to)
+			read_slave(s, to);
+		ret = to ? 0 : no_memory();
 	}
 	if (!ret)
 		ret = name_slaves(list, m);
+	if (!ret && (into.wish->whole || into.wish->file))
+		ret = read_more(t, d, list, m);
 	if (!ret)
 		signs_once(m);
 	if (!ret && ecb_bus_finish(into.bus, "machine", &e))
@@ -220,7 +162,22 @@ static int each(const struct tool *t, struct dev *d)
 	return ret;
 }
 
-int bus_of_machine(const struct tool *t, const struct bus_wish *wish, struct ecb_bus **bus)
+/* whether a slave is asked for more than the master knows: that is bus traffic */
+static bool asks_slaves(const struct bus_wish *wish)
+{
+	const struct ecb_bus *f = wish->file;
+
+	for (size_t i = 0; f && i < f->master_count; i++)
+		for (size_t k = 0; k < f->masters[i]->slave_count; k++) {
+			const struct ecb_slave *s = f->masters[i]->slaves[k];
+
+			if (s->pdo_count || s->module_count || s->clock || s->startup_count)
+				return true;
+		}
+	return wish->whole;
+}
+
+int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus **bus)
 {
 	int ret;
 
@@ -228,7 +185,7 @@ int bus_of_machine(const struct tool *t, const struct bus_wish *wish, struct ecb
 	into.bus = ecb_bus_new();
 	if (!into.bus)
 		return no_memory();
-	ret = dev_each(t, false, each);
+	ret = dev_each(t, asks_slaves(wish), each);
 	if (ret) {
 		ecb_bus_free(into.bus);
 		return ret;

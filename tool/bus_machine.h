@@ -8,16 +8,18 @@
 
 /**
  * struct bus_wish - what is read of a machine
- * @pdos: PDOs and their entries
- * @serial: serial numbers
+ * @whole: all that is known, also of slaves themselves and of a running session
+ * @file: without @whole: only what this file says; NULL: what finds a slave again
+ * @unread: set to the number of slaves of which something was not read
  */
 struct bus_wish {
-	bool pdos;
-	bool serial;
+	bool whole;
+	const struct ecb_bus *file;
+	size_t unread;
 };
 
 /* 0 with @bus, to be freed with ecb_bus_free(), or 1 after printing the error */
-int bus_of_machine(const struct tool *t, const struct bus_wish *wish, struct ecb_bus **bus);
+int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus **bus);
 
 /* cmd_bus.c: names of the two sides of a comparison, and whether they have several masters */
 struct bus_names {

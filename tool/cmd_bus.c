@@ -81,7 +81,7 @@ static int print_text(int (*write)(const struct ecb_bus *bus, FILE *to), const s
 
 static int save(struct tool *t, int argc, char **argv)
 {
-	const struct bus_wish wish = { .pdos = t->whole, .serial = t->whole };
+	struct bus_wish wish = { .whole = t->whole };
 	struct ecb_bus *bus;
 	int ret = bus_of_machine(t, &wish, &bus);
 
@@ -148,10 +148,10 @@ static int compare(const struct ecb_bus *a, const char *a_name, const struct ecb
 	return n ? 1 : 0;
 }
 
-/* PDOs are read only if the file has some */
+/* slaves are asked for what the file says of their kind only */
 static int check(struct tool *t, int argc, char **argv)
 {
-	struct bus_wish wish = { .serial = true };
+	struct bus_wish wish = { 0 };
 	struct ecb_bus *file, *machine;
 	int ret;
 
@@ -159,12 +159,13 @@ static int check(struct tool *t, int argc, char **argv)
 	ret = read_file(argv[0], &file);
 	if (ret)
 		return ret;
-	for (size_t i = 0; i < file->master_count; i++)
-		for (size_t k = 0; k < file->masters[i]->slave_count; k++)
-			wish.pdos |= file->masters[i]->slaves[k]->pdo_count > 0;
+	wish.file = file;
 	ret = bus_of_machine(t, &wish, &machine) ? 2 : 0;
 	if (!ret) {
 		ret = compare(file, argv[0], machine, "machine", ECB_COMPARE_MACHINE);
+		/* equal, and not all was compared */
+		if (!ret && wish.unread)
+			ret = 2;
 		ecb_bus_free(machine);
 	}
 	ecb_bus_free(file);
@@ -405,17 +406,20 @@ const struct cmd cmd_bus = {
 	.help = "A bus file is YAML: masters, slaves and what they need, names of values.\n"
 		"\n"
 		"'save' writes the bus of the selected masters: names, identity and ports of the\n"
-		"slaves; with --whole also serial numbers and PDOs. Without FILE it writes to\n"
-		"stdout. An existing file is overwritten with -f only.\n"
+		"slaves; with --whole also serial numbers, PDOs and modules as the slaves have them\n"
+		"now, active SYNC signals, sync units and groups of the session. It asks slaves by\n"
+		"mailbox, and writes nothing to them. Without FILE it writes to stdout. An existing\n"
+		"file is overwritten with -f only.\n"
 		"\n"
 		"'check' compares the bus with a file, line by line: place, cause and remedy of each\n"
+		"difference; a startup value that no session has written yet is pending, and no\n"
 		"difference. Slaves are found by alias, identification and serial number, the others\n"
 		"by identity in the order of the bus: one slave more is one difference.\n"
 		"\n"
 		"'diff' compares two files. 'show' shows the slaves of a file as a tree, with the\n"
 		"names of its values. 'schema' prints the JSON Schema of bus files for editors.\n"
 		"\n"
-		"Exit code of 'check' and 'diff': 0 equal, 1 differences, 2 not compared.\n",
+		"Exit code of 'check' and 'diff': 0 equal, 1 differences, 2 not all compared.\n",
 	.json = "save: file, slaves, or text; schema: text; check, diff: differences[]: kind (missing,\n"
 		"extra, exchanged, moved, value, pending), master, line, slave, key, expected, found, remedy;\n"
 		"show: masters[]: index, cycle_ns, slaves[]: name, type, vendor, product, alias,\n"

@@ -5,19 +5,16 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../lib/tools/text.h"
-#include "../master/wire/sii.h"
+#include "present.h"
 #include "out.h"
 #include "sdo.h"
 #include "sii_image.h"
 
 #define NAME		256
-#define ASSIGN		0x1c10	/* of SyncManager 0 */
-#define FIRST_SM	2	/* those below are of the mailbox */
 #define CONTROL_WRITE	0x04	/* direction bit of the SM's control byte */
 
 /* a PDO as the slave has it */
-struct live_pdo {
+struct coe_pdo {
 	u16 index;
 	u8 n;
 	bool absent;	/* assigned, and the slave does not have it */
@@ -33,7 +30,7 @@ struct reading {
 	bool quiet;
 	bool output;	/* direction of the SyncManager */
 	u8 sm;
-	struct live_pdo pdo;
+	struct coe_pdo pdo;
 	u16 assigned[255];
 	unsigned int n;
 };
@@ -45,28 +42,24 @@ const char *pdo_entry_text(u16 index, const char *name)
 
 bool pdos_coe_has(const struct ect_slave *s)
 {
-	return s->mbox_protocols & EC_SII_PROTO_COE;
+	return present_has_coe(s);
 }
 
 /* 0, errno after printing it; @abort not NULL: an abort code is stored there, not printed */
 static int upload(struct reading *r, u16 index, u8 sub, u32 *v, u32 *abort)
 {
-	u8 data[4] = { 0 };
-	long ret = ect_sdo_upload(r->d->h, r->s->device, index, sub, 0, 0, data, sizeof(data));
-	u32 code = ret < 0 ? ect_error_code(r->d->h) : 0;
+	int err = present_number(r->d->h, r->s, index, sub, v);
+	u32 code = err ? ect_error_code(r->d->h) : 0;
 
-	*v = get_unaligned_le32(data);
-	if (ret >= 0)
-		return 0;
 	if (code && abort)
 		*abort = code;
 	else if (code)
-		fail_full(-(int)ret, NULL, code, "Master%u slave %u: SDO upload 0x%04x:%02x",
+		fail_full(-err, NULL, code, "Master%u slave %u: SDO upload 0x%04x:%02x",
 			  r->d->master, r->s->position, index, sub);
-	else
-		dev_fail(r->d, (int)ret, "Master%u slave %u: SDO upload 0x%04x:%02x",
+	else if (err)
+		dev_fail(r->d, err, "Master%u slave %u: SDO upload 0x%04x:%02x",
 			 r->d->master, r->s->position, index, sub);
-	return -(int)ret;
+	return -err;
 }
 
 /* The number of entries, which is subindex 0 of both kinds of objects. */
@@ -111,39 +104,7 @@ static bool sii_next(struct reading *r, struct ec_sii_pdo_iter *it, struct ec_si
 	return ec_sii_pdo_iter_next(it, p) == 1;
 }
 
-static bool sii_find(struct reading *r, u16 index, struct ec_sii_pdo *p)
-{
-	struct ec_sii_pdo_iter it = { 0 };
-
-	while (sii_next(r, &it, p))
-		if (p->index == index)
-			return true;
-	return false;
-}
-
-static void sii_name(struct reading *r, u8 number, char *name)
-{
-	ec_sii_string(r->img, r->size, number, name, NAME);
-	string_clean(name, NAME);
-}
-
-/* of an entry, in any PDO of its direction */
-static void entry_name(struct reading *r, u16 index, u8 sub, char *name)
-{
-	struct ec_sii_pdo_iter it = { 0 };
-	struct ec_sii_pdo_entry e;
-	struct ec_sii_pdo p;
-
-	*name = 0;
-	while (index && !*name && sii_next(r, &it, &p))
-		for (unsigned int i = 0; i < p.entries && !ec_sii_pdo_entry(&p, i, &e); i++)
-			if (e.index == index && e.sub == sub) {
-				sii_name(r, e.name, name);
-				break;
-			}
-}
-
-static bool same_mapping(const struct live_pdo *l, const struct ec_sii_pdo *p)
+static bool same_mapping(const struct coe_pdo *l, const struct ec_sii_pdo *p)
 {
 	struct ec_sii_pdo_entry e;
 
@@ -159,8 +120,9 @@ static void show_entry(struct reading *r, u32 v)
 	u16 index = (u16)(v >> 16);
 	u8 sub = (u8)(v >> 8), bits = (u8)v;
 	char name[NAME];
+	u16 type;
 
-	entry_name(r, index, sub, name);
+	sii_entry_text(r->img, r->size, index, sub, name, sizeof(name), &type);
 	out_object(NULL);
 	out_u("index", index, "    PDO entry 0x%04x", index);
 	out_u("subindex", sub, ":%02x", sub);
@@ -180,7 +142,7 @@ static void show_pdo(struct reading *r, u16 index, const char *name, const char 
 }
 
 /* PDO @k of the list, with what the SII says about it */
-static int live_pdo(struct reading *r, unsigned int k)
+static int present_pdo(struct reading *r, unsigned int k)
 {
 	char name[NAME] = "";
 	struct ec_sii_pdo p;
@@ -191,10 +153,10 @@ static int live_pdo(struct reading *r, unsigned int k)
 	if (!r->assigned[k] || r->pdo.absent) {
 		show_pdo(r, r->assigned[k], name, "unknown",
 			 r->pdo.absent ? ", the slave does not have it" : ", entry not in use");
-	} else if (!sii_find(r, r->assigned[k], &p)) {
+	} else if (!sii_pdo_find(r->img, r->size, r->assigned[k], &p)) {
 		show_pdo(r, r->assigned[k], name, "unknown", ", not in the SII");
 	} else {
-		sii_name(r, p.name, name);
+		sii_text(r->img, r->size, p.name, name, sizeof(name));
 		if (!same_mapping(&r->pdo, &p))
 			show_pdo(r, p.index, name, "other_mapping", ", other mapping in the SII");
 		else if (p.sm != r->sm)
@@ -224,7 +186,7 @@ static void sii_only(struct reading *r)
 			live |= r->assigned[k] == p.index;
 		if (live)
 			continue;
-		sii_name(r, p.name, name);
+		sii_text(r->img, r->size, p.name, name, sizeof(name));
 		show_pdo(r, p.index, name, "only", ", assigned in the SII only");
 		out_end();
 	}
@@ -232,7 +194,7 @@ static void sii_only(struct reading *r)
 
 static int sync_manager(struct reading *r)
 {
-	u16 object = (u16)(ASSIGN + r->sm);
+	u16 object = (u16)(PRESENT_SM_ASSIGN + r->sm);
 	u32 abort = 0, v;
 	int err = count(r, object, &r->n, &abort);
 
@@ -252,7 +214,7 @@ static int sync_manager(struct reading *r)
 	out_u("object", object, ": 0x%04x\n", object);
 	out_array("pdos");
 	for (unsigned int k = 0; k < r->n && !err; k++)
-		err = live_pdo(r, k);
+		err = present_pdo(r, k);
 	if (!err)
 		sii_only(r);
 	out_end();
@@ -264,7 +226,7 @@ static int sync_managers(struct reading *r, const struct ect_slave *s)
 {
 	int err = 0;
 
-	for (unsigned int i = FIRST_SM; i < s->sm_count && !err; i++) {
+	for (unsigned int i = PRESENT_FIRST_SM; i < s->sm_count && !err; i++) {
 		struct ect_sm sm = { .struct_size = sizeof(sm) };
 
 		err = ect_sm_read(r->d->h, s->device, i, &sm);

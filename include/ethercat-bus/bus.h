@@ -148,7 +148,7 @@ struct ecb_slave {
 	uint8_t state;		/* AL state, of a slave of a running session; otherwise 0 */
 };
 
-/* struct ecb_slave.known: what a machine has told of it, for ecb_compare() */
+/* struct ecb_slave.known: what was read of a machine, for ecb_compare() */
 #define ECB_KNOWN_PDOS		0x01U
 #define ECB_KNOWN_MODULES	0x02U
 #define ECB_KNOWN_CLOCK		0x04U
@@ -194,7 +194,7 @@ struct ecb_master {
 	size_t group_count;
 	struct ecb_slave **slaves;
 	size_t slave_count;
-	uint32_t known;		/* ECB_KNOWN_UNIT and _GROUP: the running session has told its own */
+	uint32_t known;		/* ECB_KNOWN_UNIT and _GROUP: those of the running session */
 };
 
 struct ecb_bus {

@@ -10,7 +10,7 @@ static uint32_t line_of(const void *item)
 	return item ? *(const uint32_t *)item : 0;
 }
 
-void differ(struct comparison *c, unsigned int kind, const char *key, const void *a,
+void differ(struct comparing *c, unsigned int kind, const char *key, const void *a,
 	    const char *expected, const void *b, const char *found, const char *remedy)
 {
 	struct ecb_difference d = {
@@ -47,7 +47,7 @@ static bool same_bytes(const struct ecb_bytes *a, const struct ecb_bytes *b)
 }
 
 /* a lease of a machine is a number of cycles */
-static bool same_lease(const struct comparison *c, const struct field *f, const void *x,
+static bool same_lease(const struct comparing *c, const struct field *f, const void *x,
 		       const void *y)
 {
 	int64_t d = f->kind == K_TIME ? *(const int64_t *)x - *(const int64_t *)y : 0;
@@ -56,7 +56,7 @@ static bool same_lease(const struct comparison *c, const struct field *f, const 
 		(d < 0 ? -d : d) < c->cycle;
 }
 
-static void compare_scalars(struct comparison *c, const struct field *f, const char *path,
+static void compare_scalars(struct comparing *c, const struct field *f, const char *path,
 			    const void *a, const void *b)
 {
 	const void *x = (const char *)a + f->at, *y = (const char *)b + f->at;
@@ -74,8 +74,8 @@ static void compare_scalars(struct comparison *c, const struct field *f, const c
 	differ(c, ECB_VALUE_DIFFERS, key, a, expected, b, found, remedy_of(f));
 }
 
-/* whether a machine tells it, and has told it */
-static bool is_told(const struct comparison *c, const struct field *f)
+/* whether a machine has it, and it was read */
+static bool is_known(const struct comparing *c, const struct field *f)
 {
 	uint32_t known = c->known;
 
@@ -84,7 +84,7 @@ static bool is_told(const struct comparison *c, const struct field *f)
 	return f->flags & F_MACHINE && (!f->known || known & f->known);
 }
 
-static void compare_fields(struct comparison *c, const struct field *f, const char *path,
+static void compare_fields(struct comparing *c, const struct field *f, const char *path,
 			   const void *a, const void *b)
 {
 	const void *x = f->kind == K_ITEM ? *(void *const *)((const char *)a + f->at) : NULL;
@@ -92,7 +92,7 @@ static void compare_fields(struct comparison *c, const struct field *f, const ch
 	bool machine = c->flags & ECB_COMPARE_MACHINE;
 	char sub[128];
 
-	if (f->kind == K_LATER || (machine && !is_told(c, f)))
+	if (f->kind == K_LATER || (machine && !is_known(c, f)))
 		return;
 	if (f->type == &type_module) {
 		compare_modules(c, a, b);
@@ -111,7 +111,7 @@ static void compare_fields(struct comparison *c, const struct field *f, const ch
 	}
 }
 
-void compare_items(struct comparison *c, const struct type *type, const char *path, const void *a,
+void compare_items(struct comparing *c, const struct type *type, const char *path, const void *a,
 		   const void *b)
 {
 	for (size_t i = 0; i < type->count; i++)
@@ -132,7 +132,7 @@ static void place(const struct side *s, size_t parent, unsigned int port, char *
 		snprintf(buf, size, "port %u of '%s'", port, s->slaves[parent]->name);
 }
 
-static void compare_places(struct comparison *c, const struct match *m, size_t i, size_t k)
+static void compare_places(struct comparing *c, const struct match *m, size_t i, size_t k)
 {
 	unsigned int port_a, port_b;
 	size_t pa = match_parent(&m->a, i, &port_a), pb = match_parent(&m->b, k, &port_b);
@@ -153,7 +153,7 @@ static void compare_places(struct comparison *c, const struct match *m, size_t i
 	differ(c, ECB_MOVED, "port", m->a.slaves[i], expected, m->b.slaves[k], found, remedy);
 }
 
-static void compare_revisions(struct comparison *c, const struct ecb_slave *a,
+static void compare_revisions(struct comparing *c, const struct ecb_slave *a,
 			      const struct ecb_slave *b)
 {
 	char expected[64], found[64];
@@ -168,7 +168,7 @@ static void compare_revisions(struct comparison *c, const struct ecb_slave *a,
 	       "if this revision is right, set revision, or revision_rule: at_least, in the file");
 }
 
-static void compare_slaves(struct comparison *c, const struct match *m, size_t i, size_t k)
+static void compare_slaves(struct comparing *c, const struct match *m, size_t i, size_t k)
 {
 	const struct ecb_slave *a = m->a.slaves[i], *b = m->b.slaves[k];
 	bool machine = c->flags & ECB_COMPARE_MACHINE;
@@ -195,7 +195,7 @@ static void compare_slaves(struct comparison *c, const struct match *m, size_t i
 }
 
 /* a slave that only one side has */
-static void alone(struct comparison *c, const struct match *m, size_t i, bool expected)
+static void alone(struct comparing *c, const struct match *m, size_t i, bool expected)
 {
 	const struct side *s = expected ? &m->a : &m->b;
 	size_t parent = s->parent[i];
@@ -222,7 +222,7 @@ static void alone(struct comparison *c, const struct match *m, size_t i, bool ex
 	}
 }
 
-static int compare_masters(struct comparison *c, const struct ecb_master *a,
+static int compare_masters(struct comparing *c, const struct ecb_master *a,
 			   const struct ecb_master *b)
 {
 	struct match m;
@@ -251,7 +251,7 @@ static int compare_masters(struct comparison *c, const struct ecb_master *a,
 ECB_API long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found,
 			 unsigned int flags, ecb_difference_fn fn, void *ctx)
 {
-	struct comparison c = { .flags = flags, .fn = fn, .ctx = ctx, .slave = "" };
+	struct comparing c = { .flags = flags, .fn = fn, .ctx = ctx, .slave = "" };
 	const struct ecb_bus *sides[] = { expected, found };
 
 	for (int side = 0; side < 2; side++)

@@ -7,7 +7,7 @@
 #include "match.h"
 
 /**
- * struct comparison - a call of ecb_compare()
+ * struct comparing - state of a call of ecb_compare()
  * @flags: of the call
  * @fn: called for each difference
  * @ctx: for @fn
@@ -18,7 +18,7 @@
  * @cycle: of the present master in ns, 0: not known
  * @err: -ENOMEM, or 0
  */
-struct comparison {
+struct comparing {
 	unsigned int flags;
 	ecb_difference_fn fn;
 	void *ctx;
@@ -31,17 +31,17 @@ struct comparison {
 };
 
 /* compare.c; @a: what is expected, @b: what is found; items or NULL */
-void differ(struct comparison *c, unsigned int kind, const char *key, const void *a,
+void differ(struct comparing *c, unsigned int kind, const char *key, const void *a,
 	    const char *expected, const void *b, const char *found, const char *remedy);
-void compare_items(struct comparison *c, const struct type *type, const char *path, const void *a,
+void compare_items(struct comparing *c, const struct type *type, const char *path, const void *a,
 		   const void *b);
 
 /* compare_lists.c */
-void compare_lists(struct comparison *c, const struct field *f, const char *path, const void *a,
+void compare_lists(struct comparing *c, const struct field *f, const char *path, const void *a,
 		   const void *b);
 
 /* compare_slots.c */
-void compare_modules(struct comparison *c, const struct ecb_slave *a, const struct ecb_slave *b);
-void compare_startup(struct comparison *c, const struct ecb_slave *a, const struct ecb_slave *b);
+void compare_modules(struct comparing *c, const struct ecb_slave *a, const struct ecb_slave *b);
+void compare_startup(struct comparing *c, const struct ecb_slave *a, const struct ecb_slave *b);
 
 #endif

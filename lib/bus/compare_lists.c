@@ -60,7 +60,7 @@ static int sort(struct items *l)
 }
 
 /* where in @others item @i of @l is, or at the end */
-static size_t find(struct comparison *c, const struct items *l, size_t i, struct items *others)
+static size_t find(struct comparing *c, const struct items *l, size_t i, struct items *others)
 {
 	const struct keyed key = { l->type->fields, l->v[i], i }, *found;
 
@@ -78,7 +78,7 @@ static size_t find(struct comparison *c, const struct items *l, size_t i, struct
 }
 
 /* the order of PDOs within a SyncManager is that of their data; one difference for each */
-static void compare_order(struct comparison *c, const struct items *x, struct items *y)
+static void compare_order(struct comparing *c, const struct items *x, struct items *y)
 {
 	size_t last[256], at;
 	const struct ecb_pdo *before[256] = { NULL };
@@ -132,7 +132,7 @@ static const char *remedy_of(const struct field *f)
 		"configure it as in the file, or change the file";
 }
 
-void compare_lists(struct comparison *c, const struct field *f, const char *path, const void *a,
+void compare_lists(struct comparing *c, const struct field *f, const char *path, const void *a,
 		   const void *b)
 {
 	struct items x = items_of(f, a), y = items_of(f, b);

@@ -25,7 +25,7 @@ static void ident(const struct ecb_module *m, char *buf, size_t size)
 		snprintf(buf, size, "an empty slot");
 }
 
-void compare_modules(struct comparison *c, const struct ecb_slave *a, const struct ecb_slave *b)
+void compare_modules(struct comparing *c, const struct ecb_slave *a, const struct ecb_slave *b)
 {
 	const struct ecb_module *as[UINT8_MAX + 1], *bs[UINT8_MAX + 1];
 	char key[32], expected[192], found[192], remedy[96];
@@ -100,7 +100,7 @@ static struct by_object *sorted(const struct ecb_slave *s, size_t *n)
  * The master writes a value on the way to a state, so a slave that no session has brought there has
  * another one rightly: it is pending.
  */
-static void compare_values(struct comparison *c, const struct ecb_command *x,
+static void compare_values(struct comparing *c, const struct ecb_command *x,
 			   const struct ecb_command *y, uint8_t state)
 {
 	static const struct {
@@ -127,7 +127,7 @@ static void compare_values(struct comparison *c, const struct ecb_command *x,
 	differ(c, done ? ECB_VALUE_DIFFERS : ECB_PENDING, key, x, expected, y, found, remedy);
 }
 
-void compare_startup(struct comparison *c, const struct ecb_slave *a, const struct ecb_slave *b)
+void compare_startup(struct comparing *c, const struct ecb_slave *a, const struct ecb_slave *b)
 {
 	size_t n, k, at = 0;
 	struct by_object *x = sorted(a, &n), *y = sorted(b, &k);

@@ -82,8 +82,8 @@ static const struct type type_timeouts = {
 
 #define S ecb_clock
 static const struct field clock_fields[] = {
-	{ "assign_activate", K_NUMBER, F_REQUIRED | F_HEX | F_MACHINE, AT(assign_activate), 0, 0xffff,
-	  .text = "register 0x0980, from the device description" },
+	{ "assign_activate", K_NUMBER, F_REQUIRED | F_HEX | F_MACHINE, AT(assign_activate),
+	  0, 0xffff, .text = "register 0x0980, from the device description" },
 	{ "sync0", K_TIME, F_MACHINE, AT(sync0), 0, UINT32_MAX, .text = "period of SYNC0" },
 	{ "sync0_shift", K_TIME, F_SIGN | F_MACHINE, AT(sync0_shift), 0, INT32_MAX,
 	  .known = ECB_KNOWN_SHIFT, .text = "shift of SYNC0" },

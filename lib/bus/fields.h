@@ -47,7 +47,7 @@ struct field {
 	uint64_t min;
 	uint64_t max;
 	uint64_t def;		/* value of what is not given */
-	uint32_t known;		/* F_MACHINE: only if the machine has told this, ECB_KNOWN_* */
+	uint32_t known;		/* F_MACHINE: only if this was read, ECB_KNOWN_* */
 	const char *const *words;
 	const struct type *type;
 	const char *text;	/* for the schema */

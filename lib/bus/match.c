@@ -25,7 +25,8 @@ static int side_init(struct side *s, const struct ecb_master *m)
 	s->path = malloc((s->count + 1) * sizeof(*s->path));
 	s->up = malloc((s->count + 1) * sizeof(*s->up));
 	s->up_port = calloc(s->count + 1, sizeof(*s->up_port));
-	if (!s->peer || !s->parent || !s->path || !s->up || !s->up_port || table_init(&names, s->count + 1))
+	if (!s->peer || !s->parent || !s->path || !s->up || !s->up_port ||
+	    table_init(&names, s->count + 1))
 		return -ENOMEM;
 	for (size_t i = 0; i < s->count; i++) {
 		s->peer[i] = s->parent[i] = NO_SLAVE;

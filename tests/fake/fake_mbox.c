@@ -60,6 +60,29 @@ static int diag_upload(struct ec_ioc_sdo *x)
 	return abort_sdo(x, 0x06090011);
 }
 
+/* 0xF050 by FAKE_MODULES, idents of the slots apart by commas; "slow" does not answer */
+static int modules_upload(struct ec_ioc_sdo *x)
+{
+	const char *list = getenv("FAKE_MODULES");
+	__u32 v = 1;
+
+	if (!list)
+		return abort_sdo(x, 0x06020000);
+	if (!strcmp(list, "slow"))
+		return fake_fail(ETIMEDOUT, "slave 2 has not answered for 1000 ms");
+	for (const char *c = list; *c; c++)
+		v += *c == ',';
+	for (__u8 i = 1; x->subindex && i < x->subindex && list; i++)
+		list = strchr(list, ',') ? strchr(list, ',') + 1 : NULL;
+	if (!list)
+		return abort_sdo(x, 0x06090011);
+	if (x->subindex)
+		v = (__u32)strtoul(list, NULL, 0);
+	x->size = x->subindex ? 4 : 1;
+	memcpy((void *)(uintptr_t)x->data, &v, x->size);
+	return 0;
+}
+
 static int upload(struct ec_ioc_sdo *x)
 {
 	static const struct {
@@ -97,6 +120,8 @@ static int upload(struct ec_ioc_sdo *x)
 
 	if (x->index == 0x10f3)
 		return diag_upload(x);
+	if (x->index == 0xf050)
+		return modules_upload(x);
 	if (getenv("FAKE_COUNT_OF") && x->index == strtoul(getenv("FAKE_COUNT_OF"), NULL, 0)) {
 		memset(to, 0xff, 4);	/* more than a list can have */
 		x->size = 4;
@@ -153,6 +178,8 @@ static const struct {
 	/* with value info: unit of 4 bytes, default, minimum, maximum; a byte too many */
 	{ 0x6060, 0, 2, 21, "\x60\x60\0\x78\2\0\x08\0\xff\0\3\xb5\0\0\x08\xff\x0aMode" },
 	{ 0x1018, 1, 2, 19, "\x18\x10\1\x10\7\0\x20\0\7\0\2\0\0Vendor" },
+	{ 0x7010, 6, 0, 20, "\x10\x70\6\0\2\0\x08\0\xff\0Drive mode" },
+	{ 0x1602, 0, 1, 14, "\2\x16\x21\0\2\x09" "DRV Mode" },
 	{ 0x6060, 0, 0, 14, "\x60\x60\0\0\2\0\x08\0\xff\0Mode" },
 	{ 0x2002, 0, 1, 12, "\2\x20\x09\0\0\7Serial" },
 	{ 0x2002, 0, 0, 16, "\2\x20\0\0\x09\0\x60\0\x3f\0Serial" },

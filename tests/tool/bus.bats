@@ -18,6 +18,57 @@ setup() {
 	ethercat bus save -j | json '"name: el7201" in d["text"]'
 }
 
+@test "bus save --whole writes PDOs and modules of the slaves themselves, and notes slaves that do not answer" {
+	export FAKE_MODULES=0x119800,0,0x20192
+	ethercat bus save --whole -f "$f"
+	[ "$(grep -A2 ' modules:$' "$f" | tr -s ' \n' ' ')" = \
+		" modules: - {slot: 1, ident: 0x00119800} - {slot: 3, ident: 0x00020192} " ]
+	ethercat bus check "$f"
+	FAKE_MODULES=slow run ethercat bus save --whole -f "$BATS_TEST_TMPDIR/slow"
+	[ "$status" -eq 0 ]
+	[[ $output == *"Master0 slave 2: its dictionary was not read: 0xf050:00: slave 2 has not answered for 1000 ms"* ]]
+	grep -q 'index: 0x1a00' "$BATS_TEST_TMPDIR/slow"
+	! grep -q 'modules:\|0x1602' "$BATS_TEST_TMPDIR/slow"
+}
+
+@test "bus save --whole and bus check write nothing to a slave" {
+	export FAKE_MODULES=1
+	local sdo='{at: safeop, sdo: 0x6060:00, type: int8, value: -1}'
+	sed -i "s/^        pdos:/        startup: [$sdo]\n&/" "$f"
+	[ "$(log_of bus save --whole -f "$BATS_TEST_TMPDIR/x" | grep -v slave)" = "" ]
+	run ethercat bus check "$f"
+	[ "$(cat "$FAKE_LOG")" = "" ]
+}
+
+@test "bus check compares modules slot by slot" {
+	FAKE_MODULES=7,8,0 ethercat bus save --whole -f "$f"
+	FAKE_MODULES=7,9,3 run ethercat bus check "$f"
+	[ "$status" -eq 1 ]
+	[[ ${lines[0]} == *"slave 'el7201' module in slot 2 differs: expected ident 0x00000008, found ident 0x00000009; plug the expected module into slot 2, or change modules in the file" ]]
+	[[ ${lines[1]} == *"slave 'el7201' module in slot 3 differs: expected an empty slot, found ident 0x00000003; remove it from slot 3, or add it to modules in the file" ]]
+	[ "${lines[2]}" = "2 difference(s)" ]
+	# not modular at all
+	run ethercat bus check "$f"
+	[ "$status" -eq 1 ]
+	[[ ${lines[0]} == *"module in slot 1 differs: expected ident 0x00000007, found an empty slot; plug"* ]]
+	# what cannot be read is not compared
+	FAKE_MODULES=slow run ethercat bus check "$f"
+	[ "$status" -eq 2 ]
+	[[ $output == *"slave 2 has not answered"*"no difference, 3 slave(s)" ]]
+}
+
+@test "bus check: a startup value that no session has written is pending, no difference" {
+	local sdo='{at: safeop, sdo: 0x6060:00, type: int8, value: 8}'
+	sed "/type: \"EL7201\"/a\        startup: [$sdo]" "$f" >"$BATS_TEST_TMPDIR/a"
+	run ethercat bus check "$BATS_TEST_TMPDIR/a"
+	[ "$status" -eq 0 ]
+	[ "${lines[0]#"$BATS_TEST_TMPDIR/"}" = \
+		"a:31: slave 'el7201' startup 0x6060:00 pending: expected 08, found ff; the master writes it on the way to SAFEOP when the file is applied" ]
+	[ "${lines[1]}" = "no difference, 3 slave(s)" ]
+	sed -i 's/value: 8/value: -1/' "$BATS_TEST_TMPDIR/a"
+	[ "$(ethercat bus check "$BATS_TEST_TMPDIR/a")" = "no difference, 3 slave(s)" ]
+}
+
 @test "bus save keeps an existing file unless -f is given" {
 	echo mine >"$BATS_TEST_TMPDIR/mine"
 	run ethercat bus save "$BATS_TEST_TMPDIR/mine"
@@ -60,7 +111,7 @@ differs() {	# differs SED EXPECTED
 	differs 's/0x00100000/0x00200000/' "changed:10: slave 'el2008' revision differs: expected 0x00200000, found 0x00100000; if this revision is right, set revision, or revision_rule: at_least, in the file"
 	differs 's/alias: 1001/alias: 1002/' "changed:10: slave 'el2008' alias differs: expected 1002, found 1001; write the alias with 'ethercat alias', or change it in the file"
 	differs '/parent: el2008/{n;s/1/2/}' "changed:29: slave 'el7201' moved: expected port 2 of 'el2008', found port 1 of 'el2008'; connect it to port 2 of 'el2008', or change parent and port in the file"
-	differs 's/0x6000:11/0x6000:12/' "changed:46: slave 'el7201' pdos 0x1a00 entries 1 object differs: expected 0x6000:12, found 0x6000:11; change the slave, or the file"
+	differs 's/0x6000:11/0x6000:12/' "changed:52: slave 'el7201' pdos 0x1a00 entries 1 object differs: expected 0x6000:12, found 0x6000:11; change the slave, or the file"
 	differs '/index: 0x1601/,/channel_2/d' "slave 'el2008' pdos 0x1601 extra: a PDO; map and assign PDOs as in the file, or change the file"
 }
 
@@ -88,7 +139,7 @@ differs() {	# differs SED EXPECTED
 	run ethercat bus diff "$f" "$BATS_TEST_TMPDIR/b"
 	[ "$status" -eq 1 ]
 	[ "${lines[0]#"$BATS_TEST_TMPDIR/"}" = \
-		"bus.yaml:46: slave 'el7201' pdos 0x1a00 entries 1 name differs: expected position, found actual" ]
+		"bus.yaml:52: slave 'el7201' pdos 0x1a00 entries 1 name differs: expected position, found actual" ]
 }
 
 @test "bus exits with 2 when its output is lost, equal or not" {
