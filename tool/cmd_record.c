@@ -105,7 +105,7 @@ static int take_columns(struct record *x, int argc, char **argv)
 			return 1;
 		}
 		if (omitted)
-			note("%zu value(s) of '%s' have more than 64 bits and are left out",
+			note("%zu value(s) of '%s' have more than 64 bits and are omitted",
 			     omitted, argv[i]);
 	}
 	if (!x->all)
@@ -174,7 +174,7 @@ static s64 clock_ns(clockid_t id)
 	return (s64)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
-/* Time since 1970 of a time of CLOCK_MONOTONIC, by the clock of the computer as it is now. */
+/* Time since 1970 of a time of CLOCK_MONOTONIC, by the current clock of the computer. */
 static s64 wall_of(s64 ns)
 {
 	return clock_ns(CLOCK_REALTIME) - clock_ns(CLOCK_MONOTONIC) + ns;
@@ -247,7 +247,7 @@ static int take_record(struct record *x, const struct ect_record *rec)
 	return is_full(x);
 }
 
-/* The records that are there. Return: 0, 1 the recording is complete, or a negative errno. */
+/* Records up to the newest one. Return: 0, 1 the recording is complete, or a negative errno. */
 static int take_records(struct record *x)
 {
 	struct ect_record rec = { .struct_size = sizeof(rec) };
@@ -362,8 +362,8 @@ const struct cmd cmd_record = {
 		"0 no slave). Inputs are those received in the cycle, outputs those sent in it.\n"
 		"\n"
 		"Ctrl-C ends it with a complete file. --time and --count end it earlier. With --when the\n"
-		"file begins when the condition is true, and time 0 is there: names, numbers, + - ~ & ^ |\n"
-		"== != < <= > >= ! && || and parentheses; & ^ | bind tighter than comparisons:\n"
+		"file begins when the condition is true, with its time 0: names, numbers, + - ~ & ^ |\n"
+		"== != < <= > >= ! && || and parentheses; & ^ | bind tighter than == and <:\n"
 		"ethercat record 'axis1.*' -o a.csv --when 'axis1.status & 8' --before 1 --after 2\n"
 		"\n"
 		"The master keeps some seconds of records for a program that is stopped or slow; what\n"

@@ -6,6 +6,8 @@
 
 #include "tool.h"
 
+#define LABELS_MAX	32
+
 static double time_at(const struct plot_view *v, size_t row)
 {
 	return v->time ? v->time[row] : (double)row;
@@ -109,8 +111,12 @@ struct plot_axis plot_range(const struct plot_column *c, size_t rows, unsigned i
 	return plot_axis(min, max, labels);
 }
 
-/* the first label */
-double plot_first(const struct plot_axis *a)
+/* A step may be too small to change the number. */
+bool plot_label(const struct plot_axis *a, unsigned int i, double *at)
 {
-	return ceil(a->min / a->step - 1e-9) * a->step;
+	*at = (ceil(a->min / a->step - 1e-9) + i) * a->step;
+	/* -0 is 0 */
+	if (fabs(*at) < a->step / 2)
+		*at = 0;
+	return i < LABELS_MAX && *at <= a->max + a->step * 1e-9;
 }

@@ -47,7 +47,8 @@ void plot_bins(const struct plot_view *v, const struct plot_column *c, struct pl
 /* at most @labels labels and one more */
 struct plot_axis plot_axis(double min, double max, unsigned int labels);
 struct plot_axis plot_range(const struct plot_column *c, size_t rows, unsigned int labels);
-double plot_first(const struct plot_axis *a);
+/* label @i of an axis; false: it has no more */
+bool plot_label(const struct plot_axis *a, unsigned int i, double *at);
 
 /* 0, or 1 after printing what is wrong */
 int plot_text(FILE *to, const struct plot_view *v, const struct plot_column *const *c, size_t n,

@@ -55,7 +55,7 @@ static bool take(struct npy *x, char c)
 	return true;
 }
 
-/* A string, of which escapes stay as they are; false: there is none. */
+/* A string, of which escapes stay unchanged; false: there is none. */
 static bool string(struct npy *x, const char **from, size_t *len)
 {
 	const char *stop;
@@ -164,7 +164,7 @@ static double value(const struct field *f, const char *row)
 	return (double)value_unsigned(data, f->bytes);
 }
 
-static int rows(struct npy *x, struct plot_data *p, const char *data, size_t size, u64 n)
+static int read_rows(struct npy *x, struct plot_data *p, const char *data, size_t size, u64 n)
 {
 	if (size / x->row < n)
 		return fail("%s ends after %zu of %llu rows", x->name, size / x->row,
@@ -195,7 +195,7 @@ int plot_npy(const char *name, const char *data, size_t size, struct plot_data *
 	x.end = x.at + len;
 	ret = header(&x, p, &n);
 	if (!ret)
-		ret = rows(&x, p, data + prefix + len, size - prefix - len, n);
+		ret = read_rows(&x, p, data + prefix + len, size - prefix - len, n);
 	free(x.fields);
 	return ret;
 }

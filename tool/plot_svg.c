@@ -58,6 +58,7 @@ static void print_frame(FILE *to, const struct plot_column *c, const struct plot
 			double top)
 {
 	unsigned int high = high_of(c);
+	double at;
 
 	fprintf(to, "<text x=\"%d\" y=\"%.1f\" class=\"name\">", LEFT, top - 6);
 	print_escaped(to, c->name);
@@ -69,12 +70,12 @@ static void print_frame(FILE *to, const struct plot_column *c, const struct plot
 	fputs("</text>\n", to);
 	fprintf(to, "<rect x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%u\" class=\"frame\"/>\n",
 		LEFT, top, PLOT, high);
-	for (double at = plot_first(a); at <= a->max + a->step * 1e-9; at += a->step) {
+	for (unsigned int i = 0; plot_label(a, i, &at); i++) {
 		double y = y_of(a, at, top, high);
 
 		fprintf(to, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\" class=\"grid\"/>"
 			"<text x=\"%d\" y=\"%.1f\" class=\"value\">%.6g</text>\n", LEFT, y,
-			LEFT + PLOT, y, LEFT - 6, y + 4, fabs(at) < a->step / 2 ? 0 : at);
+			LEFT + PLOT, y, LEFT - 6, y + 4, at);
 	}
 }
 
@@ -119,10 +120,11 @@ static void print_gaps(FILE *to, const struct plot_view *v, double top, unsigned
 static void print_times(FILE *to, const struct plot_view *v, double top)
 {
 	struct plot_axis a = plot_axis(v->from, v->to, 8);
+	double at;
 
-	for (double at = plot_first(&a); at <= a.max + a.step * 1e-9; at += a.step)
+	for (unsigned int i = 0; plot_label(&a, i, &at); i++)
 		fprintf(to, "<text x=\"%.1f\" y=\"%.1f\" class=\"time\">%.6g</text>\n",
-			x_of(v, at), top + 16, fabs(at) < a.step / 2 ? 0 : at);
+			x_of(v, at), top + 16, at);
 	fprintf(to, "<text x=\"%d\" y=\"%.1f\" class=\"time\">%s", LEFT + PLOT / 2, top + 36,
 		v->time ? "time [s]" : "row");
 	if (*v->data->since) {

@@ -67,7 +67,8 @@ static void print_char(FILE *to, unsigned char dots, bool unicode)
 	if (!unicode || !dots)
 		fputc(dots ? '*' : ' ', to);
 	else
-		fprintf(to, "%c%c%c", 0xe0 | code >> 12, 0x80 | (code >> 6 & 63), 0x80 | (code & 63));
+		fprintf(to, "%c%c%c", 0xe0 | code >> 12, 0x80 | (code >> 6 & 63),
+			0x80 | (code & 63));
 }
 
 /* The highest and the lowest value stand beside their lines. */
@@ -110,13 +111,14 @@ static void print_times(FILE *to, const struct text *t, const struct plot_view *
 	struct plot_axis a = plot_axis(v->from, v->to, 5);
 	char line[512];
 	size_t end = 0;
+	double at;
 
 	memset(line, ' ', sizeof(line));
-	for (double at = plot_first(&a); at <= a.max; at += a.step) {
+	for (unsigned int i = 0; plot_label(&a, i, &at); i++) {
 		double part = (at - a.min) / (a.max - a.min);
 		size_t x = LABEL + (size_t)(part * (double)(t->wide - 1) + 0.5);
 		char label[32];
-		int n = snprintf(label, sizeof(label), "%.6g", fabs(at) < a.step / 2 ? 0 : at);
+		int n = snprintf(label, sizeof(label), "%.6g", at);
 
 		if (x < end + 1 || n < 0 || x + (size_t)n > LABEL + t->wide ||
 		    x + (size_t)n >= sizeof(line))

@@ -26,7 +26,8 @@ static int new_file(struct record_file *f, const char *path, bool force)
 	if (!force) {
 		f->fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
 		if (f->fd < 0 && errno == EEXIST)
-			return fail("'%s' exists; use another name, or --force to replace it", path);
+			return fail("'%s' exists; use another name, or --force to replace it",
+				    path);
 		return f->fd < 0 ? fail("cannot write '%s': %s", path, strerror(errno)) : 0;
 	}
 	/* the old file stays until the new one is complete */

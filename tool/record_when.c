@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Conditions as in C, but & ^ | bind tighter than comparisons: "status & 8 == 8" is what it looks
+ * Conditions as in C, but & ^ | bind tighter than == and <: "status & 8 == 8" is what it looks
  * like. A condition becomes a list of steps for a stack.
  */
 #include "record_when.h"
@@ -163,7 +163,7 @@ static int operand(struct parser *p)
 	return 0;
 }
 
-/* An operator of at least this level, behind which the text goes on; NULL: there is none. */
+/* An operator of at least this level; -1: there is none. */
 static int operator_at(const struct parser *p, int level)
 {
 	for (unsigned int i = 0; i < ARRAY_SIZE(binary); i++) {

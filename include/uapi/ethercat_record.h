@@ -2,17 +2,17 @@
 /*
  * Records of process data: one for each cycle, as inputs were received and outputs were sent.
  *
- * EC_IOC_RECORDER makes an open file a reader of records, also one opened for reading only. It needs
- * an active session, its own or that of another application. From then on read() returns whole
- * records, and poll() reports new ones, at most 20 ms late. Each reader has a position of its own,
- * and takes nothing from others. All readers of a master share one ring of @kept records, at most
- * EC_RECORD_RING bytes: the record behind a gap has the exact number of those that the reader was
- * too slow for. After the end of the session read() returns what is left, then -ENODATA.
+ * EC_IOC_RECORDER makes an open file a reader of records, also one opened for reading only. It
+ * needs an active session, its own or that of another application. From then on read() returns
+ * whole records, and poll() reports new ones, at most 20 ms late. Each reader has a position of its
+ * own, and takes nothing from others. All readers of a master share one ring of @kept records, at
+ * most EC_RECORD_RING bytes: the record behind a gap has the exact number of those that the reader
+ * was too slow for. After the end of the session read() returns what is left, then -ENODATA.
  *
  * The reader names bytes of the image of all domains (@logical of struct ec_ioc_domain is where a
- * domain begins): @data are two masks of @size / 2 bytes each, first of inputs, then of outputs. Bit
- * n % 8 of byte n / 8 is set: byte n of the image is wanted. A record is struct ec_record, then the
- * wanted bytes of inputs, those of outputs, and zeros up to a multiple of 8 bytes.
+ * domain begins): @data are two masks of @size / 2 bytes each, first of inputs, then of outputs.
+ * Bit n % 8 of byte n / 8 is set: byte n of the image is wanted. A record is struct ec_record, then
+ * the wanted bytes of inputs, those of outputs, and zeros up to a multiple of 8 bytes.
  */
 #ifndef EC_UAPI_ETHERCAT_RECORD_H
 #define EC_UAPI_ETHERCAT_RECORD_H

@@ -3,8 +3,8 @@
  * Readers of records. The first one of a session allocates the ring of its cycle, the end of the
  * last one frees it. A work wakes them every 20 ms while there is one.
  *
- * Who may read the device file may record, so its memory and the work for the cycle are limited: a
- * master has one ring of %EC_RECORD_RING bytes for all readers of a session, the cycle copies its
+ * Each user with permission to read the device file may record. So memory and work are limited:
+ * a master has one ring of %EC_RECORD_RING bytes for all readers of a session, the cycle copies its
  * image once for all of them, and there are at most %EC_RECORDERS readers, %EC_RECORDERS_READ_ONLY
  * without the right to write. Rings of ended sessions stay until their readers end; with
  * %RINGS_MAX of them no other one begins. All of this is memory of the process that caused it

@@ -11,7 +11,6 @@
 #include <linux/vmalloc.h>
 #include "../base/once64.h"
 #include "../config/domain.h"
-#include "cycle_run.h"
 #include "recorder.h"
 #include "unit_state.h"
 
@@ -36,12 +35,17 @@ static void form_outputs(const struct ec_cycle *c, struct ec_recorder_form *f)
 		f->outputs = f->image;
 		return;
 	}
-	for (i = 0; c->thread && i < c->thread->n_outputs; i++) {
-		const struct ec_domain_area *a = &c->thread->outputs[i];
+	if (!c->thread)
+		return;
+	ec_for_each_domain(d, c->wanted)
+		for (i = 0; i < d->n_fmmus; i++) {
+			const struct ec_config_fmmu *fm = d->fmmus[i].fmmu;
 
-		from = min(from, a->offset);
-		to = max(to, a->offset + a->len);
-	}
+			if (fm->dir != EC_CFG_DIR_OUTPUT)
+				continue;
+			from = min(from, d->offset + fm->offset);
+			to = max(to, d->offset + fm->offset + fm->size);
+		}
 	if (from < to) {
 		f->outputs_at = from;
 		f->outputs = to - from;
@@ -125,7 +129,7 @@ bool ec_recorder_begin(struct ec_cycle *c, struct ec_recorder *r)
 /**
  * ec_recorder_leave() - the last reader has ended
  * @cycles: of the master
- * @r: its ring, which nobody else frees; then kvfree_rcu() may follow
+ * @r: its ring; kvfree_rcu() may follow
  *
  * Context: Process, lock of the readers held.
  */
@@ -254,7 +258,7 @@ static void load_states(const struct ec_recorder *r, const struct ec_recorder_pl
 	}
 }
 
-/* Whatever is in a place that is being written, nothing outside of it is read. Returns the end. */
+/* From a place that may be written meanwhile nothing outside of it is read. Return: the end. */
 static u8 *load_place(const struct ec_recorder *r, const struct ec_recorder_place *p,
 		      const struct ec_recorder_run *runs, u32 n, struct ec_record *to)
 {

@@ -34,6 +34,11 @@ static inline struct ec_cycles *bus_cycles(const struct bus *b)
 	return &b->m->cycles;
 }
 
+static inline struct ec_record_readers *bus_record_readers(const struct bus *b)
+{
+	return &b->m->record_readers;
+}
+
 static inline struct ec_sessions *bus_sessions(const struct bus *b)
 {
 	return &b->m->sessions;

@@ -17,7 +17,7 @@ struct rec {
 
 static struct ec_recorder *ring_of(struct bus *b)
 {
-	return rcu_access_pointer(b->m->cycles.recorder);
+	return rcu_access_pointer(bus_cycles(b)->recorder);
 }
 
 static struct ec_file *file_new(struct bus *b, bool writable)
@@ -135,21 +135,21 @@ static void expect_pairs(struct kcyc *a, u32 steady)
 	ec_reader_end(f);
 }
 
-static void recorder_pairs_of_the_image(struct kunit *test)
+static void recorder_outputs_of_image_before_inputs(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 
 	expect_pairs(a, 10);
-	KUNIT_EXPECT_NULL(test, a->c->b->m->cycles.active->direct);
+	KUNIT_EXPECT_NULL(test, bus_cycles(a->c->b)->active->direct);
 }
 
 /* The buffer of the application is sent then. */
-static void recorder_pairs_of_the_buffer(struct kunit *test)
+static void recorder_outputs_of_buffer_before_inputs(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 
 	expect_pairs(a, 1100);
-	KUNIT_EXPECT_NOT_NULL(test, a->c->b->m->cycles.active->direct);
+	KUNIT_EXPECT_NOT_NULL(test, bus_cycles(a->c->b)->active->direct);
 }
 
 static u32 rest_of(struct kunit *test, struct ec_file *f)
@@ -278,15 +278,15 @@ static void recorder_readers_are_limited(struct kunit *test)
 	more = file_new(b, true);
 	KUNIT_EXPECT_EQ(test, want(more, 0, 4, &arg), -EUSERS);
 	/* one ring for all */
-	KUNIT_EXPECT_EQ(test, b->m->record_readers.rings, 1u);
+	KUNIT_EXPECT_EQ(test, bus_record_readers(b)->rings, 1u);
 	ec_reader_end(f[0]);
 	KUNIT_EXPECT_EQ(test, want(more, 0, 4, &arg), 0);
 	ec_reader_end(more);
 	for (i = 1; i < EC_RECORDERS; i++)
 		ec_reader_end(f[i]);
 	KUNIT_EXPECT_NULL(test, ring_of(b));
-	KUNIT_EXPECT_EQ(test, b->m->record_readers.read_only, 0u);
-	KUNIT_EXPECT_EQ(test, b->m->record_readers.rings, 0u);
+	KUNIT_EXPECT_EQ(test, bus_record_readers(b)->read_only, 0u);
+	KUNIT_EXPECT_EQ(test, bus_record_readers(b)->rings, 0u);
 }
 
 /* Readers of sessions that have ended keep no more than RINGS_MAX rings. */
@@ -312,10 +312,10 @@ static void recorder_rings_of_ended_sessions_are_limited(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, want(f[3], 0, 4, &arg), 0);
 	for (i = 1; i < 4; i++)
 		ec_reader_end(f[i]);
-	KUNIT_EXPECT_EQ(test, b->m->record_readers.rings, 0u);
+	KUNIT_EXPECT_EQ(test, bus_record_readers(b)->rings, 0u);
 }
 
-static void recorder_refuses_what_is_wrong(struct kunit *test)
+static void recorder_wrong_arguments_are_refused(struct kunit *test)
 {
 	struct kcyc *a = kcyc_start(test, (struct ec_ioc_cycle){ 0 });
 	struct ec_ioc_events events = { .size = sizeof(struct ec_event) };
@@ -341,7 +341,7 @@ static void recorder_refuses_what_is_wrong(struct kunit *test)
 }
 
 /* The outputs of the application while they are sent, and zeros while these replace them. */
-static void recorder_shows_what_units_send(struct kunit *test)
+static void recorder_outputs_of_units_as_sent(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 2);
 	struct cyc *c = cyc_new(b, 1000);
@@ -383,14 +383,14 @@ static void recorder_shows_what_units_send(struct kunit *test)
 
 static struct kunit_case recorder_cases[] = {
 	KUNIT_CASE(recorder_without_reader_is_absent),
-	KUNIT_CASE(recorder_pairs_of_the_image),
-	KUNIT_CASE(recorder_pairs_of_the_buffer),
+	KUNIT_CASE(recorder_outputs_of_image_before_inputs),
+	KUNIT_CASE(recorder_outputs_of_buffer_before_inputs),
 	KUNIT_CASE(recorder_slow_reader_gets_exact_number),
 	KUNIT_CASE(recorder_session_ends_while_reading),
 	KUNIT_CASE(recorder_readers_are_limited),
 	KUNIT_CASE(recorder_rings_of_ended_sessions_are_limited),
-	KUNIT_CASE(recorder_refuses_what_is_wrong),
-	KUNIT_CASE(recorder_shows_what_units_send),
+	KUNIT_CASE(recorder_wrong_arguments_are_refused),
+	KUNIT_CASE(recorder_outputs_of_units_as_sent),
 	{}
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Fake master: records of process data of the bus that runs (fake_run.c), a millisecond apart. The
- * position counts from -2, output 1 of slave 1 changes every 5 records. FAKE_RECORDS: how many there
- * are before the session ends (20); FAKE_RECORD_GAP: three are missing before this one;
+ * position counts from -2, output 1 of slave 1 changes every 5 records. FAKE_RECORDS: how many
+ * there are before the session ends (20); FAKE_RECORD_GAP: three are missing before this one;
  * FAKE_RECORD_REFUSED: too many programs record.
  */
 #include <errno.h>

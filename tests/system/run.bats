@@ -168,6 +168,67 @@ sensor=el1008.channel_1.input
 		gojq -r '[.masters[0].values[] | select(.direction == "output").name][0]')" 1
 }
 
+rows() { grep -v '^[#t]' "$1"; }
+
+@test "record: each cycle has a row, also while the program is stopped and the clock steps" {
+	local file=$BATS_TEST_TMPDIR/a.csv err=$BATS_TEST_TMPDIR/err
+
+	ethercat run
+	"$EC_BUILD/tool/ethercat" record $lamp $sensor -o "$file" --time 8 2>"$err" 3>&- &
+	other=$!
+	wait_for 10 test -s "$file"
+	kill -STOP $other
+	ethercat set --hold $lamp 1
+	date -s '+1 hour'
+	sleep 5
+	kill -CONT $other
+	wait $other
+	other=
+	date -s '-1 hour'
+	cat "$err"
+	grep -q 'record(s) of 2 value(s) in .* s, 0 lost' "$err"
+	# cycles and times follow each other
+	rows "$file" | awk -F, '
+		n++ && ($3 != cycle + 1 || $1 <= time || $1 > time + 0.1) { print; bad = 1 }
+		{ cycle = $3; time = $1 }
+		END { print n " rows"; exit bad || n < 7900 || n > 8100 }'
+	# the input has the output of one cycle before, or of two
+	rows "$file" | awk -F, '$6 && !sent { sent = NR } $7 && !seen { seen = NR }
+		END { print sent, seen; exit !sent || seen <= sent || seen > sent + 2 }'
+	run ethercat record $lamp -o "$file"
+	[ "$status" = 1 ]
+	ethercat plot "$file" | grep -q '1 |'
+}
+
+rings() { grep -c ec_recorder_new /proc/vmallocinfo; }
+no_ring() { [ "$(rings)" = 0 ]; }
+
+@test "record: the session of an application, by a reader without rights, until it ends" {
+	local out=$BATS_TEST_TMPDIR/out
+
+	"$EC_BUILD/apps/kcycle" cycles=1000000 flags=1 >"$out.app" 2>&1 3>&- &
+	other=$!
+	wait_for 60 grep -q 'slaves in OP' "$out.app"
+	"${reader[@]}" record '*' --count 500 >"$out"
+	[ "$(rows "$out" | wc -l)" = 500 ]
+	before=$(lost_frames)
+	# killed in the middle it leaves nothing, and the cycle continues
+	timeout -s KILL 1 "${reader[@]}" record '*' >"$out" || true
+	[ "$(rows "$out" | wc -l)" -gt 100 ]
+	wait_for 10 no_ring
+	[ "$(lost_frames)" = "$before" ]
+	"${reader[@]}" record '*' >"$out" 2>"$out.err" 3>&- &
+	wait_for 10 test -s "$out"
+	kill -9 $other
+	wait $other || true
+	other=
+	[ "$(rings)" = 1 ]
+	ethercat release
+	wait
+	grep -q 'the session has ended' "$out.err"
+	wait_for 10 no_ring
+}
+
 @test "killed before all is in OP it leaves nothing" {
 	for after in 0.05 0.2 0.4 0.8; do
 		timeout -s KILL $after "$EC_BUILD/tool/ethercat" run 3>&- || continue

@@ -46,9 +46,10 @@ npy() {
 	[ "$status" = 0 ]
 	[[ $output == *"Master0: the session has ended"* ]]
 	[[ $output == *"Master0: 20 record(s) of 3 value(s) in 0.019 s, 0 lost" ]]
-	head -n 1 a.csv | grep -qE '^# ethercat record: time 0 is [0-9]{4}-[0-9-]*T[0-9:.]*Z, master 0, wc: 2 complete'
-	[ "$(sed -n '2,6p' a.csv)" = 'time_s,app_time_ns,cycle,lost,wc,el2008.channel_1.output,el2008.channel_2.output,el7201.position
-0.000000000,0,100,0,2,0,0,4294967294
+	head -n 1 a.csv | grep -qE 'record: time 0 is [0-9]{4}-[0-9-]*T[0-9:.]*Z, master 0, wc: 2 '
+	[ "$(sed -n 2p a.csv)" = time_s,app_time_ns,cycle,lost,wc,el2008.channel_1.output,\
+el2008.channel_2.output,el7201.position ]
+	[ "$(sed -n '3,6p' a.csv)" = '0.000000000,0,100,0,2,0,0,4294967294
 0.001000000,1000000,101,0,2,0,0,4294967295
 0.002000000,2000000,102,0,1,0,0,0
 0.003000000,3000000,103,0,2,0,0,1' ]
@@ -68,11 +69,13 @@ npy() {
 	out record '*' -o a.npy
 	[ "$(npy a.npy)" = "$(grep -v '^#' a.csv)" ]
 	if python3 -c 'import numpy' 2>/dev/null; then
-		python3 -c 'import numpy; a = numpy.load("a.npy"); assert (a["el7201.position"][3], len(a)) == (1, 20), a'
+		python3 -c 'import numpy
+a = numpy.load("a.npy")
+assert (a["el7201.position"][3], len(a)) == (1, 20), a'
 	fi
 }
 
-@test "record marks what is missing, and counts it" {
+@test "record marks missing records and counts them" {
 	run env FAKE_RECORD_GAP=5 "$HERE/build/fake/ethercat" record el7201.position -o a.csv
 	[[ $output == *"17 record(s) of 1 value(s) in 0.019 s, 3 lost: this program was too slow" ]]
 	columns a.csv | sed -n 6,7p >got
@@ -83,8 +86,9 @@ npy() {
 	[ "$(columns b.csv | tail -n 1)" = 103,0,2,1 ]
 }
 
-@test "record --when begins at the condition, with what was before it" {
-	out record el7201.position -o a.csv --when 'el7201.position == 5' --before 0.002 --after 0.001
+@test "record --when begins at the condition, with records before it" {
+	out record el7201.position -o a.csv --when 'el7201.position == 5' --before 0.002 \
+		--after 0.001
 	[ "$(cut -d, -f1,6 a.csv | tail -n +3)" = '-0.002000000,3
 -0.001000000,4
 0.000000000,5
@@ -150,7 +154,8 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 		(
 			trap '' XFSZ
 			ulimit -f 4
-			FAKE_RECORDS=1000000 "$HERE/build/fake/ethercat" record el7201.position -o "$1" 2>err
+			FAKE_RECORDS=1000000 "$HERE/build/fake/ethercat" record el7201.position \
+				-o "$1" 2>err
 		)
 	}
 	run limited a.csv
@@ -169,7 +174,10 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 
 @test "record ends by Ctrl-C with a complete file" {
 	FAKE_RECORDS=1000000000 "$HERE/build/fake/ethercat" record el7201.position -o a.npy 2>err &
-	until [ "$(stat -c %s a.npy 2>/dev/null || echo 0)" -gt 100000 ]; do kill -0 $! && sleep 0.05; done
+	until [ "$(stat -c %s a.npy 2>/dev/null || echo 0)" -gt 100000 ]; do
+		kill -0 $!
+		sleep 0.05
+	done
 	kill -TERM $!
 	wait $!
 	npy a.npy | tail -n 1 >last
@@ -210,7 +218,7 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 	out plot a.csv | cmp - stdin
 }
 
-@test "plot reads other files, and names what is wrong in a line" {
+@test "plot reads other files, and names the wrong line" {
 	printf 'a,"b, ""c"" [mm]"\r\n1,2\r\n3,4' >a.csv
 	LC_ALL=C out plot a.csv >text
 	grep -qx 'b, "c" \[mm\]' text

@@ -61,7 +61,8 @@ _ethercat()
 		-m|--master)
 			master="-m ${COMP_WORDS[++i]}" ;;
 		-a|-p|-d|-t|-o|-s|--alias|--position|--domain|--type|--output-file|--skin|--save|\
-		--compare|--compare-slave|--texts|--watch|--timeout)
+		--compare|--compare-slave|--texts|--watch|--timeout|--when|--before|--after|--time|\
+		--count)
 			((i++)) ;;
 		-*)	;;
 		*)	[ -n "$cmd" ] || cmd=$w ;;
@@ -108,7 +109,7 @@ _ethercat()
 				*)		w= ;;
 				esac ;;
 			help)	w="$(_ethercat_values command) types" ;;
-			reg_write|foe_write|firmware)
+			reg_write|foe_write|firmware|plot)
 				_ethercat_files
 				return ;;
 			*)	w= ;;

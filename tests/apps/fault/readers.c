@@ -155,6 +155,9 @@ static int allowed(const struct cmd *c, int err)
 	case EC_IOC_PDO:
 	case EC_IOC_PDO_ENTRY:
 		return !err || err == ENOENT || err == EINVAL;
+	case EC_IOC_RECORDER:
+		/* the file reads events already */
+		return !err || err == ENOENT || err == EBUSY || err == EUSERS;
 	default:
 		return !err || err == ENOENT;
 	}

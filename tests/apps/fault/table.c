@@ -50,6 +50,7 @@ const struct cmd cmds[] = {
 	CMD(EMERGENCIES, DATA(ec_ioc_emergencies)),
 	CMD(EVENTS, .flags = EC_EVENTS_FLAG_NEW),
 	CMD(MAIL, .raw = true),
+	CMD(RECORDER, DATA(ec_ioc_recorder)),
 	CMD(SLAVES_DOWN, APP),
 	CMD(EOE, RSV1(ec_ioc_eoe)),
 	CMD(EOE_WISH, BUS, RSV2(ec_ioc_eoe_wish)),
