@@ -2,7 +2,7 @@
 #
 # make                modules, library, tool, simulator, examples (KDIR= chooses the kernel)
 # make install        all of it (DESTDIR=, PREFIX=); make uninstall
-# make demo           the main job in a VM
+# make demo           the main job in a VM; DEMO=list: others
 # make doc            documentation as HTML, with the reference of ecrt.h (build/doc/html)
 # make bench          figures: what a cycle costs
 # make check          every test; the last line is "N passed, N failed"
@@ -178,9 +178,9 @@ clean:
 
 .PHONY: all headers sync modules lib tool examples mini clean
 
-# CYCLES=, PERIOD_US=; HOST=1: on this machine, not in a VM
+# CYCLES=, PERIOD_US=; HOST=1: on this machine, not in a VM; DEMO=list shows others
 demo:
-	@tests/demo/demo.sh $(if $(HOST),--host)
+	@tests/demo/demo.sh $(if $(HOST),--host) $(DEMO)
 
 check:
 	tests/check.sh

@@ -1,13 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# make demo in a VM does what it says. (HOST=1 and what must make it fail:
+# make demo in a VM does what it says, as does each DEMO=. (HOST=1 and what must make it fail:
 # tests/system/demo.bats.) The last line is "N passed, N failed".
 
 set -u
 cd "$(dirname "$0")/../.." || exit 1
 out=$(mktemp)
-trap 'rm -f "$out" "$out.x"' EXIT
+trap 'rm -f "$out" "$out.x" "$out.y"' EXIT
+names="run compare syncunits hotconnect"
 passed=0 failed=0
 
 t() {	# t NAME COMMAND...
@@ -43,6 +44,19 @@ t "both axes follow" [ "$(grep -cE '^Axis at slave .* correlation (1\.000|0\.9)'
 t "no check failed" [ "$(grep -c FAILED "$out")" = 0 ]
 t "the capture has all cycles and nothing malformed" says '^tshark: [0-9]{4,} packets, .* malformed: 0$'
 t "the capture is where it says" [ -s "$(sed -n 's/^capture: //p' "$out")" ]
+# all of the others in one boot; each is a command of its own for a user
+VM_OPTIONS="--icount --timeout 400" make -s demo DEMO="$names" >"$out.y" 2>&1
+rc=$?
+[ $rc = 0 ] || sed 's/^/# /' "$out.y"
+shows() { grep -qE "$1" "$out.y"; }
+t "DEMO=run and the others end with 0" [ $rc = 0 ]
+t "DEMO=run saves the bus and shows a value that follows an output" \
+	shows '^ +[0-9.]+  el1008.channel_1.input = 1$'
+t "DEMO=compare names the exchanged slave" \
+	shows "^[^ ]*yesterday.yaml:[0-9]+: slave 'el1008' exchanged: expected EL1008,.* found EL3062"
+t "DEMO=syncunits shows the unit that has failed" shows '^  failed, outputs zero, 1 fault'
+t "DEMO=syncunits and hotconnect draw a part that goes and returns, and one that stays" \
+	[ "$(grep -cE '^left +[#~-]{60}\|$' "$out.y")" = 2 ]
 for name in install kernel build:\ {modules,library,tool,application}; do
 	t "the step '$name' has its seconds" says "^\[ *[0-9]+ s\] $name: done in [0-9]+ s$"
 done
@@ -55,6 +69,9 @@ failed_step() { bash -c '. tests/demo/steps.sh; on x false' >"$out.x"; [ $? = 1 
 t "a step that fails is not called done" failed_step
 t "steps have a time" [ "$(grep -c '^\[ *[0-9]* s\]' "$out")" -ge 8 ]
 t "a wrong number of cycles is refused" refused many
+t "DEMO=list shows each of them" \
+	[ "$(make -s demo DEMO=list | awk 'NR > 1 { print $1 }' | tr '\n' ' ')" = "$names " ]
+t "an unknown DEMO is refused" [ "$(tests/demo/demo.sh runn 2>&1 | grep -c '^usage')" = 1 ]
 t "the exact usage is asked for" [ "$(tests/demo/demo.sh --nonsense 2>&1 | grep -c '^usage')" = 1 ]
 echo "$passed passed, $failed failed"
 [ $failed = 0 ]

@@ -5,8 +5,10 @@
 # PREEMPT_RT kernel in a VM and runs bench.sh there; then tshark reads the
 # captured frames.
 #
-# usage: demo.sh           in a VM
-#        demo.sh --host    on this machine, with the headers of its kernel
+# usage: demo.sh [NAME...]           in a VM
+#        demo.sh --host [NAME...]    on this machine, with the headers of its kernel
+#
+# NAME: list shows them; without one, the main job
 #
 # CYCLES=10000 PERIOD_US=1000   length of the run
 # KDIR=DIR                      headers, for --host
@@ -20,11 +22,18 @@ cd "$(dirname "$0")/../.." || exit 1
 export CYCLES=${CYCLES:-10000} PERIOD_US=${PERIOD_US:-1000}
 kernel=${EC_KERNEL:-6.1-rt}
 host=0
-case ${1:-} in
---host)	host=1 ;;
-'')	;;
-*)	sed -n 's/^# \{0,1\}//p' "$0" | sed -n '/^usage/,/^$/p' >&2; exit 2 ;;
-esac
+if [ "${1:-}" = --host ]; then
+	host=1
+	shift
+fi
+if [ "$*" = list ]; then
+	exec tests/demo/scenes.sh list
+fi
+scenes=("$@")
+tests/demo/scenes.sh known ${scenes[@]+"${scenes[@]}"} || {
+	sed -n 's/^# \{0,1\}//p' "$0" | sed -n '/^usage/,/^$/p' >&2
+	exit 2
+}
 out=$PWD/build/demo
 DEMO_START=$(date +%s)
 export DEMO_START
@@ -80,7 +89,7 @@ build() {
 	on "build: library" logged make -s -C lib O="$EC_BUILD/lib" all &&
 	on "build: tool" logged make -s -C tool O="$EC_BUILD/tool" &&
 	on "build: application" logged make -s -C tests/apps O="$EC_BUILD/apps" \
-		LIB="$EC_BUILD/lib" "$EC_BUILD/apps/demo"
+		LIB="$EC_BUILD/lib" "$EC_BUILD/apps/demo" "$EC_BUILD/apps/parts"
 }
 locked "$kernel" build || {
 	grep -E 'error|Error' "$out/build.log" | head -n 20 >&2
@@ -89,9 +98,11 @@ locked "$kernel" build || {
 step "build: all of it is in $EC_BUILD"
 
 # --- run -------------------------------------------------------------------------
+job=(tests/demo/bench.sh "$out")
+[ ${#scenes[@]} = 0 ] || job=(tests/demo/scenes.sh "${scenes[@]}")
 if [ $host = 1 ]; then
 	step "run: on this machine, $(uname -r)"
-	tests/demo/bench.sh "$out"
+	"${job[@]}"
 	rc=$?
 else
 	accel=$(tests/vm/run.sh --kernel "$kernel" --probe) ||
@@ -104,7 +115,7 @@ else
 	tests/vm/run.sh --kernel "$kernel" --rw "$out" --dmesg "$out/kernel.log" \
 		--timeout $((120 + CYCLES * PERIOD_US / 200000)) ${VM_OPTIONS:-} -- \
 		env EC_BUILD="$EC_BUILD" CYCLES="$CYCLES" PERIOD_US="$PERIOD_US" \
-		DEMO_START="$DEMO_START" tests/demo/bench.sh "$out"
+		DEMO_START="$DEMO_START" "${job[@]}"
 	rc=$?
 	case $rc in
 	70)	die "the kernel reported a fault" "that is a bug of ours; its log is $out/kernel.log" ;;
@@ -113,6 +124,11 @@ else
 	esac
 fi
 [ $rc = 0 ] || die "see above" "the kernel's log: $([ $host = 1 ] && echo dmesg || echo "$out/kernel.log")"
+
+if [ ${#scenes[@]} != 0 ]; then
+	step "demo: passed"
+	exit
+fi
 
 # --- capture ---------------------------------------------------------------------
 tests/demo/capture.sh "$out/demo.pcap" "$CYCLES" || exit 1

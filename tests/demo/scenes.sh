@@ -1,0 +1,196 @@
+#!/bin/bash
+# SPDX-License-Identifier: GPL-2.0-only
+#
+# Demonstrations of one thing each, on a simulated bus: called by demo.sh, in the VM or on the host.
+#
+# usage: scenes.sh list             names and what they show
+#        scenes.sh known NAME...    are there such demonstrations?
+#        scenes.sh NAME...          one after the other
+#
+# EC_BUILD: where things were built; DEMO_START: when demo.sh began
+
+set -u
+here=$(cd "$(dirname "$0")" && pwd)
+top=$here/../..
+
+list() {
+	cat <<-'END'
+	run         save a bus as a file, run it, watch it, set an output: no program is written
+	compare     yesterday's file and today's machine: an exchanged slave is named
+	syncunits   a part of the machine fails, the other one keeps running
+	hotconnect  a part of the machine is unplugged and plugged in again while the other one runs
+	END
+}
+
+case ${1:-} in
+list)	echo "make demo DEMO=NAME:"
+	list
+	exit ;;
+known)	shift
+	for name; do list | grep -q "^$name " || exit 1; done
+	exit 0 ;;
+esac
+
+start=${DEMO_START:-$(date +%s)}
+tmp=$(mktemp -d)
+sim=/sys/kernel/debug/ec_sim/sim0
+step() { printf '\n[%3d s] %s\n' $(($(date +%s) - start)) "$*"; }
+ethercat() { "$EC_BUILD/tool/ethercat" "$@"; }
+unload() { rmmod ec_sim ec_master 2>/dev/null; }
+trap 'unload; rm -rf "$tmp"' EXIT
+trap 'exit 130' INT HUP TERM
+
+# show COMMAND...: as a user types it, with what it prints
+show() {
+	echo "\$ $*"
+	"$@"
+}
+
+# die WHAT WHAT-TO-DO
+die() {
+	echo "demo: FAILED: $1" >&2
+	echo "demo: $2" >&2
+	exit 1
+}
+
+wait_for() {	# wait_for SECONDS COMMAND...
+	local end=$((SECONDS + $1))
+
+	until "${@:2}"; do
+		[ $SECONDS -lt $end ] || return 1
+		sleep 0.1
+	done
+}
+
+ready() { [ "$(ethercat slaves 2>/dev/null | awk '$3 == "PREOP"' | wc -l)" = "$1" ]; }
+
+# bus SLAVES: the segment on stdin
+bus() {
+	unload
+	cat >"$tmp/segment"
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0 &&
+		insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$tmp/segment" ||
+		die "the modules cannot be loaded" "dmesg says why; with secure boot they must be signed"
+	wait_for 60 ready "$1" || die "not all of $1 slaves reached PREOP in 60 s" "see dmesg"
+}
+
+# line OUTPUTS-NAME: a coupler, outputs and inputs that are wired to them
+line() {
+	cat <<-END
+	segment seed=5
+	slave coupler EK1100
+	slave $1 EL2008
+	slave in EL1008
+	connect $1.1 -> in.1
+	connect $1.8 -> in.8
+	END
+}
+
+# is NAME VALUE: of the process data
+is() { ethercat data --names | grep -qE "^ *$1 .* $2\$"; }
+
+scene_run() {
+	local lamp=el2008.channel_1.output sensor=el1008.channel_1.input pid
+
+	step "run: a bus that nobody has configured; output 1 is wired to input 1"
+	line out | bus 3
+	step "save: what is there becomes a file"
+	show ethercat bus save "$tmp/bus.yaml" || die "bus save" "see above"
+	cat "$tmp/bus.yaml"
+	step "run: each slave goes to OP with the PDOs that it has; the kernel runs the cycle"
+	show ethercat run || die "ethercat run" "'ethercat why' names the cause"
+	step "watch: a line for each value, then for each change; meanwhile the output is set for 1 s"
+	echo "\$ ethercat watch $sensor &"
+	"$EC_BUILD/tool/ethercat" watch "$sensor" >"$tmp/watch" &
+	pid=$!
+	wait_for 20 grep -q "$sensor = 0" "$tmp/watch" || die "ethercat watch" "it shows no value"
+	show ethercat set --lease 1 "$lamp" 1 || die "ethercat set" "see above"
+	wait_for 20 grep -q "$sensor = 1" "$tmp/watch" || die "the input" "it does not follow the output"
+	wait_for 20 eval '[ "$(grep -c "= 0" "$tmp/watch")" = 2 ]' ||
+		die "the lease" "the output is not zero when it has ended"
+	kill $pid
+	wait $pid 2>/dev/null
+	cat "$tmp/watch"
+	step "top: the bus at a glance"
+	show ethercat top
+	step "check: the machine is as the file says"
+	show ethercat bus check "$tmp/bus.yaml" || die "bus check" "see above"
+	show ethercat stop || die "ethercat stop" "see above"
+}
+
+scene_compare() {
+	step "compare: the machine of yesterday is saved"
+	line lamps | bus 3
+	show ethercat bus save "$tmp/yesterday.yaml" || die "bus save" "see above"
+	step "overnight somebody exchanges the inputs for analog ones, and adds a slave"
+	line lamps | sed 's/^slave in EL1008/slave in EL3062/; /^connect/d' >"$tmp/night"
+	echo "slave more EL4002" >>"$tmp/night"
+	bus 4 <"$tmp/night"
+	step "check: each difference with its place in the file, its cause and what to do"
+	show ethercat bus check "$tmp/yesterday.yaml"
+	[ $? = 1 ] || die "bus check" "it should find differences and end with 1"
+	step "diff: the same from two files, without a machine"
+	show ethercat bus save "$tmp/today.yaml" || die "bus save" "see above"
+	show ethercat bus diff "$tmp/yesterday.yaml" "$tmp/today.yaml"
+	[ $? = 1 ] || die "bus diff" "it should find differences and end with 1"
+}
+
+# two lines, the second at port 2 of the first coupler
+two_lines() {
+	line left
+	cat <<-END
+	branch coupler 2
+	slave coupler2 EK1100 $1
+	slave right EL2008
+	slave rightin EL1008
+	connect right.1 -> rightin.1
+	END
+}
+
+# parts MODE FAULT REMEDY COMMAND: what the application sees, with a fault after 1 s, which COMMAND
+# shows, and its end after 3 s
+parts() {
+	local pid
+
+	echo "\$ parts $1 6"
+	"$EC_BUILD/apps/parts" "$1" 6 >"$tmp/parts" &
+	pid=$!
+	wait_for 60 grep -q running "$tmp/parts" || die "the application" "see above"
+	sleep 1
+	echo "\$ echo '$2' >$sim"
+	echo "$2" >$sim || die "the simulator" "is debugfs mounted?"
+	sleep 2
+	show ethercat "$4"
+	echo "\$ echo '$3' >$sim"
+	echo "$3" >$sim
+	wait $pid || die "the application ended with $?" "see above"
+	cat "$tmp/parts"
+}
+
+# The left part runs through, the right one has a gap and runs again.
+judge() {
+	grep -qE '^left +[#~-]{60}\|$' "$tmp/parts" || die "the left part" "it should run all the time"
+	grep -qE '^right +[#~-]+ {5,}[#~-]{3,}\|$' "$tmp/parts" ||
+		die "the right part" "it should have a gap and run again"
+}
+
+scene_syncunits() {
+	step "syncunits: two parts of a machine, each a sync unit of its own"
+	two_lines "" | bus 6
+	step "the coupler of the right part loses its power for 2 s; only this unit fails"
+	parts units 'off coupler2' 'on coupler2' units
+	judge
+}
+
+scene_hotconnect() {
+	step "hotconnect: the right part is a group that comes and goes"
+	two_lines alias=7 | bus 6
+	step "its cable is taken away for 2 s; the left part keeps all of its cycles"
+	parts groups 'unplug coupler.2' 'plug coupler.2 coupler2.0' slaves
+	judge
+}
+
+for name; do
+	"scene_$name"
+	unload
+done
