@@ -15,7 +15,7 @@ top=$here/../..
 
 list() {
 	cat <<-'END'
-	run         save a bus as a file, run it, watch it, set an output: no program is written
+	run         save a bus as a file, run, watch, set, record and plot: no program is written
 	compare     yesterday's file and today's machine: an exchanged slave is named
 	syncunits   a part of the machine fails, the other one keeps running
 	hotconnect  a part of the machine is unplugged and plugged in again while the other one runs
@@ -90,7 +90,7 @@ line() {
 is() { ethercat data --names | grep -qE "^ *$1 .* $2\$"; }
 
 scene_run() {
-	local lamp=el2008.channel_1.output sensor=el1008.channel_1.input pid
+	local lamp=el2008.channel_1.output sensor=el1008.channel_1.input pid recorder
 
 	step "run: a bus that nobody has configured; output 1 is wired to input 1"
 	line out | bus 3
@@ -99,11 +99,15 @@ scene_run() {
 	cat "$tmp/bus.yaml"
 	step "run: each slave goes to OP with the PDOs that it has; the kernel runs the cycle"
 	show ethercat run || die "ethercat run" "'ethercat why' names the cause"
-	step "watch: a line for each value, then for each change; meanwhile the output is set for 1 s"
+	step "record, watch: all values of each cycle into a file, and a line for each change here"
+	echo "\$ ethercat record $lamp $sensor -o record.csv --time 3 &"
+	"$EC_BUILD/tool/ethercat" record "$lamp" "$sensor" -o "$tmp/record.csv" --time 3 &
+	recorder=$!
 	echo "\$ ethercat watch $sensor &"
 	"$EC_BUILD/tool/ethercat" watch "$sensor" >"$tmp/watch" &
 	pid=$!
 	wait_for 20 grep -q "$sensor = 0" "$tmp/watch" || die "ethercat watch" "it shows no value"
+	step "set: an output is 1 for a second, its lease, and then zero"
 	show ethercat set --lease 1 "$lamp" 1 || die "ethercat set" "see above"
 	wait_for 20 grep -q "$sensor = 1" "$tmp/watch" || die "the input" "it does not follow the output"
 	wait_for 20 eval '[ "$(grep -c "= 0" "$tmp/watch")" = 2 ]' ||
@@ -111,6 +115,9 @@ scene_run() {
 	kill $pid
 	wait $pid 2>/dev/null
 	cat "$tmp/watch"
+	wait $recorder || die "ethercat record" "see above"
+	step "plot: what was recorded"
+	show ethercat plot "$tmp/record.csv" || die "ethercat plot" "see above"
 	step "top: the bus at a glance"
 	show ethercat top
 	step "check: the machine is as the file says"

@@ -58,11 +58,12 @@ doc() {
 		line=${line//PID/${3:-PID}}
 		echo "$ $line"
 		case $line in
-		tcpdump*|ethercat-sim*|cat\ trace_pipe|*dc_motion*\ \&)
+		tcpdump*|ethercat-sim*|ethercat\ watch*|cat\ trace_pipe|*dc_motion*\ \&)
 			line=${line%&}
 			eval "$line" >"$BATS_TEST_TMPDIR/out" 2>&1 3>&- & pid=$! ;;
 		ethercat\ slaves|tool/build/ethercat\ slaves) wait_for 60 eval "$line | grep -q PREOP"; eval "$line" ;;
-		ethercat\ why) eval "$line" || [ $? = 1 ] || return ;;	# 1: a fault
+		# 1: a fault, a difference
+		ethercat\ why|ethercat\ bus\ check*) eval "$line" || [ $? = 1 ] || return ;;
 		*) eval "${where:-} $line" || return ;;
 		esac
 	done < <("$BATS_TEST_DIRNAME/../build/commands.py" --block "$1" "$2")
@@ -121,6 +122,33 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 }
 
 # The blocks of the tutorials are run as they are written, one after the other.
+@test "machine-in-an-hour.rst: saved, run, recorded, and compared when a slave was exchanged" {
+	local f=Documentation/machine-in-an-hour.rst block
+
+	doc $f "printf 'slave c EK1100\\nslave o EL2008\\nslave i EL1008\\nconnect o.1 -> i.1\\n' >/tmp/segment"
+	has_slaves 3
+	for block in 'ethercat slaves --wait' 'ethercat bus save machine.yaml' \
+		'ethercat run --dry-run' "ethercat watch 'el1008.*'" \
+		'(sleep 1; ethercat set --lease 1 el2008.channel_1.output 1) &' \
+		'ethercat plot lamp.csv' 'ethercat top' 'ethercat why'; do
+		doc $f "$block" >"$BATS_TEST_TMPDIR/hour" || { cat "$BATS_TEST_TMPDIR/hour"; return 1; }
+	done
+	cat "$BATS_TEST_TMPDIR/hour"
+	grep -q '^no difference, 3 slave(s)' "$BATS_TEST_TMPDIR/hour"
+	grep -q '^<svg' lamp.svg
+	grep -q '</html>' machine.html
+	# both values of the recording, and what the watch has seen of it
+	[ "$(awk -F, '$6 == 1 && $7 == 1' lamp.csv | wc -l)" -gt 500 ]
+	grep -q 'el1008.channel_1.input = 1$' "$BATS_TEST_TMPDIR/out"
+	kill "$pid"
+	wait "$pid" || true
+	pid=
+	doc $f 'ethercat stop' >"$BATS_TEST_TMPDIR/tomorrow"
+	cat "$BATS_TEST_TMPDIR/tomorrow"
+	grep -q "slave 'el1008' exchanged: expected EL1008,.* found EL3062" "$BATS_TEST_TMPDIR/tomorrow"
+	doc $f 'rmmod ec_sim ec_master'
+}
+
 @test "first-ten-minutes.rst: from the scan to a broken cable" {
 	local f=Documentation/first-ten-minutes.rst
 
