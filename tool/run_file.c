@@ -167,7 +167,7 @@ static int check_units(const struct job *j)
 
 static int prepare(struct job *j)
 {
-	const struct bus_wish wish = { .pdos = true, .serial = true };
+	struct bus_wish wish = { .file = j->bus };
 	struct ecb_error e;
 
 	if (read_file(j))
