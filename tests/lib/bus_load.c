@@ -367,6 +367,8 @@ static const struct {
 	{ PART ", pdos: [{index: 0x1700, sm: 2}]}\n", -EINVAL, "has no entries here" },
 	{ HEAD COUPLER "  - {vendor: 2, product: 0x41, group: g, pdos: [{index: 0x2000, sm: 1, entries: [{bits: 8}]}]}\n"
 	  "  groups: [{name: g, alias: 9}]\n", -EINVAL, "SM1 is not known as one of inputs" },
+	{ HEAD "  - {vendor: 2, product: 0x40, group: g, identification: 3}\n  groups: [{name: g, alias: 9}]\n",
+	  -EINVAL, "is known by the group; remove its alias and identification" },
 	{ "ethercat: 1\nmasters:\n- main_device: eth0\n", -EINVAL, "does not choose the devices" },
 	{ "ethercat: 1\nmasters:\n- sync_units: [{name: u}]\n", -EINVAL, "t:3: sync unit 'u' has no slaves" },
 	{ "ethercat: 1\nmasters:\n- groups: [{name: g, alias: 1}]\n", -EINVAL, "'g' has no slaves" },

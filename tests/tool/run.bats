@@ -302,7 +302,7 @@ output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
 	golden data_names data --names
 }
 
-@test "run FILE --dry-run names each difference and what is omitted" {
+@test "run FILE --dry-run names each difference and each omitted slave" {
 	local f=$BATS_TEST_TMPDIR/bus.yaml
 
 	ethercat bus save --whole "$f"

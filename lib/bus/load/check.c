@@ -41,9 +41,12 @@ static int check_startup(struct load *l, const struct ecb_slave *s)
 
 static int check_slave(struct load *l, const struct plan *p)
 {
-	if (p->s->group && p->s->alias && p->s->alias != l->want->groups[p->group]->alias)
+	const struct ecb_group *g = p->group >= 0 ? l->want->groups[p->group] : NULL;
+
+	if (g && ((p->s->alias && p->s->alias != g->alias) ||
+		  (p->s->identification && p->s->identification != g->identification)))
 		return BAD(l, p->s->line,
-			   "slave '%s': a member of a hot connect group is known by the group; remove its alias",
+			   "slave '%s': a member of a hot connect group is known by the group; remove its alias and identification",
 			   p->s->name);
 	for (unsigned int sm = 0; sm < EC_MAX_SYNC_MANAGERS && !p->omitted; sm++)
 		for (size_t i = 0; i < p->n_pdos; i++)
