@@ -379,7 +379,8 @@ static void left_names_stay(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, text, &size), -EPERM);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
 	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), -ENOENT);
-	a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+	kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
 	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), 0);
 	KUNIT_EXPECT_EQ(test, size, 0u);
 	size = 0;
