@@ -131,7 +131,7 @@ bool ec_recorder_begin(struct ec_cycle *c, struct ec_recorder *r)
  * @cycles: of the master
  * @r: its ring; kvfree_rcu() may follow
  *
- * Context: Process, lock of the readers held.
+ * Context: Process, once for a ring.
  */
 void ec_recorder_leave(struct ec_cycles *cycles, struct ec_recorder *r)
 {
@@ -140,16 +140,17 @@ void ec_recorder_leave(struct ec_cycles *cycles, struct ec_recorder *r)
 
 /**
  * ec_recorder_end() - the session ends; readers get what is left
- * @cycles: of the master; no cycle runs
+ * @c: cycle of the session; it does not run any more
  *
  * Context: Process, lock of the configuration held.
  */
-void ec_recorder_end(struct ec_cycles *cycles)
+void ec_recorder_end(struct ec_cycle *c)
 {
 	struct ec_recorder *r;
 
+	lockdep_assert_held(c->wanted->lock);
 	rcu_read_lock();
-	r = xchg((__force struct ec_recorder **)&cycles->recorder, NULL);
+	r = xchg((__force struct ec_recorder **)&c->cycles->recorder, NULL);
 	/* pairs with ec_recorder_get(): all records before this */
 	if (r)
 		smp_store_release(&r->ended, true);

@@ -104,7 +104,7 @@ void ec_recorder_form(const struct ec_cycle *c, struct ec_recorder_form *f);
 struct ec_recorder *ec_recorder_new(const struct ec_recorder_form *f, u64 next);
 bool ec_recorder_begin(struct ec_cycle *c, struct ec_recorder *r);
 void ec_recorder_leave(struct ec_cycles *cycles, struct ec_recorder *r);
-void ec_recorder_end(struct ec_cycles *cycles);
+void ec_recorder_end(struct ec_cycle *c);
 void ec_recorder_put(const struct ec_cycle *c, u64 sent, u64 now);
 bool ec_recorder_get(const struct ec_recorder *r, u64 *at, const struct ec_recorder_run *runs,
 		     u32 n, struct ec_record *to);

@@ -278,7 +278,7 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_detached_end(s);
 	ec_cycle_set_active(ss->cycles, NULL);
 	ec_cycle_thread_stop(&s->cycle);
-	ec_recorder_end(ss->cycles);
+	ec_recorder_end(&s->cycle);
 	ec_session_note_counts(s, false, true);
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_cycle_stats_end(&s->cycle);
