@@ -38,13 +38,10 @@ static int each(const struct tool *t, struct dev *d)
 
 static void written(FILE *f)
 {
-	const time_t now = time(NULL);
-	char when[32] = "?";
-	struct tm tm;
+	char when[HTML_TIME];
 
-	if (gmtime_r(&now, &tm))
-		strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", &tm);
-	html_text(f, "p", "note", "Written by 'ethercat report' at %s UTC.", when);
+	html_text(f, "p", "note", "Written by 'ethercat report' at %s UTC.",
+		  html_time((u64)time(NULL) * 1000000000, when));
 }
 
 static int run(struct tool *t, int argc, char **argv)

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <stdarg.h>
 #include <string.h>
+#include <time.h>
 
 #include "escape.h"
 #include "report.h"
@@ -24,6 +25,18 @@ static const char head[] =
 	"svg .preop { fill: #c4d8f2; } svg .error { fill: #f2b8b8; } svg .line { stroke: #555; fill: none; }\n"
 	"svg .bad { fill: #a00; } svg .bar { fill: #5b84b1; }\n"
 	"</style>\n</head>\n<body>\n";
+
+const char *html_time(u64 ns, char *buf)
+{
+	const time_t s = (time_t)(ns / 1000000000);
+	struct tm tm;
+	size_t n = 0;
+
+	if (gmtime_r(&s, &tm))
+		n = strftime(buf, HTML_TIME, "%Y-%m-%d %H:%M:%S", &tm);
+	snprintf(buf + n, HTML_TIME - n, n ? ".%06u" : "?", (unsigned int)(ns / 1000 % 1000000));
+	return buf;
+}
 
 void html_begin(FILE *f)
 {

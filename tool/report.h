@@ -32,6 +32,9 @@ void html_table(FILE *f, const char *columns);
 void html_row(FILE *f);
 void html_cell(FILE *f, const char *fmt, ...) __attribute__((format(printf, 2, 3)));
 void html_table_end(FILE *f);
+#define HTML_TIME	40
+/* ns since 1970 as UTC; returns @buf of HTML_TIME bytes */
+const char *html_time(u64 ns, char *buf);
 
 /* each returns 0, or 1 after printing an error */
 int report_bus(const struct report *r);

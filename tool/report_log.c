@@ -1,20 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What has happened on the bus, the newest last. */
 #include <errno.h>
-#include <time.h>
 
 #include "report.h"
 
 static void event(const struct report *r, const struct ect_event *e)
 {
-	const time_t s = (time_t)(e->wall_ns / 1000000000);
-	char when[32] = "?";
-	struct tm tm;
+	char when[HTML_TIME];
 
-	if (gmtime_r(&s, &tm))
-		strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", &tm);
 	html_row(r->f);
-	html_cell(r->f, "%s.%06u", when, (unsigned int)(e->wall_ns / 1000 % 1000000));
+	html_cell(r->f, "%s", html_time(e->wall_ns, when));
 	html_cell(r->f, "%s", e->text);
 }
 

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Slaves, clocks, error counters and emergencies. */
-#include <time.h>
-
 #include "report.h"
 #include "slave_info.h"
 
@@ -101,15 +99,11 @@ static void error_counters(const struct report *r)
 static void emergency(const struct report *r, unsigned int position,
 		      const struct ect_emergency *e)
 {
-	const time_t s = (time_t)(e->time_ns / 1000000000);
-	char when[32] = "?";
-	struct tm tm;
+	char when[HTML_TIME];
 
-	if (gmtime_r(&s, &tm))
-		strftime(when, sizeof(when), "%Y-%m-%d %H:%M:%S", &tm);
 	html_row(r->f);
 	html_cell(r->f, "%u", position);
-	html_cell(r->f, "%s UTC", when);
+	html_cell(r->f, "%s", html_time(e->time_ns, when));
 	html_cell(r->f, "0x%04x", e->code);
 	html_cell(r->f, "0x%02x", e->error_register);
 	html_cell(r->f, "%s", e->text);
@@ -118,7 +112,7 @@ static void emergency(const struct report *r, unsigned int position,
 static void emergencies(const struct report *r)
 {
 	html_heading(r->f, "CoE emergencies");
-	html_table(r->f, "Position|Time|Code|Error register|Text");
+	html_table(r->f, "Position|Time (UTC)|Code|Error register|Text");
 	for (size_t i = 0; i < r->facts.slaves.n; i++) {
 		const struct ect_slave *s = &r->facts.slaves.v[i];
 		const struct ect_emergency *e;

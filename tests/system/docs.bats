@@ -125,7 +125,8 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 @test "machine-in-an-hour.rst: saved, run, recorded, and compared when a slave was exchanged" {
 	local f=Documentation/machine-in-an-hour.rst block
 
-	doc $f "printf 'slave c EK1100\\nslave o EL2008\\nslave i EL1008\\nconnect o.1 -> i.1\\n' >/tmp/segment"
+	block='slave c EK1100\nslave o EL2008\nslave i EL1008\nconnect o.1 -> i.1\n'
+	doc $f "printf '$block' >/tmp/segment"
 	has_slaves 3
 	for block in 'ethercat slaves --wait' 'ethercat bus save machine.yaml' \
 		'ethercat run --dry-run' "ethercat watch 'el1008.*'" \

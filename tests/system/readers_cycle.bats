@@ -151,7 +151,8 @@ glance() {
 		grep -q ' = ' "$BATS_TEST_TMPDIR/watch$i"
 	done
 	alone=$(figure alone sent_ns 5) beside=$(figure beside sent_ns 5)
-	echo "# 99.9 % of the send deviations: $alone ns, beside ten users of watch and top $beside ns, ratio $((beside * 100 / alone)) %" >&3
+	i="$alone ns, beside ten users of watch and top $beside ns"
+	echo "# 99.9 % of the send deviations: $i, ratio $((beside * 100 / alone)) %" >&3
 	# without PREEMPT_RT the kernel first ends the system call of a user
 	[ -e /sys/kernel/realtime ] || percent=200
 	[ $((beside * 100)) -le $((alone * percent)) ]
