@@ -94,3 +94,28 @@ refused() {
 	fi
 	rm -r "$d"
 }
+
+# stub LINE...: 'ethercat', which counts its calls
+stub() {
+	mkdir -p "$BATS_TEST_TMPDIR/bin"
+	printf '%s\n' '#!/bin/sh' "echo \"\$@\" >>$BATS_TEST_TMPDIR/calls" "$@" \
+		>"$BATS_TEST_TMPDIR/bin/ethercat"
+	printf '%s\n' '#!/bin/sh' >"$BATS_TEST_TMPDIR/bin/sleep"
+	chmod +x "$BATS_TEST_TMPDIR"/bin/*
+	rm -f "$BATS_TEST_TMPDIR/calls"
+	export PATH=$BATS_TEST_TMPDIR/bin:$PATH
+}
+
+@test "the start waits for a bus that is as its file says, and names what is missing" {
+	stub "[ \$(wc -l <$BATS_TEST_TMPDIR/calls) -ge 4 ]"
+	run "$units/await.sh" /etc/ethercat/line.yaml
+	[ "$status" = 0 ]
+	[ -z "$output" ]
+	[ "$(sort "$BATS_TEST_TMPDIR/calls" | uniq -c | xargs)" = \
+		"4 run --dry-run /etc/ethercat/line.yaml" ]
+	stub "echo slave axis1 missing >&2" "exit 1"
+	run "$units/await.sh" /etc/ethercat/line.yaml 2
+	[ "$status" = 1 ]
+	[ "$output" = "slave axis1 missing" ]
+	[ "$(wc -l <"$BATS_TEST_TMPDIR/calls")" = 3 ]
+}
