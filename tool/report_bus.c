@@ -44,17 +44,16 @@ static const char *class_of(const struct ect_slave *s)
 static void box(FILE *f, unsigned int x, unsigned int y, const char *class, const char *text)
 {
 	char name[NAME_LETTERS + 1];
-	size_t n = strlen(text);
+	size_t n = strlen(text), cut = n < NAME_LETTERS ? n : NAME_LETTERS;
 
-	snprintf(name, sizeof(name), "%s", text);
+	/* half of a character at the end is that of no name */
+	while (n > NAME_LETTERS && cut && ((unsigned char)text[cut] & 0xc0) == 0x80)
+		cut--;
+	snprintf(name, sizeof(name), "%.*s", (int)cut, text);
 	fprintf(f, "<g><title>");
 	escape_html(f, text);
 	fprintf(f, "</title><rect class=\"box %s\" x=\"%u\" y=\"%u\" width=\"%u\" height=\"%u\" rx=\"3\"/>"
 		"<text x=\"%u\" y=\"%u\">", class, x, y, WIDTH, BOX, x + 6, y + 16);
-	/* half of a character at the end is that of no name */
-	if (n >= sizeof(name))
-		while (*name && ((unsigned char)name[strlen(name) - 1] & 0xc0) == 0x80)
-			name[strlen(name) - 1] = 0;
 	escape_html(f, name);
 	fprintf(f, "%s</text></g>\n", n >= sizeof(name) ? "..." : "");
 }

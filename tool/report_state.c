@@ -47,7 +47,7 @@ static void links(const struct report *r)
 	const struct ect_device *d;
 
 	html_heading(r->f, "Links");
-	html_table(r->f, "Link|Interface|State|Frames sent|Received|Lost|Late|Unmatched|Foreign|Send errors|Lost in 60 s");
+	html_table(r->f, "Link|Interface|State|Frames sent|Received|Lost|Late|Unmatched|Foreign|Send errors|Lost per second, 60 s");
 	for (size_t i = 0; (d = facts_device(&r->facts, i)); i++) {
 		html_row(r->f);
 		html_cell(r->f, "%s", i ? "backup" : "main");
@@ -60,7 +60,7 @@ static void links(const struct report *r)
 		html_cell(r->f, "%llu", (unsigned long long)d->unmatched);
 		html_cell(r->f, "%llu", (unsigned long long)d->foreign);
 		html_cell(r->f, "%llu", (unsigned long long)d->tx_errors);
-		html_cell(r->f, "%u/s", d->loss_rate[ECT_RATES - 1]);
+		html_cell(r->f, "%u", d->loss_rate[ECT_RATES - 1]);
 	}
 	html_table_end(r->f);
 }

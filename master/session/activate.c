@@ -278,13 +278,14 @@ int ec_session_deactivate(struct ec_session *s)
 	ec_detached_end(s);
 	ec_cycle_set_active(ss->cycles, NULL);
 	ec_cycle_thread_stop(&s->cycle);
-	ec_recorder_end(&s->cycle);
 	ec_session_note_counts(s, false, true);
 	ec_access_change(ss->links, EC_ACCESS_DIRECT);
 	ec_cycle_stats_end(&s->cycle);
 	ec_requests_end(s);
 	run_commands_down(s);
 	s->wanted.active = false;
+	/* a reader may have begun while commands for steps down ran, but none does from now on */
+	ec_recorder_end(&s->cycle);
 	ec_ports_guard(ss->bus, false);
 	s->timeout_log.open = false;
 	ec_session_clear(s);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Commands for steps down when the session of the application ends. */
+#include <linux/kthread.h>
 #include "step_command.h"
+#include "master/cycle/recorder.h"
 
 /* What of the registers of the slave is written when the application ends its session. */
 static u32 ended(struct cyc *c, bool release)
@@ -111,6 +113,45 @@ static void command_down_cable(struct kunit *test)
 	ends_within(test, EC_SIM_FAULT_CUT, EC_SIM_MASTER0, 0, false);
 }
 
+/* A reader of records that begins while a session waits for such a command. */
+static struct ec_file reader;
+static struct completion began;
+
+static int begin_reader(void *arg)
+{
+	static u8 mask[2];
+	struct ec_ioc_recorder i = { .data = (uintptr_t)mask, .size = sizeof(mask) };
+	struct bus *b = arg;
+
+	mask[0] = 1;
+	ec_file_init(&reader, b->m, false);
+	msleep(500);
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&reader, EC_IOC_RECORDER, &i), 0);
+	complete(&began);
+	return 0;
+}
+
+/* It ends with that session: the next one does not record in the form of that before. */
+static void command_down_recorder_ends(struct kunit *test)
+{
+	struct cyc *c = replay_configure(test);
+	struct bus *b = c->b;
+	u64 at;
+
+	must_add(c, (struct command){ STEP(OP, PREOP), EC_REQUEST_SDO, TYPES, 8, CHECK, 4, 60000,
+				      0, 7, ~0u });
+	replay_into_op(c);
+	init_completion(&began);
+	kthread_run(begin_reader, b, "reader");
+	cyc_release(c);
+	wait_for_completion(&began);
+	KUNIT_EXPECT_NULL(test, rcu_access_pointer(bus_cycles(b)->recorder));
+	KUNIT_ASSERT_NOT_NULL(test, reader.reader);
+	at = reader.reader->at;
+	KUNIT_EXPECT_EQ(test, reader.reader->kind->copy(reader.reader, &at, NULL), -ENODATA);
+	ec_reader_end(&reader);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(command_down_session_ends),
 	KUNIT_CASE(command_down_fails),
@@ -118,6 +159,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(command_down_power),
 	KUNIT_CASE(command_down_mailbox),
 	KUNIT_CASE(command_down_cable),
+	KUNIT_CASE(command_down_recorder_ends),
 	{}
 };
 
