@@ -291,7 +291,7 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	ethercat bus save -f "$f"
 	sed -i 's/^  - slaves:/  - sync_units: [{name: u, policy: zero}]\n    slaves:/
 		s/^\( *\)- name: el1008/&\n\1  sync_unit: u/' "$f"
-	no ":3: sync unit 'u' has a policy, a lease or authority, which need an application"
+	no ":4: sync unit 'u' has a policy, a lease or authority, which need an application"
 	f=/dev/null
 	no "is not a regular file"
 	mkfifo "$BATS_TEST_TMPDIR/pipe"
