@@ -54,8 +54,8 @@ static int check_owner(const char *path, const struct stat *st)
 		return fail("%s: others may write it (mode %04o), so it is not used; 'chmod go-w %s'",
 			    path, st->st_mode & 07777, path);
 	if (st->st_uid && st->st_uid != geteuid())
-		return fail("%s belongs to user %u, so it is not used; copy it, or 'chown' it", path,
-			    st->st_uid);
+		return fail("%s belongs to user %u, so it is not used; copy it, or 'chown' it",
+			    path, st->st_uid);
 	return 0;
 }
 
@@ -151,7 +151,7 @@ static int compare(struct job *j)
 		    j->d->master, j->n, j->path);
 }
 
-/* no application renews a lease or gives authority; a policy would replace outputs that are set */
+/* no application renews a lease or gives authority; a policy would replace set outputs */
 static int check_units(const struct job *j)
 {
 	for (size_t i = 0; i < j->want->sync_unit_count; i++) {
@@ -245,7 +245,8 @@ static int start(const struct job *j, ec_master_t *m)
 		return fail("%s", e.text);
 	err = ecrt_master_loaded(m, &l);
 	if (!err && !l.slaves)
-		return fail("Master%u: none of the slaves of %s is connected", j->d->master, j->path);
+		return fail("Master%u: none of the slaves of %s is connected", j->d->master,
+			    j->path);
 	if (!err)
 		err = set_cycle(j, m);
 	if (!err)
