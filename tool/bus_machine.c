@@ -177,7 +177,7 @@ static bool asks_slaves(const struct bus_wish *wish)
 	return wish->whole;
 }
 
-int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus **bus)
+static int make(const struct tool *t, struct dev *d, struct bus_wish *wish, struct ecb_bus **bus)
 {
 	int ret;
 
@@ -185,11 +185,21 @@ int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus *
 	into.bus = ecb_bus_new();
 	if (!into.bus)
 		return no_memory();
-	ret = dev_each(t, asks_slaves(wish), each);
-	if (ret) {
+	ret = d ? each(t, d) : dev_each(t, asks_slaves(wish), each);
+	if (ret)
 		ecb_bus_free(into.bus);
-		return ret;
-	}
-	*bus = into.bus;
-	return 0;
+	else
+		*bus = into.bus;
+	return ret;
+}
+
+int bus_of_master(const struct tool *t, struct dev *d, struct bus_wish *wish,
+		  struct ecb_bus **bus)
+{
+	return make(t, d, wish, bus);
+}
+
+int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus **bus)
+{
+	return make(t, NULL, wish, bus);
 }

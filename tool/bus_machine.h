@@ -21,6 +21,14 @@ struct bus_wish {
 /* 0 with @bus, to be freed with ecb_bus_free(), or 1 after printing the error */
 int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus **bus);
 
+/* likewise of one master that is open */
+int bus_of_master(const struct tool *t, struct dev *d, struct bus_wish *wish,
+		  struct ecb_bus **bus);
+
+struct current;
+/* bus_values.c: names, types, units and scaling of @path; 0, or 1 after printing the error */
+int bus_values(const struct tool *t, struct dev *d, const char *path, struct current *l);
+
 /* cmd_bus.c: names of the two sides of a comparison, and whether they have several masters */
 struct bus_names {
 	const char *expected;

@@ -73,7 +73,7 @@ static int names_of(const struct tool *t, struct dev *d)
 {
 	const struct ect_value *v;
 	struct current l;
-	int ret = current_read(d, &l), width = 0;
+	int ret = current_read_as(t, d, t->file, &l), width = 0;
 
 	for (size_t i = 0; !ret && (v = current_at(&l, i)); i++)
 		width = max(width, (int)strlen(v->name));
@@ -96,6 +96,8 @@ static int run(struct tool *t, int argc, char **argv)
 	int ret;
 
 	(void)argc, (void)argv;
+	if (t->file && !t->names)
+		return usage_error("--file needs --names");
 	if (t->names) {
 		out_array("masters");
 		ret = dev_each(t, false, names_of);
@@ -114,7 +116,7 @@ const struct cmd cmd_data = {
 	.name = "data",
 	.run = run,
 	.args = "",
-	.opts = "mdg",
+	.opts = "mdgi",
 	.summary = "Write the process data of domains to stdout",
 	.help = "Binary, all domains in a row; refused if stdout is a terminal:\n"
 		"ethercat data -d0 | hexdump -C\n"
@@ -122,7 +124,8 @@ const struct cmd cmd_data = {
 		"With --names one line for each value instead: name, direction, type, value. A name is\n"
 		"SLAVE.ENTRY, of the order number of the slave and of its PDO entry, or SLAVE.PDO.ENTRY\n"
 		"where a slave has two of the same name. Types are those of the EEPROM.\n"
-		"An application that was configured by a bus file names, scales and types its values.\n",
+		"An application that was configured by a bus file names, scales and types its values; so\n"
+		"does the bus file of --file. No slave is asked.\n",
 	.json = "masters[]: master, domains[]: index, size_bytes, data_hex; with --names values[]\n"
 		"instead: name, direction (input, output), type, value (text), unit, domain, bit (in the\n"
 		"domain), bits, index, subindex",

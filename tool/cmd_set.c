@@ -53,7 +53,7 @@ static int run(struct tool *t, int argc, char **argv)
 		return usage_error("--hold and --lease exclude each other");
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = current_read(&d, &l) || set(t, &d, &l, argv);
+	ret = current_read_as(t, &d, t->file, &l) || set(t, &d, &l, argv);
 	current_free(&l);
 	dev_close(&d);
 	return ret;
@@ -63,7 +63,7 @@ const struct cmd cmd_set = {
 	.name = "set",
 	.run = run,
 	.args = "<NAME> <VALUE>",
-	.opts = "mHl",
+	.opts = "mHli",
 	.summary = "Set an output of a bus that 'ethercat run' runs",
 	.help = "The value becomes zero when its lease ends: after 5 s, or the time of --lease. The\n"
 		"kernel ends it, whether this command, its shell or its user are still there. Each\n"
@@ -71,7 +71,7 @@ const struct cmd cmd_set = {
 		"is set again or the bus is stopped; a slave that was disconnected and returns gets it\n"
 		"again. The outputs of an application are refused: only the application sets them.\n"
 		"VALUE: a number of the type of the output; on and off as well. In its unit if a bus\n"
-		"file scales it.\n",
+		"file scales it: that of the session, or of --file.\n",
 	.json = "master, name, bits (the raw value as a number without sign), unit, lease_ms (0: it stays)",
 	.flags = CMD_ONE_MASTER | CMD_NEGATIVE,
 	.min_args = 2,

@@ -61,10 +61,10 @@ static int check_names(const struct dev *d, const struct current *l, int argc, c
 	return 0;
 }
 
-static int begin(struct dev *d, struct watch *w, int argc, char **argv)
+static int begin(const struct tool *t, struct dev *d, struct watch *w, int argc, char **argv)
 {
 	*w = (struct watch){ 0 };
-	if (current_read(d, &w->l) || check_names(d, &w->l, argc, argv))
+	if (current_read_as(t, d, t->file, &w->l) || check_names(d, &w->l, argc, argv))
 		return 1;
 	w->shown = calloc(w->l.n + 1, sizeof(*w->shown));
 	w->before = calloc(w->l.n + 1, sizeof(*w->before));
@@ -166,7 +166,7 @@ static int run(struct tool *t, int argc, char **argv)
 
 	if (dev_open_single(&d, t, false))
 		return 1;
-	ret = begin(&d, &w, argc, argv) || watch(t, &d, &w);
+	ret = begin(t, &d, &w, argc, argv) || watch(t, &d, &w);
 	watch_free(&w);
 	dev_close(&d);
 	return ret;
@@ -176,12 +176,13 @@ const struct cmd cmd_watch = {
 	.name = "watch",
 	.run = run,
 	.args = "[<NAME>...]",
-	.opts = "mW",
+	.opts = "mWi",
 	.summary = "Show values of the running session while they change",
 	.help = "Names are those of 'ethercat data --names'; * and ? stand for any characters, quote\n"
 		"them for the shell. Without a name all values are shown. On a terminal it is a table,\n"
 		"in which a star marks what has changed within a second; otherwise there is a line for\n"
-		"each value, then for each change: seconds, name, value. Values are read ten\n"
+		"each value, then for each change: seconds, name, value. With --file names, types,\n"
+		"units and scaling are those of a bus file; no slave is asked. Values are read ten\n"
 		"times a second, or in the time of --watch: what is shorter is not seen. It only reads,\n"
 		"also the session of an application, and sends no frame.\n",
 	.json = "each line is an object: master, time_s, name, value (text), unit",

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "../lib/tools/text.h"
+#include "bus_machine.h"
 #include "value.h"
 
 static int read_values(struct dev *d, struct current *l)
@@ -47,6 +48,53 @@ int current_read(struct dev *d, struct current *l)
 	return read_values(d, l) || current_rename(d, l) || current_refresh(d, l);
 }
 
+int current_read_as(const struct tool *t, struct dev *d, const char *file, struct current *l)
+{
+	int ret = current_read(d, l);
+
+	if (ret || !file)
+		return ret;
+#ifdef EC_TOOL_NO_BUS
+	(void)t;
+	return fail("--file: this 'ethercat' was built without libyaml");
+#else
+	return bus_values(t, d, file, l);
+#endif
+}
+
+static bool same_place(const struct ect_value *a, const struct ect_value *b)
+{
+	return a->config == b->config && a->domain == b->domain && a->bit == b->bit &&
+		a->bits == b->bits && a->index == b->index && a->subindex == b->subindex &&
+		a->dir == b->dir;
+}
+
+/* A session of the same size has begun since the last poll if the sends count from 0 again. */
+static int check_session(struct dev *d, struct current *l)
+{
+	struct ect_cycle c = { .struct_size = sizeof(c) };
+	struct ect_list *now;
+	const struct ect_value *v;
+	int err = ect_cycle_read(d->h, &c);
+	bool fewer = !err && c.late_count < l->sends;
+
+	if (!err)
+		l->sends = c.late_count;
+	if (!fewer)
+		return 0;
+	/* the statistics may have been cleared as well */
+	err = ect_values_read(d->h, &now);
+	if (err)
+		return err;
+	if (ect_list_count(now) != l->n)
+		err = -ESTALE;
+	for (size_t i = 0; !err && (v = ect_list_get(now, i)); i++)
+		if (!same_place(v, current_at(l, i)))
+			err = -ESTALE;
+	ect_list_free(now);
+	return err;
+}
+
 int current_poll(struct dev *d, struct current *l)
 {
 	for (unsigned int i = 0; i < l->domains; i++) {
@@ -57,7 +105,7 @@ int current_poll(struct dev *d, struct current *l)
 		if ((size_t)n < l->sizes[i])
 			return -ESTALE;	/* another session */
 	}
-	return 0;
+	return check_session(d, l);
 }
 
 int current_refresh(struct dev *d, struct current *l)

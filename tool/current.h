@@ -23,6 +23,7 @@ struct current_unit {
  * @images: data of each domain
  * @sizes: of them in bytes
  * @domains: how many
+ * @sends: of the session at the last poll
  */
 struct current {
 	struct ect_list *list;
@@ -31,10 +32,16 @@ struct current {
 	u8 **images;
 	size_t *sizes;
 	unsigned int domains;
+	u64 sends;
 };
 
 /* both print what is wrong, and return 0 or 1 */
 int current_read(struct dev *d, struct current *l);
+/* with names, types, units and scaling of a bus file; @file NULL: as current_read() */
+int current_read_as(const struct tool *t, struct dev *d, const char *file, struct current *l);
+struct ecb_slave;
+/* value @i as @s of a bus file calls it; each entry of @s is used once */
+int current_rename_value(struct current *l, size_t i, const struct ecb_slave *s);
 int current_refresh(struct dev *d, struct current *l);
 /* as current_refresh(), without a message: 0 or negative */
 int current_poll(struct dev *d, struct current *l);

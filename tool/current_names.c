@@ -92,7 +92,19 @@ static const struct ecb_slave *slave_of(struct dev *d, const struct ecb_master *
 	return s->vendor == c.vendor_id && s->product == c.product_code ? s : NULL;
 }
 
-static int rename_value(struct current *l, size_t i, const struct ecb_slave *s)
+static int begin_units(struct current *l)
+{
+	if (l->units)
+		return 0;
+	l->units = calloc(l->n + 1, sizeof(*l->units));
+	if (!l->units)
+		return fail("out of memory");
+	for (size_t i = 0; i < l->n; i++)
+		l->units[i].scale = 1;
+	return 0;
+}
+
+int current_rename_value(struct current *l, size_t i, const struct ecb_slave *s)
 {
 	struct ect_value *v = (struct ect_value *)current_at(l, i);
 	struct ecb_entry *e = take_entry(s, v);
@@ -100,11 +112,14 @@ static int rename_value(struct current *l, size_t i, const struct ecb_slave *s)
 
 	if (!e || !e->name || !ecb_name_value(name, s->name, e->name))
 		return 0;
+	if (begin_units(l))
+		return 1;
 	snprintf(v->name, sizeof(v->name), "%s", name);
 	if (e->type)
 		v->type = codes[e->type];
 	l->units[i].scale = e->scale;
 	l->units[i].offset = e->offset;
+	free(l->units[i].text);
 	l->units[i].text = e->unit ? strdup(e->unit) : NULL;
 	return e->unit && !l->units[i].text ? fail("out of memory") : 0;
 }
@@ -116,17 +131,14 @@ static int rename_all(struct dev *d, struct current *l, const struct ecb_master 
 	u32 config = ECT_NONE32;
 	int ret = 0;
 
-	l->units = calloc(l->n + 1, sizeof(*l->units));
-	if (!l->units)
-		return fail("out of memory");
-	for (size_t i = 0; i < l->n; i++)
-		l->units[i].scale = 1;
+	if (begin_units(l))
+		return 1;
 	for (size_t i = 0; (v = current_at(l, i)) && !ret; i++) {
 		if (v->config != config)
 			s = slave_of(d, m, v->config);
 		config = v->config;
 		if (s)
-			ret = rename_value(l, i, s);
+			ret = current_rename_value(l, i, s);
 	}
 	return ret;
 }

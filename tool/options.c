@@ -42,7 +42,7 @@ const struct opt opts[] = {
 	{ 'H', "hold", NULL, "until it is set again" },
 	{ 'l', "lease", "SECONDS", "time until the output becomes zero, 0.01 to 86400" },
 	{ 'g', "names", NULL, "values by name instead of bytes" },
-	{ 'i', "file", "FILE", "EEPROM image of a file instead of a slave; - for stdin" },
+	{ 'i', "file", "FILE", "EEPROM image instead of a slave, or bus file with names of values; - for stdin" },
 	{ 'x', "decode", NULL, "what the bytes mean" },
 	{ 'Z', "whole", NULL, "all that is known" },
 	{ 'k', "http", NULL, "reply to a request of HTTP on stdin" },

@@ -9,7 +9,6 @@
 #include <string.h>
 #include <sys/ioctl.h>
 #include <termios.h>
-#include <time.h>
 #include <unistd.h>
 
 #define LINE_MAX_BYTES	512
@@ -43,13 +42,11 @@ bool screen_ended(void)
 
 void screen_wait(double seconds)
 {
-	struct timespec t = {
-		.tv_sec = (time_t)seconds,
-		.tv_nsec = (long)((seconds - (double)(time_t)seconds) * 1e9),
-	};
+	struct pollfd p = { .fd = STDOUT_FILENO };
 
-	/* a signal ends it early */
-	nanosleep(&t, NULL);
+	/* a signal ends it early; so does the end of the program that reads the output */
+	if (poll(&p, 1, (int)(seconds * 1000)) > 0)
+		ended = 1;
 }
 
 /* 80 columns and 24 lines if it does not say */

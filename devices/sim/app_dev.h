@@ -29,6 +29,11 @@
 #define EC_APP_SMS_MAX		7	/* of them for one direction, of a generic device */
 #define EC_APP_MAP_CAP		32	/* entries of a mapping object one may write */
 
+/* objects of a modular slave (ETG.5001.1) */
+#define EC_APP_MODULAR		0xF000	/* distance of indexes, number of slots */
+#define EC_APP_MODULES_SET	0xF030	/* idents by slot that the master expects */
+#define EC_APP_MODULES_FOUND	0xF050	/* idents by slot that are there */
+
 struct ec_app;
 
 enum ec_app_dir { EC_APP_OUT, EC_APP_IN, EC_APP_DIRS };
@@ -295,6 +300,8 @@ static inline bool ec_app_listed(const struct ec_app_list *l, u16 v)
  * @no_protocols: word 0x1C of its EEPROM is 0
  * @dc_modes: AssignActivate of its operation modes; no other activation is accepted
  * @fixed: assignments and mappings that cannot be written
+ * @n_modules: slots of a modular slave, 0: it is none
+ * @modules: idents of the modules in them, 0: empty
  * @sms: generic devices: SyncManagers of a direction, 0: one
  * @assign: PDOs that the first of them has at power-on; may be 0, or PDOs which it has not
  */
@@ -302,6 +309,8 @@ struct ec_app_quirks {
 	bool any;
 	bool no_mbox_words;
 	bool no_protocols;
+	u8 n_modules;
+	u32 modules[EC_APP_LIST];
 	u8 sms[EC_APP_DIRS];
 	struct ec_app_list dc_modes;
 	struct ec_app_list fixed;

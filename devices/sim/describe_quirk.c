@@ -29,6 +29,27 @@ static int list(struct ec_desc *d, const char *key, struct ec_app_list *l)
 	return 0;
 }
 
+/* "0x119800,0": idents by slot */
+static int modules(struct ec_desc *d, struct ec_app_quirks *q)
+{
+	struct ec_desc_word w = ec_desc_value(d, "modules");
+
+	for (size_t from = 0, i = 0; w.s && i <= w.n; i++) {
+		struct ec_desc_word one = { .s = w.s + from, .n = i - from };
+		s64 v;
+
+		if (i < w.n && w.s[i] != ',')
+			continue;
+		if (q->n_modules == EC_APP_LIST)
+			return ec_desc_fail(d, "'", &w, "': a slave has at most 16 slots");
+		if (ec_desc_parse_number(d, &one, 0, 0xFFFFFFFF, &v))
+			return -EINVAL;
+		q->modules[q->n_modules++] = (u32)v;
+		from = i + 1;
+	}
+	return 0;
+}
+
 /**
  * ec_desc_quirks() - what is unusual in the EEPROM and the dictionary of a slave
  * @d: description, a slave statement
@@ -55,6 +76,8 @@ int ec_desc_quirks(struct ec_desc *d, struct ec_app_quirks *q)
 	if (!ret)
 		ret = list(d, "fixed", &q->fixed);
 	if (!ret)
+		ret = modules(d, q);
+	if (!ret)
 		ret = ec_desc_number(d, "sm_out", 1, EC_APP_SMS_MAX, &out);
 	if (!ret)
 		ret = ec_desc_number(d, "sm_in", 1, EC_APP_SMS_MAX, &in);
@@ -64,7 +87,7 @@ int ec_desc_quirks(struct ec_desc *d, struct ec_app_quirks *q)
 	q->no_protocols = !protocols;
 	q->any = q->no_mbox_words || q->no_protocols || q->assign[EC_APP_OUT].given ||
 		 q->assign[EC_APP_IN].given || q->dc_modes.given || q->fixed.given ||
-		 out > 1 || in > 1;
+		 q->n_modules || out > 1 || in > 1;
 	return ret;
 }
 
@@ -131,6 +154,8 @@ int ec_desc_quirks_fit(struct ec_desc *d, const struct ec_desc_word *name,
 		    (!m->n_areas[dir] || !(m->dev.protocols & EC_SII_PROTO_COE)))
 			return ec_desc_fail(d, "'", name,
 				"' has no CoE or no such process data; remove assign_out= and assign_in=");
+	if (q->n_modules && !(m->dev.protocols & EC_SII_PROTO_COE))
+		return ec_desc_fail(d, "'", name, "' has no CoE; remove modules=");
 	if (q->dc_modes.given && m->emulation)
 		return ec_desc_fail(d, "'", name,
 				    "' has no CPU that knows operation modes; remove dc_modes=");

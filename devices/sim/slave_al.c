@@ -263,6 +263,21 @@ static u16 missing(const struct ec_app *app, u64 now)
 	return 0;
 }
 
+/* a list that the master has not written expects nothing */
+static u16 check_modules(struct ec_app *app)
+{
+	const struct ec_app_quirks *q = &app->model->params.quirks;
+	bool given = false, same = true;
+
+	for (u8 i = 1; i <= q->n_modules; i++) {
+		u64 v = ec_app_od_get(app, ec_app_od_entry(app->model, EC_APP_MODULES_SET, i));
+
+		given |= v;
+		same &= v == q->modules[i - 1];
+	}
+	return given && !same ? EC_AL_CODE_MODULES : 0;
+}
+
 static u16 check(struct ec_app *app, u8 to)
 {
 	const struct ec_app_dev *d = &app->model->dev;
@@ -287,7 +302,9 @@ static u16 check(struct ec_app *app, u8 to)
 		return mboxes_ok(app, EC_SII_W_BOOT_MBOX, &d->boot) ? 0 :
 							    EC_AL_CODE_MBOX_BOOT;
 	case EC_AL_SAFEOP:
-		code = ec_app_pdo_build(app);
+		code = check_modules(app);
+		if (!code)
+			code = ec_app_pdo_build(app);
 		if (!code)
 			code = check_pd_sms(app, EC_APP_OUT);
 		if (!code)

@@ -113,6 +113,20 @@ static void add_diag(struct list *l, u8 messages)
 		    8 * EC_APP_DIAG_BYTES, EC_OD_READ, 0, "Diagnosis message", NULL);
 }
 
+static void add_modules(struct list *l, const struct ec_app_quirks *q)
+{
+	add(l, EC_APP_MODULAR, 1, EC_TYPE_UINT16, 16, EC_OD_READ, 0x10, "Index distance",
+	    "Modular device profile");
+	add(l, EC_APP_MODULAR, 2, EC_TYPE_UINT16, 16, EC_OD_READ, q->n_modules,
+	    "Maximum number of modules", NULL);
+	for (u8 i = 0; i < q->n_modules; i++) {
+		add(l, EC_APP_MODULES_SET, i + 1, EC_TYPE_UINT32, 32,
+		    EC_OD_READ | EC_OD_WRITE_PREOP, 0, NULL, "Configured module list");
+		add(l, EC_APP_MODULES_FOUND, i + 1, EC_TYPE_UINT32, 32, EC_OD_READ, q->modules[i],
+		    NULL, "Detected module list");
+	}
+}
+
 static void add_standard(struct list *l, const struct ec_app_model *m)
 {
 	const struct ec_app_dev *d = &m->dev;
@@ -139,6 +153,8 @@ static void add_standard(struct list *l, const struct ec_app_model *m)
 	    "Sync error counter limit", NULL);
 	if (m->params.diag)
 		add_diag(l, m->params.diag);
+	if (m->params.quirks.n_modules)
+		add_modules(l, &m->params.quirks);
 	for (u8 i = 0; i < d->n_sms; i++)
 		add(l, 0x1C00, (u8)(i + 1), EC_TYPE_UINT8, 8, EC_OD_READ,
 		    d->sms[i].type, NULL, "SyncManager type");
@@ -378,7 +394,7 @@ static int take(struct ec_app_model *m, const struct list *l)
 static int build_od(struct ec_app_model *m)
 {
 	const struct ec_app_dev *d = &m->dev;
-	struct list l = { .cap = 64u + 2u * EC_APP_LIST + 2u * d->n_vars + d->n_pdos +
+	struct list l = { .cap = 72u + 4u * EC_APP_LIST + 2u * d->n_vars + d->n_pdos +
 			    (m->params.diag ? (u32)EC_DIAG_FIRST_SUB + m->params.diag : 0u) };
 	u32 areas = (u32)m->n_areas[EC_APP_OUT] + m->n_areas[EC_APP_IN];
 	int ret = -ENOMEM;
@@ -502,6 +518,9 @@ static u32 generic_revision(const struct ec_app_model *m)
 
 	for (u32 i = 0; i < p->quirks.dc_modes.n; i++)
 		other = (other << 7 | other >> 57) ^ (p->quirks.dc_modes.v[i] + 1u);
+
+	for (u32 i = 0; i < p->quirks.n_modules; i++)
+		other = (other << 5 | other >> 59) ^ (p->quirks.modules[i] + 1u);
 
 	if (m->dev.mapping != m->table->mapping)
 		other |= (u64)m->dev.mapping << 26;

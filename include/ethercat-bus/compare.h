@@ -56,6 +56,26 @@ typedef void (*ecb_difference_fn)(void *ctx, const struct ecb_difference *d);
 long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found, unsigned int flags,
 		 ecb_difference_fn fn, void *ctx);
 
+/* a slave that is on both sides */
+typedef void (*ecb_pair_fn)(void *ctx, const struct ecb_master *master,
+			    const struct ecb_slave *expected, const struct ecb_slave *found);
+
+/**
+ * ecb_pairs() - find which slave of one bus is which of another one
+ * @expected: bus, of a file for example
+ * @found: bus
+ * @flags: ECB_COMPARE_*
+ * @fn: called for each pair of the same identity, with the master of @expected
+ * @ctx: for @fn
+ *
+ * As ecb_compare() finds them.
+ *
+ * Context: The thread of both buses.
+ * Return: number of pairs, or -ENOMEM.
+ */
+long ecb_pairs(const struct ecb_bus *expected, const struct ecb_bus *found, unsigned int flags,
+	       ecb_pair_fn fn, void *ctx);
+
 #ifdef __cplusplus
 }
 #endif

@@ -248,6 +248,40 @@ static int compare_masters(struct comparing *c, const struct ecb_master *a,
 	return ret ? ret : c->err;
 }
 
+static const struct ecb_master *same_master(const struct ecb_bus *bus, const struct ecb_master *m)
+{
+	for (size_t i = 0; i < bus->master_count; i++)
+		if (bus->masters[i]->index == m->index)
+			return bus->masters[i];
+	return NULL;
+}
+
+ECB_API long ecb_pairs(const struct ecb_bus *expected, const struct ecb_bus *found,
+		       unsigned int flags, ecb_pair_fn fn, void *ctx)
+{
+	long count = 0;
+
+	for (size_t i = 0; i < expected->master_count; i++) {
+		const struct ecb_master *a = expected->masters[i], *b = same_master(found, a);
+		struct match m;
+		int ret = b ? match_slaves(&m, a, b, !(flags & ECB_COMPARE_MACHINE)) : 0;
+
+		for (size_t k = 0; b && !ret && k < a->slave_count; k++) {
+			size_t peer = m.a.peer[k];
+
+			if (peer == NO_SLAVE || !same_identity(a->slaves[k], b->slaves[peer]))
+				continue;
+			fn(ctx, a, a->slaves[k], b->slaves[peer]);
+			count++;
+		}
+		if (b)
+			match_free(&m);
+		if (ret)
+			return ret;
+	}
+	return count;
+}
+
 ECB_API long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *found,
 			 unsigned int flags, ecb_difference_fn fn, void *ctx)
 {
@@ -256,20 +290,17 @@ ECB_API long ecb_compare(const struct ecb_bus *expected, const struct ecb_bus *f
 
 	for (int side = 0; side < 2; side++)
 		for (size_t i = 0; i < sides[side]->master_count; i++) {
-			const struct ecb_bus *other = sides[!side];
 			const struct ecb_master *m = sides[side]->masters[i];
-			size_t k = 0;
+			const struct ecb_master *other = same_master(sides[!side], m);
 
-			while (k < other->master_count && other->masters[k]->index != m->index)
-				k++;
 			c.master = m->index;
 			c.slave = "";
-			if (k == other->master_count)
+			if (!other)
 				differ(&c, side ? ECB_EXTRA : ECB_MISSING, "", side ? NULL : m,
 				       side ? "" : "a master", side ? m : NULL,
 				       side ? "a master" : "",
 				       "select masters with -m, or change the file");
-			else if (!side && compare_masters(&c, m, other->masters[k]))
+			else if (!side && compare_masters(&c, m, other))
 				return -ENOMEM;
 		}
 	return c.count;

@@ -138,6 +138,16 @@ static int domain(struct ec_ioc_domain *d)
 	return 0;
 }
 
+static unsigned int reads;	/* of the data */
+
+/* FAKE_ANOTHER: another session of the same size has begun after so many reads */
+static bool another(void)
+{
+	const char *after = getenv("FAKE_ANOTHER");
+
+	return after && reads > (unsigned int)atoi(after);
+}
+
 static int fmmu(struct ec_ioc_domain_fmmu *x)
 {
 	static const struct ec_ioc_domain_fmmu fmmus[] = {
@@ -150,6 +160,8 @@ static int fmmu(struct ec_ioc_domain_fmmu *x)
 	if (i >= LEN(fmmus))
 		return fake_fail(ENOENT, "there is no such FMMU");
 	*x = fmmus[i];
+	if (another() && i)
+		x->offset = i == 1 ? 7 : 1;
 	x->fmmu = i;
 	return 0;
 }
@@ -159,7 +171,6 @@ static int data(struct ec_ioc_domain_data *x)
 {
 	__u8 image[9] = { 0x02, 0x0f, 0x00, 0xfe, 0xff, 0xff, 0xff, 0, 0 };
 	const char *changes = getenv("FAKE_CHANGES");
-	static unsigned int reads;
 
 	if (changes && reads > (unsigned int)atoi(changes))
 		return fake_fail(ENOENT, "there is no session");
@@ -183,7 +194,11 @@ static int output(const struct ec_ioc_output *x)
 
 static int cycle_stats(struct ec_ioc_cycle_stats *x)
 {
-	struct ec_status_cycle st = { .state = EC_CYCLE_STATE_RUNNING };
+	struct ec_status_cycle st = {
+		.state = EC_CYCLE_STATE_RUNNING,
+		/* cleared once, as by 'ethercat cycle --reset', and by another session */
+		.late_count = another() ? 10 + reads : reads == 2 ? 5 : 1000 + reads,
+	};
 
 	x->kind = EC_CYCLE_BY_KERNEL;
 	x->active = 1;

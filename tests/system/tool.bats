@@ -425,6 +425,52 @@ add() {
 	[[ $output == *EL7201* ]]
 }
 
+@test "bus save --whole and bus check read modules, startup values and clocks of slaves" {
+	stop
+	printf '%s\n' 'segment seed=3' 'slave c EK1100' \
+		'slave m drive in=8 out=8 modules=0x119800,0,0x20192' 'slave a EL7201' \
+		>"$BATS_TEST_TMPDIR/segment"
+	start "$BATS_TEST_TMPDIR/segment" 3
+	f=$BATS_TEST_TMPDIR/bus.yaml
+	ethercat bus save --whole "$f"
+	grep -F '{slot: 3, ident: 0x00020192}' "$f"
+	grep -F 'type: int32' "$f"
+	[ "$(ethercat bus check "$f")" = "no difference, 3 slave(s)" ]
+	# another module, and what the master has to write in PREOP
+	sed -i 's/0x00020192/0x00020193/
+		/type: "drive"/a\        startup: [{at: safeop, sdo: 0x10f1:02, type: uint16, value: 9}]' "$f"
+	run ethercat bus check "$f"
+	printf '# %s\n' "${lines[@]}" >&3
+	[ "$status" = 1 ]
+	[[ $output == *"module in slot 3 differs: expected ident 0x00020193, found ident 0x00020192; "* ]]
+	[[ $output == *"startup 0x10f1:02 pending: expected 09 00, found 04 00; "* ]]
+	[ "${lines[2]}" = "1 difference(s)" ]
+	ethercat download -p1 -t uint16 0x10f1 2 9
+	# 0xF030 as the slave has it, and otherwise
+	ethercat download -p1 -t uint32 0xf030 1 0x119800
+	ethercat states -p1 SAFEOP
+	wait_for 10 sh -c 'ethercat reg_read -p1 -t uint16 0x0134 | grep -q 0x0070'
+	ethercat download -p1 -t uint32 0xf030 3 0x20192
+	ethercat states -p1 SAFEOP
+	wait_for 10 all_slaves_are SAFEOP 1
+}
+
+@test "bus save --whole of 500 drives, with time on the wire" {
+	stop
+	printf '%s\n' 'segment seed=3' 'repeat 500 slave d drive' >"$BATS_TEST_TMPDIR/segment"
+	start "$BATS_TEST_TMPDIR/segment" 500
+	t0=$(date +%s%N)
+	ethercat bus save --whole "$BATS_TEST_TMPDIR/bus.yaml"
+	t1=$(date +%s%N)
+	[ "$(ethercat bus check "$BATS_TEST_TMPDIR/bus.yaml")" = "no difference, 500 slave(s)" ]
+	t2=$(date +%s%N)
+	ethercat bus diff "$BATS_TEST_TMPDIR/bus.yaml" "$BATS_TEST_TMPDIR/bus.yaml"
+	t3=$(date +%s%N)
+	echo "# 500 drives: saved in $(((t1 - t0) / 1000000)) ms, compared in" \
+		"$(((t2 - t1) / 1000000)) ms, files in $(((t3 - t2) / 1000000)) ms" >&3
+	[ $(((t3 - t2) / 1000000)) -lt 2000 ]
+}
+
 @test "without the module the error names the remedy" {
 	stop
 	refused '/dev/EtherCAT0: No such file or directory: start the masters' slaves

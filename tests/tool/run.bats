@@ -159,6 +159,67 @@ assert [json.loads(l)["value"] for l in sys.stdin] == [
 	FAKE_READONLY=1 out watch --watch 0.1 | grep -q el2008
 }
 
+@test "watch ends when another session of the same size has begun, not when statistics are reset" {
+	export FAKE_BUS=run
+	FAKE_ANOTHER=4 run timeout 20 "$HERE/build/fake/ethercat" watch --watch 0.1
+	[ "$status" = 0 ]
+	[[ $output == *"Master0: the session has ended"* ]]
+	FAKE_CHANGES=5 run timeout 20 "$HERE/build/fake/ethercat" watch --watch 0.1
+	[ "$(echo "$output" | grep -c 'el7201.position = ')" = 6 ]
+}
+
+@test "watch ends with the program that reads its output, also without a change" {
+	export FAKE_BUS=run
+	timeout 20 "$HERE/build/fake/ethercat" watch --watch 0.1 | head -1
+	[ "${PIPESTATUS[0]}" -ne 124 ]
+}
+
+@test "watch, data and set take names, types, units and scaling from a bus file" {
+	export FAKE_BUS=run
+	cat >"$BATS_TEST_TMPDIR/bus.yaml" <<-'END'
+		ethercat: 1
+		masters:
+		- slaves:
+		  - name: lamps
+		    vendor: 2
+		    product: 0x07d83052
+		    pdos:
+		    - {index: 0x1600, sm: 0, entries: [{object: "0x7000:01", bits: 1, name: red}]}
+		  - name: axis
+		    vendor: 2
+		    product: 0x1c213052
+		    pdos:
+		    - index: 0x1600
+		      sm: 2
+		      entries:
+		      - {object: "0x7010:01", bits: 16, name: speed, type: int16, unit: mm/s,
+		         scale: 0.1, offset: -5}
+		    - index: 0x1a00
+		      sm: 3
+		      entries: [{object: "0x6000:11", bits: 32, name: position, type: int32}]
+	END
+	f=$BATS_TEST_TMPDIR/bus.yaml
+	[ "$(out data --names --file "$f" | tr -s ' ')" = "$(printf '%s\n' \
+		'lamps.red out bool 0' 'el2008.channel_2.output out bool 1' \
+		'axis.speed out int16 -3.5 mm/s' 'axis.position in int32 -2')" ]
+	FAKE_CHANGES=1 out watch --watch 0.1 --file "$f" 'axis.sp*' | grep -q 'axis.speed = -3.5 mm/s$'
+	log_of set --file "$f" axis.speed -12.5 | grep -q '16 bits, 0xffb5,'
+	log_of set --file "$f" axis.speed 12.46 | grep -q '16 bits, 0xaf,'
+	run ethercat set --file "$f" axis.speed 4000
+	[ "$status" = 1 ]
+	[[ $output == *"axis.speed has the type int16, 16 bit(s), which "*" does not fit"* ]]
+	run ethercat set --file "$f" el7201.controlword 1
+	[[ $output == *"Master0 has no value el7201.controlword"* ]]
+	# another machine
+	sed -i 's/vendor: 2/vendor: 3/' "$f"
+	run ethercat watch --file "$f"
+	[ "$status" = 1 ]
+	[[ $output == *"bus.yaml: none of its slaves is on the bus of master 0"* ]]
+	run ethercat data --file "$f"
+	[ "$status" = 1 ]
+	[[ $output == *"--file needs --names"* ]]
+}
+
 # on_terminal ARG...: with a terminal of 80 columns and 24 lines as stdin and stdout
 on_terminal() {
 	python3 - "$HERE/build/fake/ethercat" "$@" <<-'END'
