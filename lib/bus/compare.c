@@ -172,12 +172,17 @@ static void compare_slaves(struct comparing *c, const struct match *m, size_t i,
 {
 	const struct ecb_slave *a = m->a.slaves[i], *b = m->b.slaves[k];
 	bool machine = c->flags & ECB_COMPARE_MACHINE;
-	char expected[256], found[256];
+	char expected[256], found[384], at[128];
 
 	c->known = b->known;
 	if (!same_identity(a, b)) {
 		identity(a, expected, sizeof(expected));
 		identity(b, found, sizeof(found));
+		if (a->port != ECB_NONE8) {
+			place(&m->a, m->a.parent[i], a->port, at, sizeof(at));
+			snprintf(found + strlen(found), sizeof(found) - strlen(found),
+				 ", at %s", at);
+		}
 		differ(c, ECB_EXCHANGED, "", a, expected, b, found,
 		       "install the expected device, or change vendor and product in the file");
 		return;

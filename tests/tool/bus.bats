@@ -107,7 +107,7 @@ differs() {	# differs SED EXPECTED
 }
 
 @test "bus check names each difference once, with cause and remedy" {
-	differs 's/0x07d83052/0x07d83999/' "changed:10: slave 'el2008' exchanged: expected EL2008, vendor 0x00000002, product 0x07d83999, found EL2008, vendor 0x00000002, product 0x07d83052; install the expected device, or change vendor and product in the file"
+	differs 's/0x07d83052/0x07d83999/' "changed:10: slave 'el2008' exchanged: expected EL2008, vendor 0x00000002, product 0x07d83999, found EL2008, vendor 0x00000002, product 0x07d83052, at port 1 of 'ek1100'; install the expected device, or change vendor and product in the file"
 	differs 's/0x00100000/0x00200000/' "changed:10: slave 'el2008' revision differs: expected 0x00200000, found 0x00100000; if this revision is right, set revision, or revision_rule: at_least, in the file"
 	differs 's/alias: 1001/alias: 1002/' "changed:10: slave 'el2008' alias differs: expected 1002, found 1001; write the alias with 'ethercat alias', or change it in the file"
 	differs '/parent: el2008/{n;s/1/2/}' "changed:29: slave 'el7201' moved: expected port 2 of 'el2008', found port 1 of 'el2008'; connect it to port 2 of 'el2008', or change parent and port in the file"
