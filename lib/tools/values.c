@@ -8,6 +8,7 @@
 #include "../../include/ethercat-bus/names.h"
 #include "../../master/wire/sii.h"
 #include "internal.h"
+#include "text.h"
 
 _Static_assert(ECT_WORD == ECB_WORD && ECT_VALUE_NAME == ECB_VALUE, "names");
 
@@ -286,6 +287,38 @@ static int read_texts(struct ect_handle *h, const struct ect_slave *s, struct ec
 	return ret;
 }
 
+/* PDOs that the EEPROM has and does not assign; those that it assigns come first */
+static int image_texts(struct ect_handle *h, const struct slot *t, struct ect_list *texts)
+{
+	static const u16 categories[] = { EC_SII_CAT_TXPDO, EC_SII_CAT_RXPDO };
+
+	for (unsigned int c = 0; c < 2; c++) {
+		struct ec_sii_pdo_iter it;
+		struct ec_sii_pdo pdo;
+
+		ec_sii_pdo_iter_init(&it, t->image, t->size, categories[c]);
+		while (ec_sii_pdo_iter_next(&it, &pdo) > 0)
+			for (unsigned int i = 0; i < pdo.entries; i++) {
+				struct ec_sii_pdo_entry e;
+				struct text *x;
+
+				if (ec_sii_pdo_entry(&pdo, i, &e) || !e.index)
+					continue;
+				x = ect_list_add(texts);
+				if (!x)
+					return ect_no_memory(h);
+				*x = (struct text){
+					.pdo_index = pdo.index, .index = e.index, .subindex = e.sub,
+				};
+				ec_sii_string(t->image, t->size, pdo.name, x->pdo, sizeof(x->pdo));
+				ec_sii_string(t->image, t->size, e.name, x->name, sizeof(x->name));
+				string_clean(x->pdo, sizeof(x->pdo));
+				string_clean(x->name, sizeof(x->name));
+			}
+	}
+	return 0;
+}
+
 static int name_entries(struct ect_handle *h, struct slot *t, const struct ect_list *texts)
 {
 	for (size_t i = 0; i < t->n; i++) {
@@ -410,6 +443,8 @@ static int describe(struct ect_handle *h, struct naming *x)
 			ret = read_texts(h, t->slave, texts);
 		if (!ret && t->slave)
 			ret = read_image(h, t);
+		if (!ret && t->size)
+			ret = image_texts(h, t, texts);
 		ret = ret ? ret : name_entries(h, t, texts);
 		ect_list_free(texts);
 	}

@@ -449,7 +449,7 @@ add() {
 	# 0xF030 as the slave has it, and otherwise
 	ethercat download -p1 -t uint32 0xf030 1 0x119800
 	ethercat states -p1 SAFEOP
-	modules_differ() { ethercat reg_read -p1 -t uint16 0x0134 | grep -q 0x0070; }
+	modules_differ() { ethercat slaves -v -p1 | grep "AL status code 0x0070"; }
 	wait_for 10 modules_differ
 	ethercat download -p1 -t uint32 0xf030 3 0x20192
 	ethercat states -p1 SAFEOP
