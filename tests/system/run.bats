@@ -217,12 +217,12 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	[ "$(rows "$out" | wc -l)" -gt 100 ]
 	wait_for 10 no_ring
 	[ "$(lost_frames)" = "$before" ]
-	"${reader[@]}" record '*' >"$out" 2>"$out.err" 3>&- &
-	wait_for 10 test -s "$out"
+	"${reader[@]}" record '*' >"$out.last" 2>"$out.err" 3>&- &
+	wait_for 10 test -s "$out.last"
 	kill -9 $other
 	wait $other || true
 	other=
-	[ "$(rings)" = 1 ]
+	[ "$(rings)" -gt 0 ]	# a table of its pages has a line as well
 	ethercat release
 	wait
 	grep -q 'the session has ended' "$out.err"
