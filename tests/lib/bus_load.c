@@ -364,7 +364,7 @@ static const struct {
 	  "complete access begins at subindex 0; expected 0x8000:00" },
 	{ PART ", startup: [{at: safeop, register: 0x900, data: 01}, {at: safeop, sdo: 0x8000:01, data: 01}]}\n",
 	  -EINVAL, "at safeop the master writes SDOs before registers; move it before them" },
-	{ PART ", pdos: [{index: 0x1700, sm: 2}]}\n", -EINVAL, "has no entries here" },
+	{ PART ", pdos: [{index: 0x1700, sm: 2}, {index: 0x1600, sm: 2}]}\n", -EINVAL, "has no entries here" },
 	{ HEAD COUPLER "  - {vendor: 2, product: 0x41, group: g, pdos: [{index: 0x2000, sm: 1, entries: [{bits: 8}]}]}\n"
 	  "  groups: [{name: g, alias: 9}]\n", -EINVAL, "SM1 is not known as one of inputs" },
 	{ HEAD "  - {vendor: 2, product: 0x40, group: g, identification: 3}\n  groups: [{name: g, alias: 9}]\n",

@@ -156,6 +156,17 @@ static const struct ecb_pdo *pdo_of(const struct ecb_slave *s, const struct ecb_
 	return NULL;
 }
 
+/* no offset of a value depends on the entries of the last one */
+static bool is_last(const struct ecb_slave *s, size_t i)
+{
+	const struct ecb_pdo *p = s->pdos[i];
+
+	while (++i < s->pdo_count)
+		if (s->pdos[i]->sm == p->sm)
+			return false;
+	return true;
+}
+
 /* the PDOs of the file, or those that the slave has */
 static int choose_pdos(struct load *l, struct plan *p)
 {
@@ -171,6 +182,8 @@ static int choose_pdos(struct load *l, struct plan *p)
 		if (from->pdos[i]->entry_count || from == p->there)
 			continue;
 		p->pdos[i] = pdo_of(p->there, from->pdos[i]);
+		if (!p->pdos[i] && is_last(from, i))
+			p->pdos[i] = from->pdos[i];
 		if (!p->pdos[i])
 			return BAD(l, from->pdos[i]->line,
 				   "PDO 0x%04x of '%s' has no entries here, and SM%u of the slave has no such PDO; give its entries",
