@@ -29,7 +29,7 @@ struct current;
 /* bus_values.c: names, types, units and scaling of @path; 0, or 1 after printing the error */
 int bus_values(const struct tool *t, struct dev *d, const char *path, struct current *l);
 
-/* cmd_bus.c: names of the two sides of a comparison, and whether they have several masters */
+/* cmd_bus.c: names of the two sides that are compared, and whether they have several masters */
 struct bus_names {
 	const char *expected;
 	const char *found;

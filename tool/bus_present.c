@@ -43,7 +43,8 @@ static int wish_of_file(const struct ecb_master *m, const struct ect_slave *s, s
 		if (file->vendor != s->vendor_id || file->product != s->product_code)
 			continue;
 		l->wish |= (file->pdo_count ? PRESENT_PDOS : 0) |
-			(file->module_count ? PRESENT_MODULES : 0) | (file->clock ? PRESENT_CLOCK : 0);
+			(file->module_count ? PRESENT_MODULES : 0) |
+			(file->clock ? PRESENT_CLOCK : 0);
 		if (wish_values(file, l))
 			return 1;
 	}

@@ -170,7 +170,8 @@ static int take_units(struct session *x)
 		if (err == -ENOENT)
 			break;
 		if (err)
-			return dev_fail(x->d, err, "Master%u: cannot read unit %u", x->d->master, i);
+			return dev_fail(x->d, err, "Master%u: cannot read unit %u",
+					x->d->master, i);
 		if (take_unit(x, &u))
 			return 1;
 	}

@@ -73,8 +73,7 @@ static void print_frame(FILE *to, const struct plot_column *c, const struct plot
 	for (unsigned int i = 0; plot_label(a, i, &at); i++) {
 		double y = y_of(a, at, top, high);
 
-		fprintf(to, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\" class=\"grid\"/>"
-			"<text x=\"%d\" y=\"%.1f\" class=\"value\">%.6g</text>\n", LEFT, y,
+		fprintf(to, "<line x1=\"%d\" y1=\"%.1f\" x2=\"%d\" y2=\"%.1f\" class=\"grid\"/><text x=\"%d\" y=\"%.1f\" class=\"value\">%.6g</text>\n", LEFT, y,
 			LEFT + PLOT, y, LEFT - 6, y + 4, at);
 	}
 }

@@ -52,8 +52,7 @@ static void box(FILE *f, unsigned int x, unsigned int y, const char *class, cons
 	snprintf(name, sizeof(name), "%.*s", (int)cut, text);
 	fprintf(f, "<g><title>");
 	escape_html(f, text);
-	fprintf(f, "</title><rect class=\"box %s\" x=\"%u\" y=\"%u\" width=\"%u\" height=\"%u\" rx=\"3\"/>"
-		"<text x=\"%u\" y=\"%u\">", class, x, y, WIDTH, BOX, x + 6, y + 16);
+	fprintf(f, "</title><rect class=\"box %s\" x=\"%u\" y=\"%u\" width=\"%u\" height=\"%u\" rx=\"3\"/><text x=\"%u\" y=\"%u\">", class, x, y, WIDTH, BOX, x + 6, y + 16);
 	escape_html(f, name);
 	fprintf(f, "%s</text></g>\n", n >= sizeof(name) ? "..." : "");
 }

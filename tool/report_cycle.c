@@ -23,9 +23,7 @@ static void bar(FILE *f, const struct ect_cycle *c, unsigned int octave, unsigne
 	/* one send of a million is visible as well */
 	u64 width = (n * BAR + most - 1) / most;
 
-	fprintf(f, "<text x=\"150\" y=\"%u\" text-anchor=\"end\">%.3f to %.3f</text>"
-		"<rect class=\"bar\" x=\"160\" y=\"%u\" width=\"%llu\" height=\"%u\"/>"
-		"<text x=\"%llu\" y=\"%u\">%llu</text>\n", y + 15,
+	fprintf(f, "<text x=\"150\" y=\"%u\" text-anchor=\"end\">%.3f to %.3f</text><rect class=\"bar\" x=\"160\" y=\"%u\" width=\"%llu\" height=\"%u\"/><text x=\"%llu\" y=\"%u\">%llu</text>\n", y + 15,
 		(double)ect_bucket_ns(octave * OCTAVE) / 1000,
 		(double)(ect_bucket_ns((octave + 1) * OCTAVE) - 1) / 1000, y + 3,
 		(unsigned long long)width, ROW - 4, 166 + (unsigned long long)width, y + 15,

@@ -33,7 +33,7 @@ int ecb_file_read(struct ecb_bus **bus, const char *path, struct ecb_error *erro
  * @name: name of the file for messages
  * @error: result of a failure
  *
- * For a caller that looks at the owner and the permissions of what it reads.
+ * For a caller that checks the owner and the permissions of what it reads.
  *
  * Context: Any thread.
  * Return: As ecb_file_read().

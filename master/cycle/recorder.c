@@ -151,8 +151,8 @@ void ec_recorder_end(struct ec_cycle *c)
 	lockdep_assert_held(c->wanted->lock);
 	rcu_read_lock();
 	r = xchg((__force struct ec_recorder **)&c->cycles->recorder, NULL);
-	/* pairs with ec_recorder_get(): all records before this */
 	if (r)
+		/* pairs with ec_recorder_get(): all records before this */
 		smp_store_release(&r->ended, true);
 	rcu_read_unlock();
 }

@@ -376,8 +376,8 @@ record_cost() {
 			+ rec --cycles 300 --record + kernel --cycles 300 --kernel timer \
 			+ krec --cycles 300 --kernel timer --record || return
 		gate "$n drive(s): ${v[rec_recorded]} and ${v[krec_recorded]} records of 350 cycles, ${v[rec_lost]} and ${v[krec_lost]} frames lost" \
-			"${v[rec_recorded]} >= 350 && ${v[krec_recorded]} >= 349 && ${v[rec_lost]} == 0 &&
-			 ${v[krec_lost]} == 0"
+			"${v[rec_recorded]} >= 350 && ${v[krec_recorded]} >= 349 &&
+			 ${v[rec_lost]} == 0 && ${v[krec_lost]} == 0"
 		costs[own$n]=$((v[rec_send_median] - v[send_median]))
 		costs[kernel$n]=$((v[krec_work_median] - v[kernel_work_median]))
 		bytes[$n]=${v[image_bytes]}

@@ -18,7 +18,12 @@ static struct ec_domain domains[8];
 static unsigned int n_configs, n_domains, n_units;
 static const char *fails;	/* the call that does */
 
-#define CHECK(c) do { if (!(c)) { printf("%s:%d: %s\n", __FILE__, __LINE__, #c); bad++; } } while (0)
+#define CHECK(c) do {						\
+		if (!(c)) {					\
+			printf("%s:%d: %s\n", __FILE__, __LINE__, #c);	\
+			bad++;					\
+		}						\
+	} while (0)
 
 static int say(const char *fmt, ...) __attribute__((format(printf, 1, 2)));
 static int say(const char *fmt, ...)

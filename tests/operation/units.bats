@@ -106,7 +106,7 @@ stub() {
 	export PATH=$BATS_TEST_TMPDIR/bin:$PATH
 }
 
-@test "the start waits for a bus that is as its file says, and names what is missing" {
+@test "the start waits for a bus that is as its file says, and names the missing slave" {
 	stub "[ \$(wc -l <$BATS_TEST_TMPDIR/calls) -ge 4 ]"
 	run "$units/await.sh" /etc/ethercat/line.yaml
 	[ "$status" = 0 ]

@@ -132,7 +132,8 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 		'ethercat run --dry-run' "ethercat watch 'el1008.*'" \
 		'(sleep 1; ethercat set --lease 1 el2008.channel_1.output 1) &' \
 		'ethercat plot lamp.csv' 'ethercat top' 'ethercat why'; do
-		doc $f "$block" >"$BATS_TEST_TMPDIR/hour" || { cat "$BATS_TEST_TMPDIR/hour"; return 1; }
+		doc $f "$block" >"$BATS_TEST_TMPDIR/hour" ||
+			{ cat "$BATS_TEST_TMPDIR/hour"; return 1; }
 	done
 	cat "$BATS_TEST_TMPDIR/hour"
 	grep -q '^no difference, 3 slave(s)' "$BATS_TEST_TMPDIR/hour"

@@ -250,7 +250,8 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	[[ "$output" == *"the slaves of $f would go to OP"*"  el2008  EL2008"* ]]
 	json '.masters[0].session == "none"' master
 	# names are those of the file
-	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    slaves:/; s/name: el2008$/name: lamps/; s/parent: el2008/parent: lamps/
+	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    slaves:/
+		s/name: el2008$/name: lamps/; s/parent: el2008/parent: lamps/
 		s/name: channel_1.input/name: alarm, type: bool, unit: Pa, scale: 20/' "$f"
 	run ethercat run "$f"
 	echo "$output"
@@ -268,7 +269,7 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	wait_for 60 all_slaves_are PREOP 4
 }
 
-@test "run FILE: what others may write, or has two names, or needs an application, is refused" {
+@test "run FILE refuses a file that others may write, names twice, and units of an application" {
 	local f=$BATS_TEST_TMPDIR/bus.yaml
 
 	no() {	# no PATTERN [OPTION...]

@@ -438,7 +438,7 @@ add() {
 	[ "$(ethercat bus check "$f")" = "no difference, 3 slave(s)" ]
 	# another module, and what the master has to write in PREOP
 	sed -i 's/0x00020192/0x00020193/
-		/type: "drive"/a\        startup: [{at: safeop, sdo: 0x10f1:02, type: uint16, value: 9}]' "$f"
+		/type: "drive"/a\        startup: [{at: safeop, sdo: 0x10f1:02, data: "09 00"}]' "$f"
 	run ethercat bus check "$f"
 	printf '# %s\n' "${lines[@]}" >&3
 	[ "$status" = 1 ]

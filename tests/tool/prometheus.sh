@@ -37,12 +37,14 @@ wait_for() {	# wait_for SECONDS COMMAND...
 }
 
 fetch() {
-	mkdir -p "$cache/new" && cd "$cache/new" && apt-get -qq download prometheus >/dev/null 2>&1 &&
+	mkdir -p "$cache/new" && cd "$cache/new" &&
+		apt-get -qq download prometheus >/dev/null 2>&1 &&
 		dpkg -x prometheus_*.deb . && mv usr/bin/prometheus .. && cd .. && rm -r new
 }
 
 free_port() {
-	python3 -c 'import socket; s = socket.create_server(("127.0.0.1", 0)); print(s.getsockname()[1])'
+	python3 -c 'import socket
+print(socket.create_server(("127.0.0.1", 0)).getsockname()[1])'
 }
 
 # query EXPRESSION: the values of all series, in a line
@@ -82,7 +84,8 @@ t "frames are counted" is 'sum(ethercat_sent_frames_total)' 18342
 t "the histogram has a quantile" is \
 	'histogram_quantile(0.999, sum by (le) (ethercat_send_deviation_seconds_bucket)) < bool 1' 1
 t "working counters, units and errors of ports are there" is \
-	'count(ethercat_domain_working_counter) > bool 0 and count(ethercat_unit_faults_total) > bool 0
+	'count(ethercat_domain_working_counter) > bool 0
+	 and count(ethercat_unit_faults_total) > bool 0
 	 and count(ethercat_port_invalid_frames_total) > bool 0' 1
 t "a hostile name is one value of a label" is \
 	'count(ethercat_slave_info{order="\"} 1?# EOF\\ÿ"})' 3

@@ -202,7 +202,8 @@ assert [json.loads(l)["value"] for l in sys.stdin] == [
 	[ "$(out data --names --file "$f" | tr -s ' ')" = "$(printf '%s\n' \
 		'lamps.red out bool 0' 'el2008.channel_2.output out bool 1' \
 		'axis.speed out int16 -3.5 mm/s' 'axis.position in int32 -2')" ]
-	FAKE_CHANGES=1 out watch --watch 0.1 --file "$f" 'axis.sp*' | grep -q 'axis.speed = -3.5 mm/s$'
+	FAKE_CHANGES=1 out watch --watch 0.1 --file "$f" 'axis.sp*' |
+		grep -q 'axis.speed = -3.5 mm/s$'
 	log_of set --file "$f" axis.speed -12.5 | grep -q '16 bits, 0xffb5,'
 	log_of set --file "$f" axis.speed 12.46 | grep -q '16 bits, 0xaf,'
 	run ethercat set --file "$f" axis.speed 4000
@@ -321,10 +322,12 @@ names_of_session() {
 	        pdos:
 	          - index: 0x1600
 	            sm: 2
-	            entries: [{object: "0x7010:01", bits: 16, name: power, type: int16, unit: "%", scale: 0.1, offset: 1}]
+	            entries: [{object: "0x7010:01", bits: 16, name: power, type: int16,
+	                       unit: "%", scale: 0.1, offset: 1}]
 	          - index: 0x1a00
 	            sm: 3
-	            entries: [{object: "0x6000:11", bits: 32, name: position, type: int32, unit: mm, scale: 0.5}]
+	            entries: [{object: "0x6000:11", bits: 32, name: position, type: int32,
+	                       unit: mm, scale: 0.5}]
 	END
 	export FAKE_NAMES=$BATS_TEST_TMPDIR/names FAKE_BUS=run
 }
@@ -367,7 +370,8 @@ output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
 	local f=$BATS_TEST_TMPDIR/bus.yaml
 
 	ethercat bus save --whole "$f"
-	[ "$(log_of run --dry "$f")" = "Master0: the slaves of $f would go to OP, outputs zero, cycle 1 ms:
+	[ "$(log_of run --dry "$f")" = \
+		"Master0: the slaves of $f would go to OP, outputs zero, cycle 1 ms:
   ek1100  EK1100
   el2008  EL2008
   el7201  EL7201" ]

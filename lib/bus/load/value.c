@@ -193,12 +193,14 @@ ECB_API int ecb_value_write(const struct ecb_value *value, uint8_t *data, double
 	if (!value->output || !value->bits || value->bits > 64 || isnan(raw))
 		return -EINVAL;
 	if (value->type == ECB_TYPE_REAL32 || value->type == ECB_TYPE_REAL64) {
-		if (value->type == ECB_TYPE_REAL64)
-			ecrt_write_lreal(copy, raw);
-		else if (fabs(raw) > 3.4028234663852886e38)
+		bool single = value->type == ECB_TYPE_REAL32;
+
+		if (single && fabs(raw) > 3.4028234663852886e38)
 			return -ERANGE;
-		else
+		if (single)
 			ecrt_write_real(copy, (float)raw);
+		else
+			ecrt_write_lreal(copy, raw);
 		put_bits(value, data, EC_READ_U64(copy));
 		return 0;
 	}
