@@ -19,7 +19,7 @@ extern "C" {
 
 /* flags of ecb_compare() */
 #define ECB_COMPARE_MACHINE	1	/* @found is a machine, which has no names */
-#define ECB_COMPARE_SLAVES	2	/* without what an application configures: PDOs, clocks... */
+#define ECB_COMPARE_SLAVES	2	/* without what an application configures, as PDOs */
 
 /** struct ecb_difference - one difference; its texts are valid during the call */
 struct ecb_difference {

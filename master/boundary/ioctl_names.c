@@ -16,7 +16,8 @@ int ec_ioc_set_names(struct ec_call *call)
 	ret = ec_budget_charge(&s->wanted.budget, call->size);
 	if (ret)
 		return ec_refuse(call, ret,
-				 "no memory for %u bytes of names: limit of the session", call->size);
+				 "no memory for %u bytes of names: limit of the session",
+				 call->size);
 	if (call->size) {
 		names = kvmalloc(call->size, GFP_KERNEL_ACCOUNT);
 		if (!names) {

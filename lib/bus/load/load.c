@@ -59,7 +59,8 @@ static int create_domain(struct load *l, size_t i)
 	c.name = u->name;
 	c.policy = (ec_unit_policy_t)u->policy;
 	c.limit = u->limit;
-	c.lease_cycles = u->lease ? (uint32_t)((u->lease + l->want->cycle - 1) / l->want->cycle) : 0;
+	if (u->lease)
+		c.lease_cycles = (uint32_t)((u->lease + l->want->cycle - 1) / l->want->cycle);
 	c.repeats = u->repeats;
 	c.flags = (u->needs_authority ? EC_UNIT_AUTHORITY : 0) |
 		(u->lease_holds ? EC_UNIT_LEASE_HOLD : 0) | (u->offered ? EC_UNIT_OFFERED : 0);
