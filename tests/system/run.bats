@@ -213,7 +213,9 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	[ "$(rows "$out" | wc -l)" = 500 ]
 	before=$(lost_frames)
 	# killed in the middle it leaves nothing, and the cycle continues
-	timeout -s KILL 1 "${reader[@]}" record '*' >"$out" || true
+	status=0
+	timeout -s KILL 1 "${reader[@]}" record '*' >"$out" || status=$?
+	[ "$status" = 137 ]
 	[ "$(rows "$out" | wc -l)" -gt 100 ]
 	wait_for 10 no_ring
 	[ "$(lost_frames)" = "$before" ]

@@ -174,6 +174,7 @@ for o in d["options"]:
 	# the libraries are packages of their own
 	make -s -C "$HERE/../../lib/tools" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d/lib" prefix= install
 	make -s -C "$HERE/../../lib/bus" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d/lib" prefix= install
+	make -s -C "$HERE/../../lib" O="$BATS_TEST_TMPDIR/b" DESTDIR="$d/lib" prefix= install
 	LD_LIBRARY_PATH=$d/lib/lib "$d/usr/bin/ethercat" version
 	rm -r "$d/lib"
 	[ -z "$(readelf -d "$d/usr/bin/ethercat" | grep RUNPATH)" ]

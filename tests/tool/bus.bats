@@ -28,7 +28,7 @@ setup() {
 	[ "$status" -eq 0 ]
 	[[ $output == *"Master0 slave 2: its dictionary was not read: 0xf050:00: slave 2 has not answered for 1000 ms"* ]]
 	grep -q 'index: 0x1a00' "$BATS_TEST_TMPDIR/slow"
-	! grep -q 'modules:\|0x1602' "$BATS_TEST_TMPDIR/slow"
+	! grep -q 'modules:\|0x1602' "$BATS_TEST_TMPDIR/slow" || return 1
 }
 
 @test "bus save --whole and bus check write nothing to a slave" {

@@ -180,7 +180,7 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 	done
 	kill -TERM $!
 	wait $!
-	npy a.npy | tail -n 1 >last
+	npy a.npy >rows
 	grep -q 'record(s) of 1 value(s)' err
 }
 
