@@ -33,9 +33,11 @@
  * @info: about them
  * @bits: of the values of a record
  * @triggered: the condition was true
- * @began_ns: time of the first record of all, CLOCK_MONOTONIC; 0: there was none
+ * @began_ns: when records began, CLOCK_MONOTONIC
  * @zero_ns: time 0 of the file
+ * @first_ns: time of the first row
  * @last_ns: time of the last row
+ * @before: rows before time 0
  * @lost: records that are missing between rows
  * @gaps: in so many places
  */
@@ -56,7 +58,9 @@ struct record {
 	bool triggered;
 	s64 began_ns;
 	s64 zero_ns;
+	s64 first_ns;
 	s64 last_ns;
+	u64 before;
 	u64 lost;
 	u64 gaps;
 };
@@ -83,6 +87,13 @@ static size_t take_value(struct record *x, const struct ect_value *v)
 	if (i == x->all)
 		x->values[x->all++] = v;
 	return i;
+}
+
+/* A scaled value is a real number. */
+static struct ec_type type_of(const struct record *x, const struct ect_value *v)
+{
+	return current_is_scaled(&x->l, v) ? (struct ec_type){ .bits = 64, .kind = EC_KIND_FLOAT } :
+					     current_type(v);
 }
 
 static int take_columns(struct record *x, int argc, char **argv)
@@ -115,11 +126,12 @@ static int take_columns(struct record *x, int argc, char **argv)
 	if (!x->columns)
 		return fail("out of memory");
 	for (size_t i = 0; i < x->n; i++) {
-		struct ec_type type = current_type(x->values[i]);
+		const struct ect_value *v = x->values[i];
+		struct ec_type type = type_of(x, v);
 
 		x->columns[i] = (struct record_column){
-			.name = x->values[i]->name, .unit = "", .kind = type.kind,
-			.bits = x->values[i]->bits,
+			.name = v->name, .unit = current_unit_text(&x->l, v), .kind = type.kind,
+			.bits = type.bits, .scaled = current_is_scaled(&x->l, v),
 		};
 	}
 	return 0;
@@ -136,8 +148,16 @@ static int when_value(void *ctx, const char *name, struct when_name *to)
 	if (v->bits > 64)
 		return fail("%s has %u bits, more than a condition can compare", name, v->bits);
 	to->index = take_value(x, v);
-	to->type = current_type(v);
+	to->type = type_of(x, v);
 	return 0;
+}
+
+static s64 clock_ns(clockid_t id)
+{
+	struct timespec t;
+
+	clock_gettime(id, &t);
+	return (s64)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 static int begin(struct record *x, int argc, char **argv)
@@ -160,18 +180,12 @@ static int begin(struct record *x, int argc, char **argv)
 		return 1;
 	x->info.struct_size = sizeof(x->info);
 	err = ect_record_begin(x->d.h, x->values, x->all, &x->r, &x->info);
+	/* also when no record ever comes, --time ends it */
+	x->began_ns = clock_ns(CLOCK_MONOTONIC);
 	if (!err)
 		return 0;
 	record_file_drop(&x->file);
 	return dev_fail(&x->d, err, "Master%u: cannot record", x->d.master);
-}
-
-static s64 clock_ns(clockid_t id)
-{
-	struct timespec t;
-
-	clock_gettime(id, &t);
-	return (s64)t.tv_sec * 1000000000 + t.tv_nsec;
 }
 
 /* Time since 1970 of a time of CLOCK_MONOTONIC, by the current clock of the computer. */
@@ -185,8 +199,10 @@ static void add_row(struct record *x, const struct record_row *row)
 	/* before the first row nothing is missing */
 	struct record_row copy = *row;
 
-	if (!x->file.rows)
+	if (!x->file.rows) {
 		copy.lost = 0;
+		x->first_ns = copy.time_ns;
+	}
 	x->lost += copy.lost;
 	x->gaps += copy.lost > 0;
 	x->last_ns = copy.time_ns;
@@ -204,13 +220,16 @@ static void start(struct record *x, s64 zero_ns)
 	x->triggered = true;
 	x->zero_ns = zero_ns;
 	record_file_begin(&x->file, zero_ns, wall_of(zero_ns), title);
-	while (record_kept_take(&x->kept, zero_ns - (s64)(x->t->before_s * 1e9), &row))
+	while (record_kept_take(&x->kept, zero_ns - (s64)(x->t->before_s * 1e9), &row)) {
 		add_row(x, &row);
+		x->before++;
+	}
 }
 
+/* Those before the condition was true come in addition. */
 static bool is_full(const struct record *x)
 {
-	return x->t->count && x->file.rows >= x->t->count;
+	return x->t->count && x->file.rows >= x->t->count + x->before;
 }
 
 /* Has the time of the recording ended, by the time of a record or of the clock? */
@@ -221,7 +240,20 @@ static bool is_over(const struct record *x, s64 now_ns)
 	if (x->triggered && x->t->after_s >= 0 &&
 	    (double)(now_ns - x->zero_ns) > x->t->after_s * 1e9)
 		return true;
-	return limit > 0 && x->began_ns && (double)(now_ns - x->began_ns) >= limit * 1e9;
+	return limit > 0 && (double)(now_ns - x->began_ns) >= limit * 1e9;
+}
+
+/* A value of the record that was read last */
+static u64 bits_of(const struct record *x, size_t i)
+{
+	u64 bits = ect_record_bits(x->r, i);
+	double number;
+
+	if (!current_is_scaled(&x->l, x->values[i]))
+		return bits;
+	number = current_number(&x->l, x->values[i], bits);
+	memcpy(&bits, &number, sizeof(bits));
+	return bits;
 }
 
 /* Return: 0, 1 the recording is complete. */
@@ -234,9 +266,7 @@ static int take_record(struct record *x, const struct ect_record *rec)
 	};
 
 	for (size_t i = 0; i < x->all; i++)
-		x->bits[i] = ect_record_bits(x->r, i);
-	if (!x->began_ns)
-		x->began_ns = row.time_ns;
+		x->bits[i] = bits_of(x, i);
 	if (is_over(x, row.time_ns))
 		return 1;
 	if (!x->triggered && (!x->when || when_true(x->when, x->bits)))
@@ -290,7 +320,7 @@ static int record(struct record *x)
 
 static void summary(const struct record *x)
 {
-	double s = x->file.rows ? (double)(x->last_ns - x->began_ns) / 1e9 : 0;
+	double s = x->file.rows ? (double)(x->last_ns - x->first_ns) / 1e9 : 0;
 
 	if (out_is_json()) {
 		out_object(NULL);
@@ -361,8 +391,10 @@ const struct cmd cmd_record = {
 		"(records missing before this one) and wc (working counters: 2 complete, 1 incomplete,\n"
 		"0 no slave). Inputs are those received in the cycle, outputs those sent in it.\n"
 		"\n"
-		"Ctrl-C ends it with a complete file. --time and --count end it earlier. With --when the\n"
-		"file begins when the condition is true, with its time 0: names, numbers, + - ~ & ^ |\n"
+		"Values have the units and the scaling of the bus file of the session, also in --when.\n"
+		"Ctrl-C ends it with a complete file. --time and --count end it earlier (--count counts no\n"
+		"records of --before). With --when the file begins when the condition is true, with its\n"
+		"time 0: names, numbers, + - ~ & ^ |\n"
 		"== != < <= > >= ! && || and parentheses; & ^ | bind tighter than == and <:\n"
 		"ethercat record 'axis1.*' -o a.csv --when 'axis1.status & 8' --before 1 --after 2\n"
 		"\n"

@@ -194,6 +194,21 @@ static double number_of(const struct ec_type *t, const u8 *data, u64 bits)
 	return t->kind == EC_KIND_INT ? (double)value_signed(t, data, t->bits / 8u) : (double)bits;
 }
 
+static void to_wire(u64 bits, u8 *data)
+{
+	for (unsigned int i = 0; i < 8; i++)
+		data[i] = (u8)(bits >> 8 * i);
+}
+
+double current_number(const struct current *l, const struct ect_value *v, u64 bits)
+{
+	struct ec_type t = current_type(v);
+	u8 data[8];
+
+	to_wire(bits, data);
+	return current_scaled(l, v, number_of(&t, data, bits));
+}
+
 void current_format(const struct current *l, const struct ect_value *v, char *buf, size_t size)
 {
 	struct ec_type t = current_type(v);
@@ -204,10 +219,9 @@ void current_format(const struct current *l, const struct ect_value *v, char *bu
 		snprintf(buf, size, "(%u bits)", v->bits);
 		return;
 	}
-	for (unsigned int i = 0; i < 8; i++)
-		data[i] = (u8)(bits >> 8 * i);
+	to_wire(bits, data);
 	if (current_is_scaled(l, v))
-		snprintf(buf, size, "%.9g", current_scaled(l, v, number_of(&t, data, bits)));
+		snprintf(buf, size, "%.9g", current_number(l, v, bits));
 	else if (t.kind == EC_KIND_FLOAT)
 		snprintf(buf, size, "%.7g", value_real(data, t.bits / 8u));
 	else if (t.kind == EC_KIND_INT)

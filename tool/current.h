@@ -84,6 +84,8 @@ bool current_unscaled(const struct current *l, const struct ect_value *v, const 
 /* the lowest 64 bits; false: it is longer */
 bool current_bits(const struct current *l, const struct ect_value *v, u64 *bits);
 struct ec_type current_type(const struct ect_value *v);
+/* the scaled number that @bits of current_type() are */
+double current_number(const struct current *l, const struct ect_value *v, u64 bits);
 /* scaled, without unit */
 void current_format(const struct current *l, const struct ect_value *v, char *buf, size_t size);
 /* @text is scaled; 0, or 1 after printing what is wrong */

@@ -3,6 +3,8 @@
 
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <poll.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -12,59 +14,61 @@
 #include <unistd.h>
 
 #include "record_npy.h"
+#include "screen.h"
 #include "tool.h"
 #include "value.h"
 
 #define BUFFER		65536	/* bytes that are written at once */
 #define CELL		32	/* bytes of a number as text, at most, with its comma */
+#define END_MS		200	/* at the end a program behind a pipe has so long to read */
 
-static int new_file(struct record_file *f, const char *path, bool force)
+/* A new file has its rows at once; one that exists stays until the new one is complete. */
+static int open_file(struct record_file *f, const char *path, bool force)
 {
-	size_t size = strlen(path) + sizeof(".XXXXXX");
-	mode_t mask;
-
-	if (!force) {
-		f->fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-		if (f->fd < 0 && errno == EEXIST)
-			return fail("'%s' exists; use another name, or --force to replace it",
-				    path);
-		return f->fd < 0 ? fail("cannot write '%s': %s", path, strerror(errno)) : 0;
-	}
-	/* the old file stays until the new one is complete */
-	f->part = malloc(size);
-	if (!f->part)
-		return fail("out of memory");
-	snprintf(f->part, size, "%s.XXXXXX", path);
-	mask = umask(0);
-	umask(mask);
-	f->fd = mkstemp(f->part);
-	if (f->fd < 0)
-		return fail("cannot write '%s': %s", f->part, strerror(errno));
-	/* permissions of a file that is created by its name */
-	if (fchmod(f->fd, 0666 & ~mask))
-		note("cannot change the permissions of '%s': %s", f->part, strerror(errno));
+	f->fd = open(path, O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+	if (f->fd >= 0)
+		return 0;
+	if (errno != EEXIST)
+		return fail("cannot write '%s': %s", path, strerror(errno));
+	if (!force)
+		return fail("'%s' exists; use another name, or --force to replace it", path);
+	if (save_begin(&f->old, path))
+		return 1;
+	f->fd = fileno(f->old.f);
 	return 0;
+}
+
+static size_t header_bytes(const struct record_file *f)
+{
+	size_t size = 1024;
+
+	/* a character of a text may become two */
+	for (size_t i = 0; i < f->n; i++)
+		size += 2 * (strlen(f->columns[i].name) + strlen(f->columns[i].unit)) + CELL;
+	return size;
 }
 
 int record_file_open(struct record_file *f, const char *path, bool force,
 		     const struct record_column *columns, size_t n)
 {
 	size_t len = path ? strlen(path) : 0;
+	struct stat st;
 
 	*f = (struct record_file){
 		.path = path, .fd = STDOUT_FILENO, .columns = columns, .n = n,
 		.npy = len > 4 && !strcmp(path + len - 4, ".npy"),
 	};
-	/* a row more than is written at once */
-	f->room = BUFFER + CELL * (n + RECORD_FIXED);
+	/* a row more than is written at once, or the header */
+	f->room = BUFFER + CELL * (n + RECORD_FIXED) + header_bytes(f);
 	f->buf = malloc(f->room);
 	if (!f->buf)
 		return fail("out of memory");
-	if (!path || !new_file(f, path, force))
-		return 0;
-	free(f->part);
-	free(f->buf);
-	return 1;
+	if (path && open_file(f, path, force)) {
+		free(f->buf);
+		return 1;
+	}
+	f->regular = !fstat(f->fd, &st) && S_ISREG(st.st_mode);
+	return 0;
 }
 
 /* Whole rows of @n bytes that were written of the buffer */
@@ -89,14 +93,32 @@ static u64 rows_behind(const struct record_file *f, size_t n)
 	return rows;
 }
 
+/* Can some bytes be written? A program that does not read cannot keep this one from ending. */
+static bool is_ready(const struct record_file *f)
+{
+	struct pollfd p = { .fd = f->fd, .events = POLLOUT };
+	int n = 0;
+
+	while (!f->regular && n <= 0) {
+		n = poll(&p, 1, END_MS);
+		if (!n && screen_ended())
+			return false;
+	}
+	return true;
+}
+
 /* After a failure the file ends with the last row that is whole. */
 void record_file_flush(struct record_file *f)
 {
 	size_t done = 0;
 
 	while (!f->err && done < f->used) {
-		ssize_t n = write(f->fd, f->buf + done, f->used - done);
+		size_t size = f->regular ? f->used - done : min_t(size_t, f->used - done, PIPE_BUF);
+		bool ready = is_ready(f);
+		ssize_t n = ready ? write(f->fd, f->buf + done, size) : 0;
 
+		if (!ready)
+			f->err = ETIMEDOUT;
 		if (n < 0 && errno != EINTR)
 			f->err = errno;
 		done += n > 0 ? (size_t)n : 0;
@@ -105,7 +127,7 @@ void record_file_flush(struct record_file *f)
 	f->written += done;
 	f->rows -= min(f->rows, rows_behind(f, done));
 	f->used = 0;
-	if (f->err && f->path && ftruncate(f->fd, (off_t)(f->head + f->written)))
+	if (f->err && f->regular && ftruncate(f->fd, (off_t)(f->head + f->written)))
 		note("cannot shorten '%s': %s", f->path, strerror(errno));
 	if (f->npy && f->head)
 		record_npy_count(f);
@@ -125,16 +147,24 @@ static void add(struct record_file *f, const char *fmt, ...)
 		f->used += (size_t)n;
 }
 
+static void add_quoted(struct record_file *f, const char *s)
+{
+	for (; *s; s++)
+		add(f, *s == '"' ? "\"\"" : "%c", *s);
+}
+
 /* RFC 4180, though names have no such characters */
 static void add_name(struct record_file *f, const struct record_column *c)
 {
 	bool quote = strpbrk(c->name, ",\"\n") || *c->unit;
 
 	add(f, quote ? ",\"" : ",");
-	for (const char *p = c->name; *p; p++)
-		add(f, *p == '"' ? "\"\"" : "%c", *p);
-	if (*c->unit)
-		add(f, " [%s]", c->unit);
+	add_quoted(f, c->name);
+	if (*c->unit) {
+		add(f, " [");
+		add_quoted(f, c->unit);
+		add(f, "]");
+	}
 	if (quote)
 		add(f, "\"");
 }
@@ -157,11 +187,8 @@ static void begin_csv(struct record_file *f)
 	record_wall_text(f->wall_ns, wall, sizeof(wall));
 	add(f, "# ethercat record: time 0 is %s, %s\n", wall, f->title);
 	add(f, "time_s,app_time_ns,cycle,lost,wc");
-	for (size_t i = 0; i < f->n; i++) {
+	for (size_t i = 0; i < f->n; i++)
 		add_name(f, &f->columns[i]);
-		if (f->used > BUFFER / 2)
-			record_file_flush(f);
-	}
 	add(f, "\n");
 }
 
@@ -186,7 +213,7 @@ static void add_value(struct record_file *f, const struct record_column *c, u64 
 	if (c->kind == EC_KIND_FLOAT && c->bits == 32)
 		add(f, ",%.9g", value_real(data, 4));
 	else if (c->kind == EC_KIND_FLOAT)
-		add(f, ",%.17g", value_real(data, 8));
+		add(f, c->scaled ? ",%.15g" : ",%.17g", value_real(data, 8));
 	else if (c->kind == EC_KIND_INT)
 		add(f, ",%lld", (long long)value_signed(&t, data, (c->bits + 7) / 8));
 	else
@@ -220,31 +247,42 @@ void record_file_row(struct record_file *f, const struct record_row *row)
 		record_file_flush(f);
 }
 
+static int put_in_place(struct record_file *f)
+{
+	if (f->old.f)
+		return save_end(&f->old);
+	if (!f->path || !close(f->fd))
+		return 0;
+	return fail("cannot write '%s': %s", f->path, strerror(errno));
+}
+
 int record_file_close(struct record_file *f)
 {
-	int err;
+	const char *path = f->path ? f->path : "stdout";
 
 	record_file_flush(f);
-	err = f->err;
-	if (f->path && close(f->fd) && !err)
-		err = errno;
-	if (f->part && rename(f->part, f->path) && !err)
-		err = errno;
-	free(f->part);
 	free(f->buf);
-	if (!err)
+	if (put_in_place(f))
+		return 2;
+	if (!f->err)
 		return 0;
-	fail("cannot write '%s': %s; it is valid and has %llu bytes", f->path ? f->path : "stdout",
-	     strerror(err), (unsigned long long)(f->head + f->written));
+	if (f->regular)
+		fail("cannot write '%s': %s; it is valid and has %llu bytes", path,
+		     strerror(f->err), (unsigned long long)(f->head + f->written));
+	else
+		fail("cannot write '%s': %s; the last whole row ends after %llu bytes", path,
+		     f->err == ETIMEDOUT ? "its reader does not read" : strerror(f->err),
+		     (unsigned long long)(f->head + f->written));
 	return 2;
 }
 
 void record_file_drop(struct record_file *f)
 {
-	if (f->path) {
+	if (f->old.f) {
+		save_cancel(&f->old);
+	} else if (f->path) {
 		close(f->fd);
-		remove(f->part ? f->part : f->path);
+		remove(f->path);
 	}
-	free(f->part);
 	free(f->buf);
 }

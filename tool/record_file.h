@@ -4,6 +4,7 @@
 #define EC_TOOL_RECORD_FILE_H
 
 #include "data_types.h"
+#include "save.h"
 
 #define RECORD_FIXED	5	/* columns before the values */
 
@@ -13,6 +14,7 @@ struct record_column {
 	const char *unit;	/* "": none */
 	enum ec_type_kind kind;	/* EC_KIND_BOOL, _INT, _UINT, _BITS, _FLOAT */
 	unsigned int bits;	/* 1 to 64 */
+	bool scaled;		/* a real number that was computed: 15 digits are exact */
 };
 
 /* one cycle; times are of CLOCK_MONOTONIC */
@@ -28,8 +30,9 @@ struct record_row {
 /**
  * struct record_file - a file while it is written
  * @path: of the file, NULL: stdout
- * @part: written instead, and takes the place of @path at the end; NULL: @path itself is
- * @fd: of that
+ * @old: the file that exists and is replaced at the end; its stream is NULL: @path is new
+ * @fd: what is written
+ * @regular: a file of a file system, which can be shortened; else a pipe or a device
  * @npy: a NumPy array, else CSV
  * @columns: of values
  * @n: how many
@@ -46,8 +49,9 @@ struct record_row {
  */
 struct record_file {
 	const char *path;
-	char *part;
+	struct save old;
 	int fd;
+	bool regular;
 	bool npy;
 	const struct record_column *columns;
 	size_t n;
@@ -70,7 +74,7 @@ int record_file_open(struct record_file *f, const char *path, bool force,
 void record_file_begin(struct record_file *f, s64 zero_ns, s64 wall_ns, const char *title);
 void record_file_row(struct record_file *f, const struct record_row *row);
 void record_file_flush(struct record_file *f);
-/* 0, or 2 after printing what was not written; the file has whole rows in any case */
+/* 0, or 2 after printing what was not written; a file has whole rows in any case */
 int record_file_close(struct record_file *f);
 /* nothing was recorded: the file is as before */
 void record_file_drop(struct record_file *f);

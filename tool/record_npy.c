@@ -10,7 +10,7 @@
 #include "value.h"
 
 #define MAGIC	"\x93NUMPY"
-#define PREFIX	12	/* magic, version 2.0, bytes of the text */
+#define PREFIX	12	/* magic, version, bytes of the text */
 #define ALIGN	64	/* where the rows begin */
 
 static const struct {
@@ -40,6 +40,13 @@ size_t record_npy_row(const struct record_file *f)
 	return size;
 }
 
+/* The unit is a text of the user; plot_npy.c and old readers know no escapes. */
+static void print_text(FILE *to, const char *s)
+{
+	for (; *s; s++)
+		fputc(strchr("'\\", *s) ? '?' : *s, to);
+}
+
 static void print_column(FILE *to, const struct record_column *c)
 {
 	char letter = c->kind == EC_KIND_FLOAT ? 'f' : c->kind == EC_KIND_INT ? 'i' : 'u';
@@ -48,8 +55,11 @@ static void print_column(FILE *to, const struct record_column *c)
 		letter = 'b';
 	fputs(*c->unit ? "(('" : "('", to);
 	/* names have letters, digits, '_' and '.' */
-	if (*c->unit)
-		fprintf(to, "%s [%s]', '", c->name, c->unit);
+	if (*c->unit) {
+		fprintf(to, "%s [", c->name);
+		print_text(to, c->unit);
+		fputs("]', '", to);
+	}
 	fprintf(to, "%s%s, '%c%c%u'), ", c->name, *c->unit ? "')" : "'",
 		width(c) == 1 ? '|' : '<', letter, width(c));
 }
@@ -81,6 +91,16 @@ static char *header_text(const struct record_file *f, u64 rows, size_t *size)
 	return text;
 }
 
+/* Version 3.0 has UTF-8; older readers know 2.0. */
+static char version(const struct record_file *f)
+{
+	for (size_t i = 0; i < f->n; i++)
+		for (const char *s = f->columns[i].unit; *s; s++)
+			if ((unsigned char)*s >= 0x80)
+				return 3;
+	return 2;
+}
+
 /* The header, padded for any number of rows; the first one decides how long it is. */
 static char *header(struct record_file *f, u64 rows)
 {
@@ -98,6 +118,7 @@ static char *header(struct record_file *f, u64 rows)
 	}
 	memset(all, ' ', longest);
 	memcpy(all, MAGIC "\2\0", 8);
+	all[6] = version(f);
 	for (unsigned int i = 0; i < 4; i++)
 		all[8 + i] = (char)((longest - PREFIX) >> 8 * i);
 	memcpy(all + PREFIX, text, size);

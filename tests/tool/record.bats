@@ -107,6 +107,13 @@ assert (a["el7201.position"][3], len(a)) == (1, 20), a'
 # first CONDITION: the position of the first record in which it is true
 first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d, -f6; }
 
+@test "record --count counts from the condition on, and the summary is of the file" {
+	run ethercat record el7201.position -o a.csv --when 'el7201.position == 5' --before 0.002 \
+		--count 1
+	[[ $output == *"Master0: 3 record(s) of 1 value(s) in 0.002 s, 0 lost" ]]
+	[ "$(cut -d, -f1,6 a.csv | tail -n 1)" = 0.000000000,5 ]
+}
+
 @test "conditions have operators of C, with & ^ | before comparisons" {
 	[ "$(first 'el7201.position & 8 == 8 && el7201.position < 1000')" = 8 ]
 	[ "$(first '(el7201.position & 3) + 1 == 3 && el7201.position < 0x100')" = 2 ]
@@ -146,6 +153,85 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 	# nothing replaces a file when nothing was recorded
 	refused 1 'never true' record '*' -o a.csv -f --when 0
 	[ "$(wc -l <a.csv)" = 5 ]
+}
+
+@test "record --force replaces files only: devices, pipes and targets of links are written" {
+	echo before >old
+	chmod 600 old
+	ln -s old link
+	out record el7201.position --count 3 -o link --force
+	[ -L link ] && [ "$(wc -l <old)" = 5 ]
+	out record el7201.position --count 2 -o old -f
+	[ "$(stat -c %a old) $(wc -l <old)" = '600 4' ]
+	mkfifo pipe
+	cat pipe >got &
+	out record el7201.position --count 3 -o pipe -f
+	wait $!
+	[ -p pipe ] && [ "$(wc -l <got)" = 5 ]
+	refused 1 'never true' record '*' -o link -f --when 0
+	[ -L link ]
+	mkdir dir
+	refused 1 "cannot write 'dir': Is a directory" record '*' -o dir -f
+	[ "$(echo *)" = 'dir got link old pipe' ]
+}
+
+@test "record into a program that does not read is ended by a signal" {
+	FAKE_RECORDS=1000000000 python3 - "$HERE/build/fake/ethercat" <<-'END'
+	import array, fcntl, os, subprocess, sys, termios, time
+	r, w = os.pipe()
+	p = subprocess.Popen([sys.argv[1], 'record', '*'], stdout=w, stderr=subprocess.PIPE)
+	n, last = array.array('i', [0]), [-1]
+	# full: no more bytes for a while
+	while n[0] < 4096 or last.count(n[0]) < 20:
+	    last.append(n[0])
+	    fcntl.ioctl(r, termios.FIONREAD, n)
+	    assert p.poll() is None and len(last) < 2000
+	    time.sleep(0.01)
+	p.terminate()
+	try:
+	    text = p.communicate(timeout=20)[1].decode()
+	finally:
+	    p.kill()
+	assert p.returncode == 2 and "cannot write 'stdout': its reader does not read" in text, text
+	END
+}
+
+@test "record --time ends it when no record comes" {
+	mkfifo silent
+	# the number of the descriptor is the one of the fake master, which is never readable
+	run timeout 20 "$HERE/build/fake/ethercat" record '*' --time 0.1 100<>silent
+	echo "$output"
+	[ "$status" = 1 ] && [[ $output == *'no cycle was sent: nothing is written' ]]
+}
+
+@test "record writes units and scaled values of the bus file of the session" {
+	cat >names <<-'END'
+	ethercat: 1
+	masters:
+	  - slaves:
+	      - {name: lamps, vendor: 2, product: 0x07d83052}
+	      - name: axis
+	        vendor: 2
+	        product: 0x1c213052
+	        pdos:
+	          - index: 0x1a00
+	            sm: 3
+	            entries: [{object: "0x6000:11", bits: 32, name: position, type: int32, unit: "'°\"", scale: 0.1, offset: 1}]
+	END
+	export FAKE_NAMES=$PWD/names
+	out record axis.position -o a.csv --when 'axis.position > 1.25' --count 2
+	[ "$(columns a.csv)" = $'cycle,lost,wc,"axis.position [\'°""]"
+105,0,2,1.3
+106,0,2,1.4' ]
+	LC_ALL=C.UTF-8 out plot a.csv | grep -qx "axis.position \['°\"\]"
+	out record axis.position -o a.npy --when 'axis.position > 1.25' --count 2
+	LC_ALL=C.UTF-8 out plot a.npy | grep -qx 'axis.position \[?°"\]'
+	LC_ALL=C.UTF-8 out plot a.npy | grep -q '^ *1.4 |'
+	if python3 -c 'import numpy' 2>/dev/null; then
+		python3 -c 'import numpy
+a = numpy.load("a.npy")
+assert abs(a["axis.position"][1] - 1.4) < 1e-9, a'
+	fi
 }
 
 @test "a full disk leaves a valid file, and record says how much" {
