@@ -4,6 +4,8 @@
 #include <fnmatch.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "../lib/tools/text.h"
 #include "out.h"
@@ -81,8 +83,18 @@ static bool is_unicode(void)
 	return false;
 }
 
-static int draw(const struct tool *t, const struct plot_data *p, const struct plot_column *const *c,
-		size_t n)
+/* The drawing must not replace the recording, by any of its names. */
+static bool is_same(const char *from, const char *to)
+{
+	struct stat a, b;
+
+	if (strcmp(from, "-") ? stat(from, &a) : fstat(STDIN_FILENO, &a))
+		return false;
+	return !stat(to, &b) && S_ISREG(b.st_mode) && a.st_dev == b.st_dev && a.st_ino == b.st_ino;
+}
+
+static int draw(const struct tool *t, const char *from, const struct plot_data *p,
+		const struct plot_column *const *c, size_t n)
 {
 	unsigned int lines, columns = 80;
 	struct plot_view v;
@@ -94,7 +106,9 @@ static int draw(const struct tool *t, const struct plot_data *p, const struct pl
 			screen_size(&lines, &columns);
 		return plot_text(stdout, &v, c, n, min(columns, 200u), is_unicode());
 	}
-	if (save_begin(&s, t->output_file))
+	if (is_same(from, t->output_file))
+		return fail("'%s' is the recording; use another name", t->output_file);
+	if (t->force ? save_begin(&s, t->output_file) : save_new(&s, t->output_file))
 		return 1;
 	plot_svg(s.f, &v, c, n);
 	return save_end(&s);
@@ -109,7 +123,8 @@ static int run(struct tool *t, int argc, char **argv)
 
 	if (!ret && !p.rows)
 		ret = fail("%s has no records", argv[0]);
-	ret = ret || choose(argv[0], &p, argc - 1, argv + 1, chosen, &n) || draw(t, &p, chosen, n);
+	ret = ret || choose(argv[0], &p, argc - 1, argv + 1, chosen, &n) ||
+		draw(t, argv[0], &p, chosen, n);
 	plot_free(&p);
 	return ret;
 }
@@ -118,12 +133,13 @@ const struct cmd cmd_plot = {
 	.name = "plot",
 	.run = run,
 	.args = "<FILE> [<NAME>...]",
-	.opts = "o",
+	.opts = "of",
 	.summary = "Draw a recording",
 	.help = "FILE is one of 'ethercat record', CSV or .npy; - is stdin. Names are those of its columns;\n"
 		"* and ? stand for any characters. Without a name all recorded values are drawn, one\n"
 		"above the other. With --output-file an SVG is written, else text: as wide as the\n"
-		"terminal, 80 columns in a pipe, with Braille patterns where LANG has UTF-8. Where\n"
+		"terminal, 80 columns in a pipe, with Braille patterns where LANG has UTF-8. An existing\n"
+		"SVG is replaced with --force, the recording never. Where\n"
 		"records are missing the line has a gap, which is marked. Other CSV files with a line of\n"
 		"names and numbers below it are drawn as well, over time_s or the number of the row.\n",
 	.min_args = 1,

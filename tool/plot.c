@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "plot.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -13,6 +14,30 @@ static double time_at(const struct plot_view *v, size_t row)
 	return v->time ? v->time[row] : (double)row;
 }
 
+/* Of those that are finite, and so that their distance is; false: there is none. */
+static bool range(const double *v, size_t n, double *min, double *max)
+{
+	*min = INFINITY;
+	*max = -INFINITY;
+	for (size_t i = 0; i < n; i++)
+		if (isfinite(v[i])) {
+			*min = fmin(*min, v[i]);
+			*max = fmax(*max, v[i]);
+		}
+	if (*min > *max)
+		return false;
+	*min = fmax(fmin(*min, DBL_MAX / 4), -DBL_MAX / 4);
+	*max = fmax(fmin(*max, DBL_MAX / 4), -DBL_MAX / 4);
+	return true;
+}
+
+double plot_part(const struct plot_axis *a, double value)
+{
+	double part = (value - a->min) / (a->max - a->min);
+
+	return !(part > 0) ? 0 : fmin(part, 1);
+}
+
 void plot_view(const struct plot_data *p, struct plot_view *v)
 {
 	const struct plot_column *time = plot_find(p, "time_s"), *lost = plot_find(p, "lost");
@@ -22,21 +47,22 @@ void plot_view(const struct plot_data *p, struct plot_view *v)
 	};
 	if (!p->rows)
 		return;
-	v->from = time_at(v, 0);
-	v->to = v->from;
-	for (size_t i = 1; i < p->rows; i++) {
-		v->from = fmin(v->from, time_at(v, i));
-		v->to = fmax(v->to, time_at(v, i));
+	if (!v->time) {
+		v->to = (double)(p->rows - 1);
+	} else if (!range(v->time, p->rows, &v->from, &v->to)) {
+		v->from = 0;
+		v->to = 0;
 	}
 	if (!(v->to > v->from))
-		v->to = v->from + 1;
+		v->to = v->from + fmax(1, fabs(v->from) / 10);
 }
 
 static size_t bin_at(const struct plot_view *v, size_t row, size_t n)
 {
-	double at = (time_at(v, row) - v->from) / (v->to - v->from) * (double)n;
+	const struct plot_axis a = { .min = v->from, .max = v->to };
+	size_t at = (size_t)(plot_part(&a, time_at(v, row)) * (double)n);
 
-	return at >= (double)n ? n - 1 : at > 0 ? (size_t)at : 0;
+	return at < n ? at : n - 1;
 }
 
 static void add(struct plot_bin *b, double value)
@@ -68,6 +94,7 @@ void plot_bins(const struct plot_view *v, const struct plot_column *c, struct pl
 		if (row && !gap && at > before)
 			add(&bins[at], bins[before].last);
 		bins[at].gap |= gap;
+		bins[at].lost += gap ? v->lost[row] : 0;
 		add(&bins[at], c->v[row]);
 		before = at;
 	}
@@ -77,8 +104,6 @@ struct plot_axis plot_axis(double min, double max, unsigned int labels)
 {
 	double raw, unit;
 
-	if (!isfinite(min) || !isfinite(max))
-		return (struct plot_axis){ 0, 1, 1 };
 	if (!(max > min)) {
 		double around = fabs(min) > 1 ? fabs(min) / 10 : 1;
 
@@ -99,15 +124,10 @@ struct plot_axis plot_axis(double min, double max, unsigned int labels)
 /* Values that are no numbers have no place. */
 struct plot_axis plot_range(const struct plot_column *c, size_t rows, unsigned int labels)
 {
-	double min = INFINITY, max = -INFINITY;
+	double min, max;
 
-	if (c->flag)
+	if (c->flag || !range(c->v, rows, &min, &max))
 		return (struct plot_axis){ 0, 1, 1 };
-	for (size_t i = 0; i < rows; i++)
-		if (isfinite(c->v[i])) {
-			min = fmin(min, c->v[i]);
-			max = fmax(max, c->v[i]);
-		}
 	return plot_axis(min, max, labels);
 }
 

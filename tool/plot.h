@@ -16,6 +16,7 @@ struct plot_bin {
 	double min;
 	double max;
 	double last;
+	double lost;	/* records that are missing before those in it */
 };
 
 /**
@@ -44,7 +45,9 @@ struct plot_axis {
 void plot_view(const struct plot_data *p, struct plot_view *v);
 void plot_bins(const struct plot_view *v, const struct plot_column *c, struct plot_bin *bins,
 	       size_t n);
-/* at most @labels labels and one more */
+/* where a value is: 0 at the begin of the axis, 1 at its end, and for one that is outside */
+double plot_part(const struct plot_axis *a, double value);
+/* at most @labels labels and one more; both ends are at most DBL_MAX / 4 */
 struct plot_axis plot_axis(double min, double max, unsigned int labels);
 struct plot_axis plot_range(const struct plot_column *c, size_t rows, unsigned int labels);
 /* label @i of an axis; false: it has no more */

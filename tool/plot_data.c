@@ -8,6 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "../lib/tools/text.h"
 #include "tool.h"
 
 #define SINCE	"time 0 is "
@@ -28,13 +29,13 @@ const struct plot_column *plot_find(const struct plot_data *p, const char *name)
 	return NULL;
 }
 
-/* A text that a terminal and an SVG can show: without control characters. */
-static void copy_text(char *to, const char *from, size_t len)
+void plot_copy_text(char *to, const char *from, size_t len)
 {
-	len = min_t(size_t, len, PLOT_TEXT - 1);
-	for (size_t i = 0; i < len; i++)
-		to[i] = (unsigned char)from[i] < ' ' || from[i] == 127 ? '?' : from[i];
-	to[len] = 0;
+	size_t n = strnlen(from, min_t(size_t, len, PLOT_TEXT - 1));
+
+	memcpy(to, from, n);
+	to[n] = 0;
+	text_clean(to, n);
 }
 
 int plot_add_column(const char *name, struct plot_data *p, const char *text, size_t len)
@@ -54,11 +55,11 @@ int plot_add_column(const char *name, struct plot_data *p, const char *text, siz
 		while (end && text[end - 1] != '[')
 			end--;
 		if (end > 1 && text[end - 2] == ' ') {
-			copy_text(c->unit, text + end, len - end - 1);
+			plot_copy_text(c->unit, text + end, len - end - 1);
 			len = end - 2;
 		}
 	}
-	copy_text(c->name, text, len);
+	plot_copy_text(c->name, text, len);
 	return 0;
 }
 
@@ -137,9 +138,11 @@ static int csv_row(struct csv *c, struct plot_data *p)
 			return fail("%s: line %zu has more columns than its header, %zu", c->name,
 				    c->line, p->n);
 		p->columns[i].v[p->rows - 1] = strtod(field, &end);
-		if (end == field || *end)
+		if (end == field || *end) {
+			text_clean(field, strlen(field));
 			return fail("%s: line %zu, column %zu: '%.40s' is no number", c->name,
 				    c->line, i + 1, field);
+		}
 		i++;
 	}
 	if (i != p->n)
@@ -157,7 +160,7 @@ static void csv_comment(const struct csv *c, struct plot_data *p)
 		return;
 	at += strlen(SINCE);
 	end = memchr(at, ',', (size_t)(c->end - at));
-	copy_text(p->since, at, (size_t)((end ? end : c->end) - at));
+	plot_copy_text(p->since, at, (size_t)((end ? end : c->end) - at));
 }
 
 static int read_csv(const char *name, const char *data, size_t size, struct plot_data *p)
@@ -166,6 +169,9 @@ static int read_csv(const char *name, const char *data, size_t size, struct plot
 	const char *end = data + size;
 	int ret = 0;
 
+	/* UTF-8 of other programs may begin with a byte order mark */
+	if (size >= 3 && !memcmp(data, "\xef\xbb\xbf", 3))
+		data += 3;
 	for (const char *at = data, *next; at < end && !ret; at = next) {
 		const char *stop = memchr(at, '\n', (size_t)(end - at));
 

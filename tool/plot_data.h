@@ -44,6 +44,8 @@ void plot_free(struct plot_data *p);
 const struct plot_column *plot_find(const struct plot_data *p, const char *name);
 
 /* for the readers of the formats */
+/* a text into PLOT_TEXT bytes, without what could change a terminal */
+void plot_copy_text(char *to, const char *from, size_t len);
 int plot_npy(const char *name, const char *data, size_t size, struct plot_data *p);
 /* a column named "NAME [UNIT]" or "NAME" */
 int plot_add_column(const char *name, struct plot_data *p, const char *text, size_t len);

@@ -101,8 +101,7 @@ static int column(struct npy *x, struct plot_data *p)
 	    !format(x, &f) || !take(x, ')'))
 		return malformed(x);
 	if (title && title_len > strlen(SINCE) && !memcmp(title, SINCE, strlen(SINCE)))
-		snprintf(p->since, sizeof(p->since), "%.*s", (int)min_t(size_t, title_len -
-			 strlen(SINCE), PLOT_TEXT - 1), title + strlen(SINCE));
+		plot_copy_text(p->since, title + strlen(SINCE), title_len - strlen(SINCE));
 	else if (title)
 		name = title, len = title_len;
 	if (plot_add_column(x->name, p, name, len))

@@ -46,12 +46,12 @@ static unsigned int high_of(const struct plot_column *c)
 
 static double x_of(const struct plot_view *v, double time)
 {
-	return LEFT + (time - v->from) / (v->to - v->from) * PLOT;
+	return LEFT + plot_part(&(struct plot_axis){ .min = v->from, .max = v->to }, time) * PLOT;
 }
 
 static double y_of(const struct plot_axis *a, double value, double top, unsigned int high)
 {
-	return top + (a->max - value) / (a->max - a->min) * high;
+	return top + (1 - plot_part(a, value)) * high;
 }
 
 static void print_frame(FILE *to, const struct plot_column *c, const struct plot_axis *a,
@@ -105,14 +105,17 @@ static void print_lines(FILE *to, const struct plot_bin *bins, const struct plot
 		fputs("\"/>\n", to);
 }
 
-static void print_gaps(FILE *to, const struct plot_view *v, double top, unsigned int high)
+/* As many as fit on the picture, not in the file */
+static void print_gaps(FILE *to, const struct plot_bin *bins, double top, unsigned int high)
 {
-	for (size_t i = 1; v->lost && v->time && i < v->data->rows; i++) {
-		double from = x_of(v, v->time[i - 1]), end = x_of(v, v->time[i]);
+	for (int x = 0, from; x < PLOT; x++) {
+		double lost = 0;
 
-		if (v->lost[i] > 0)
-			fprintf(to, "<rect x=\"%.1f\" y=\"%.1f\" width=\"%.1f\" height=\"%u\" class=\"gap\"><title>%.0f records are missing</title></rect>\n",
-				from, top, fmax(end - from, 1), high, v->lost[i]);
+		for (from = x; x < PLOT && bins[x].gap; x++)
+			lost += bins[x].lost;
+		if (x > from)
+			fprintf(to, "<rect x=\"%d\" y=\"%.1f\" width=\"%d\" height=\"%u\" class=\"gap\"><title>%.0f records are missing</title></rect>\n",
+				LEFT + from, top, x - from, high, lost);
 	}
 }
 
@@ -160,7 +163,7 @@ void plot_svg(FILE *to, const struct plot_view *v, const struct plot_column *con
 
 		print_frame(to, c[i], &a, top);
 		plot_bins(v, c[i], bins, PLOT);
-		print_gaps(to, v, top, high_of(c[i]));
+		print_gaps(to, bins, top, high_of(c[i]));
 		print_lines(to, bins, &a, top, high_of(c[i]));
 		top += high_of(c[i]) + BETWEEN;
 	}

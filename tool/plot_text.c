@@ -42,9 +42,8 @@ static void dot(struct text *t, size_t x, size_t y)
 static size_t dot_of(const struct text *t, const struct plot_axis *a, double value)
 {
 	size_t last = t->high * t->dots_y - 1;
-	double part = (a->max - value) / (a->max - a->min);
 
-	return part <= 0 ? 0 : part >= 1 ? last : (size_t)(part * (double)last + 0.5);
+	return (size_t)((1 - plot_part(a, value)) * (double)last + 0.5);
 }
 
 static void draw(struct text *t, const struct plot_axis *a)
@@ -115,8 +114,7 @@ static void print_times(FILE *to, const struct text *t, const struct plot_view *
 
 	memset(line, ' ', sizeof(line));
 	for (unsigned int i = 0; plot_label(&a, i, &at); i++) {
-		double part = (at - a.min) / (a.max - a.min);
-		size_t x = LABEL + (size_t)(part * (double)(t->wide - 1) + 0.5);
+		size_t x = LABEL + (size_t)(plot_part(&a, at) * (double)(t->wide - 1) + 0.5);
 		char label[32];
 		int n = snprintf(label, sizeof(label), "%.6g", at);
 

@@ -97,7 +97,7 @@ static bool number(const char *word, struct num *to)
 	to->bits = strtoull(word, &end, 0);
 	if (!*end && !errno)
 		return true;
-	if (strspn(word, "0123456789.eE") != strlen(word))
+	if (strspn(word, "0123456789.eE+-") != strlen(word))
 		return false;
 	errno = 0;
 	to->real = true;
@@ -105,14 +105,23 @@ static bool number(const char *word, struct num *to)
 	return !*end && !errno;
 }
 
+/* Is the sign at @p->at that of an exponent, behind the @n characters of @name? */
+static bool is_exponent(const struct parser *p, const char *name, size_t n)
+{
+	return (*p->at == '+' || *p->at == '-') && isdigit((unsigned char)p->at[1]) && n > 1 &&
+	       tolower((unsigned char)name[n - 1]) == 'e' &&
+	       strspn(name, "0123456789.") == n - 1;
+}
+
 static int word(struct parser *p)
 {
 	struct step s = { .op = PUSH };
 	const char *from = p->at;
-	char name[NAME_MAX_BYTES];
+	char name[NAME_MAX_BYTES] = "";
 	size_t n = 0;
 
-	while (isalnum((unsigned char)*p->at) || *p->at == '_' || *p->at == '.') {
+	while (isalnum((unsigned char)*p->at) || *p->at == '_' || *p->at == '.' ||
+	       is_exponent(p, name, n)) {
 		if (n + 1 == sizeof(name))
 			return wrong(p, from, "too long a name");
 		name[n++] = *p->at++;
@@ -251,6 +260,17 @@ static int compare(const struct num *a, const struct num *b)
 	return a->bits < b->bits ? -1 : a->bits > b->bits;
 }
 
+/* The bits of an operation on bits: of negative numbers it may be one. */
+static struct num of_bits(u64 bits, bool negative)
+{
+	return whole(bits, negative && (s64)bits < 0);
+}
+
+static bool is_below_zero(const struct num *n)
+{
+	return n->real ? n->d < 0 : n->negative;
+}
+
 static bool is_true(const struct num *n)
 {
 	return n->real ? n->d != 0 : n->bits != 0;
@@ -289,11 +309,11 @@ static struct num two(enum op op, const struct num *a, const struct num *b)
 	case SUB:
 		return sum(a, b, true);
 	case AND:
-		return whole(as_bits(a) & as_bits(b), false);
+		return of_bits(as_bits(a) & as_bits(b), is_below_zero(a) && is_below_zero(b));
 	case XOR:
-		return whole(as_bits(a) ^ as_bits(b), false);
+		return of_bits(as_bits(a) ^ as_bits(b), is_below_zero(a) != is_below_zero(b));
 	case OR:
-		return whole(as_bits(a) | as_bits(b), false);
+		return of_bits(as_bits(a) | as_bits(b), is_below_zero(a) || is_below_zero(b));
 	case EQ:
 		return whole(c == 0, false);
 	case NE:
@@ -321,7 +341,7 @@ static struct num one(enum op op, const struct num *a)
 	case NEGATE:
 		return sum(&zero, a, true);
 	case INVERT:
-		return whole(~as_bits(a), false);
+		return of_bits(~as_bits(a), !is_below_zero(a));
 	default:
 		return whole(!is_true(a), false);
 	}

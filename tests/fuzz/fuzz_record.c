@@ -23,6 +23,8 @@ const struct fuzz_seed fuzz_seeds[] = {
 	SEED(NPY("{'descr': [(('seconds since x', 'time_s'), '<f8'), ('lost', '<u2'), ('i', '|i1'), "
 		 "], 'fortran_order': False, 'shape': (2,), }           \n\n")
 	     "12345678ab12345678cde"),
+	SEED("time_s,v\n0,1.7e308\n1,-1.7e308\n-1.7e308,inf\n1.7e308,-1e308\n"),
+	SEED("\xef\xbb\xbftime_s,lost,\x9b\n0,0,1\n1,5,2\n2,3,1\n"),
 	SEED("?a.b & 8 == 8 && !(c < -1.5) || ~a.b ^ 0x10 | 3 != 1e2"),
 	SEED("?a.b + 18446744073709551615 >= c - 7"),
 	{ NULL, 0 }

@@ -123,6 +123,11 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 	[ "$(first '~el7201.position & 0xffffffff == 0xfffffff4 || 0')" = 11 ]
 	[ "$(first 'el7201.position>=4 & 5')" = 4294967294 ]
 	[ "$(first 'el7201.position | 1 == 5')" = 4 ]
+	[ "$(first 'el7201.position > 1e-3 && el7201.position < 1.5e+1')" = 1 ]
+	[ "$(first '0x1e-3 == el7201.position + 10')" = 17 ]
+	[ "$(first '~el7201.position == -6')" = 5 ]
+	[ "$(first 'el7201.position == ~-5 | ~-3')" = 6 ]
+	[ "$(first '(~1 & -1) + 6 == el7201.position')" = 4 ]
 	[ "$(FAKE_SII=1 first 'el7201.controlword == 15')" = 4294967294 ]
 }
 
@@ -323,4 +328,46 @@ assert abs(a["axis.position"][1] - 1.4) < 1e-9, a'
 	out record '*' -o a.npy
 	truncate -s -10 a.npy
 	refused 1 'a.npy ends after 19 of 20 rows' plot a.npy
+}
+
+@test "plot draws large numbers, a byte order mark, and many gaps" {
+	printf 'time_s,v\n0,1.7e308\n1,-1.7e308\n' >a.csv
+	LC_ALL=C out plot a.csv >text
+	grep -qE '^ *4.49\S*e\+307 [|]' text
+	printf 'time_s,v\n-1.7e308,1\n1.7e308,2\ninf,3\n' >a.csv
+	ethercat plot a.csv -o a.svg
+	! grep -qE 'nan|inf' a.svg || return 1
+	printf '\xef\xbb\xbftime_s,v\n0,1\n5,2\n' >a.csv
+	out plot a.csv | grep -q 'time \[s\]'
+	awk 'BEGIN { print "time_s,lost,v"; for (i = 0; i < 9999; i++) print i ",1," i % 2 }' >a.csv
+	ethercat plot a.csv -o a.svg --force
+	[ "$(stat -c %s a.svg)" -lt 100000 ]
+	grep -q '>9999 records are missing<' a.svg
+}
+
+@test "plot prints no escape sequence of a recording" {
+	export LC_ALL=C
+	printf '# time 0 is \x9b2J\xc2\x9b2J\e[2J,\na\x9b2J\xc2\x9b\e\n1\n2\n' >a.csv
+	ethercat plot a.csv >text
+	printf 'a\n\x9b2J\xc2\x9b\e[\n' >a.csv
+	ethercat plot a.csv 2>>text && return 1
+	printf "\x93NUMPY\1\0\x60\0%-96s12345678" "{'descr': [(('seconds since "$'\e\xc2\x9b'"2J', \
+'time_s'), '<f8'), ], 'fortran_order': False, 'shape': (1,), }" >a.npy
+	ethercat plot a.npy time_s >>text
+	cat -v text
+	! grep -q $'[\x80-\x9f\e]' text || return 1
+	[ "$(grep -c '?' text)" = 4 ]
+}
+
+@test "plot replaces files only with --force, and the recording never" {
+	out record el7201.position -o a.csv
+	cp a.csv b.csv
+	ln -s a.csv link
+	refused 1 "'a.csv' is the recording; use another name" plot a.csv -o a.csv
+	refused 1 "'a.csv' is the recording; use another name" plot link -o a.csv --force
+	refused 1 "is the recording" plot - -o a.csv --force <a.csv
+	refused 1 "'b.csv' exists; replace it with --force" plot a.csv -o b.csv
+	cmp a.csv b.csv
+	ethercat plot a.csv -o b.csv --force
+	grep -q '<svg' b.csv
 }
