@@ -341,6 +341,9 @@ int ec_ioc_recorder(struct ec_call *call)
 	u32 bytes;
 	int ret;
 
+	if (call->size && !call->data)
+		return ec_refuse(call, -E2BIG, "masks of %u bytes, limit %u", call->size,
+				 EC_MAX_IMAGE / 4);
 	if (find_runs(call, NULL, &bytes) > EC_RECORD_AREAS)
 		return ec_refuse(call, -E2BIG,
 				 "more than %u stretches of bytes are wanted; record whole domains",

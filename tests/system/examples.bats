@@ -374,8 +374,8 @@ soon() {
 	# the same by a bus file: values by name, in volts, with a startup command and SYNC0
 	local f=$BATS_TEST_TMPDIR/bus.yaml
 	ethercat bus save --whole "$f"
-	sed -Ei -e '/object: "0x(6000:11|7000:01)"/s/(name: )[^,}]*/\1voltage, type: int16/' \
-		-e 's/(name: voltage, type: int16)/\1, unit: V, scale: 0.000305185/' \
+	sed -Ei -e '/object: "0x(6000:11|7000:01)"/s/(name: )[^,}]*/\1voltage/' \
+		-e 's/(name: voltage)/\1, unit: V, scale: 0.000305185/' \
 		-e 's/^( *)- name: el3062$/&\n\1  startup: [{at: safeop, sdo: "0x8000:15", X}]/' \
 		-e 's/X}/type: uint16, value: 3}/' \
 		-e 's/^( *)- name: el4002$/&\n\1  clock: {assign_activate: 0x0300, sync0: 1 ms}/' "$f"
