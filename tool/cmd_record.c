@@ -164,7 +164,7 @@ static int begin(struct record *x, int argc, char **argv)
 {
 	int err;
 
-	if (current_read(&x->d, &x->l))
+	if (current_read_as(x->t, &x->d, x->t->file, &x->l))
 		return 1;
 	x->values = calloc(x->l.n + 1, sizeof(*x->values));
 	if (!x->values)
@@ -382,7 +382,7 @@ const struct cmd cmd_record = {
 	.name = "record",
 	.run = run,
 	.args = "<NAME>...",
-	.opts = "mofXBYVn",
+	.opts = "mofXBYVni",
 	.summary = "Record values of the running session in each cycle",
 	.help = "Names are those of 'ethercat data --names'; * and ? stand for any characters, quote\n"
 		"them for the shell. Without --output-file CSV goes to stdout; a file that ends with\n"
@@ -391,7 +391,8 @@ const struct cmd cmd_record = {
 		"(records missing before this one) and wc (working counters: 2 complete, 1 incomplete,\n"
 		"0 no slave). Inputs are those received in the cycle, outputs those sent in it.\n"
 		"\n"
-		"Values have the units and the scaling of the bus file of the session, also in --when.\n"
+		"Names, types, units and scaling are those of the bus file of the session, or of --file,\n"
+		"also in --when.\n"
 		"Ctrl-C ends it with a complete file. --time and --count end it earlier (--count counts no\n"
 		"records of --before). With --when the file begins when the condition is true, with its\n"
 		"time 0: names, numbers, + - ~ & ^ |\n"

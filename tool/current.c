@@ -45,7 +45,8 @@ static int read_values(struct dev *d, struct current *l)
 int current_read(struct dev *d, struct current *l)
 {
 	*l = (struct current){ 0 };
-	return read_values(d, l) || current_rename(d, l) || current_refresh(d, l);
+	return read_values(d, l) || current_rename(d, l) || current_distinct(l) ||
+		current_refresh(d, l);
 }
 
 int current_read_as(const struct tool *t, struct dev *d, const char *file, struct current *l)
@@ -58,7 +59,7 @@ int current_read_as(const struct tool *t, struct dev *d, const char *file, struc
 	(void)t;
 	return fail("--file: this 'ethercat' was built without libyaml");
 #else
-	return bus_values(t, d, file, l);
+	return bus_values(t, d, file, l) || current_distinct(l);
 #endif
 }
 
@@ -124,6 +125,7 @@ void current_free(struct current *l)
 	for (size_t i = 0; i < l->n && l->units; i++)
 		free(l->units[i].text);
 	free(l->units);
+	free(l->before);
 	ect_list_free(l->list);
 	*l = (struct current){ 0 };
 }

@@ -24,6 +24,7 @@ struct current_unit {
  * @sizes: of them in bytes
  * @domains: how many
  * @sends: of the session at the last poll
+ * @before: names that the slaves give; NULL: none was replaced
  */
 struct current {
 	struct ect_list *list;
@@ -33,6 +34,7 @@ struct current {
 	size_t *sizes;
 	unsigned int domains;
 	u64 sends;
+	char (*before)[sizeof(((struct ect_value *)0)->name)];
 };
 
 /* both print what is wrong, and return 0 or 1 */
@@ -75,6 +77,8 @@ static inline const char *current_unit_text(const struct current *l, const struc
 
 /* current_names.c */
 int current_rename(struct dev *d, struct current *l);
+/* names that several values got are not taken; 0, or 1 after printing the error */
+int current_distinct(struct current *l);
 bool current_is_scaled(const struct current *l, const struct ect_value *v);
 double current_scaled(const struct current *l, const struct ect_value *v, double raw);
 /* the raw number of a scaled value, as text; false: @text is no number */

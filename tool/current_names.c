@@ -45,6 +45,55 @@ bool current_unscaled(const struct current *l, const struct ect_value *v, const 
 	return true;
 }
 
+static int by_name(const void *a, const void *b)
+{
+	return strcmp((*(struct ect_value *const *)a)->name, (*(struct ect_value *const *)b)->name);
+}
+
+static bool take_back(const struct current *l, struct ect_value *v)
+{
+	const char *name = l->before[v - current_at(l, 0)];
+
+	if (!strcmp(v->name, name))
+		return false;
+	snprintf(v->name, sizeof(v->name), "%s", name);
+	return true;
+}
+
+/* All values lose a name that several have. */
+static bool take_back_once(const struct current *l, struct ect_value **all)
+{
+	bool any = false;
+	size_t end;
+
+	qsort(all, l->n, sizeof(*all), by_name);
+	for (size_t i = 0; i < l->n; i = end) {
+		for (end = i + 1; end < l->n && !by_name(&all[i], &all[end]);)
+			end++;
+		for (size_t k = i; k < end && end > i + 1; k++)
+			any |= take_back(l, all[k]);
+	}
+	return any;
+}
+
+/* A name that is taken back may be one that another value has got. */
+int current_distinct(struct current *l)
+{
+	struct ect_value **all;
+
+	if (!l->before)
+		return 0;
+	all = calloc(l->n + 1, sizeof(struct ect_value *));
+	if (!all)
+		return fail("out of memory");
+	for (size_t i = 0; i < l->n; i++)
+		all[i] = (struct ect_value *)current_at(l, i);
+	while (take_back_once(l, all))
+		;
+	free(all);
+	return 0;
+}
+
 #ifdef EC_TOOL_NO_BUS
 int current_rename(struct dev *d, struct current *l)
 {
@@ -97,10 +146,13 @@ static int begin_units(struct current *l)
 	if (l->units)
 		return 0;
 	l->units = calloc(l->n + 1, sizeof(*l->units));
-	if (!l->units)
+	l->before = calloc(l->n + 1, sizeof(*l->before));
+	if (!l->units || !l->before)
 		return fail("out of memory");
-	for (size_t i = 0; i < l->n; i++)
+	for (size_t i = 0; i < l->n; i++) {
 		l->units[i].scale = 1;
+		memcpy(l->before[i], current_at(l, i)->name, sizeof(*l->before));
+	}
 	return 0;
 }
 

@@ -46,8 +46,8 @@ struct ect_record {
  *
  * Context: The thread of the handle; no traffic.
  * Return: 0; -ENOENT without a session; -ERANGE another session has begun since the values were
- * read; -EUSERS too many programs record; -EBUSY the handle reads something else; or another
- * negative errno.
+ * read, which is noticed if its process data are shorter or have fewer domains; -EUSERS too many
+ * programs record; -EBUSY the handle reads something else; or another negative errno.
  */
 int ect_record_begin(struct ect_handle *h, const struct ect_value *const *values, size_t n,
 		     struct ect_recording **r, struct ect_record_info *info);

@@ -229,6 +229,8 @@ first() { out record el7201.position --count 1 --when "$1" | tail -n 1 | cut -d,
 105,0,2,1.3
 106,0,2,1.4' ]
 	LC_ALL=C.UTF-8 out plot a.csv | grep -qx "axis.position \['°\"\]"
+	cp names bus.yaml
+	FAKE_NAMES= out record axis.position --file bus.yaml --count 1 | tail -n 1 | grep -q ',0.8$'
 	out record axis.position -o a.npy --when 'axis.position > 1.25' --count 2
 	LC_ALL=C.UTF-8 out plot a.npy | grep -qx 'axis.position \[?°"\]'
 	LC_ALL=C.UTF-8 out plot a.npy | grep -q '^ *1.4 |'

@@ -355,6 +355,18 @@ output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
 	err set el7201.controlword 1 | grep -q 'no value el7201.controlword'
 }
 
+@test "a name that two values would have belongs to none" {
+	names_of_session
+	# another value, which the file does not have, is called so
+	sed -i 's/name: axis/name: el7201/; s/name: position/name: controlword/; s/0x7010:01/0x7010:02/' \
+		"$FAKE_NAMES"
+	out data --names | awk '{ print $1 }' >"$BATS_TEST_TMPDIR/out"
+	cat "$BATS_TEST_TMPDIR/out"
+	[ "$(sort "$BATS_TEST_TMPDIR/out" | uniq -d | wc -l)" = 0 ]
+	grep -qx el7201.controlword "$BATS_TEST_TMPDIR/out"
+	grep -qx el7201.position "$BATS_TEST_TMPDIR/out"
+}
+
 @test "names of an application that are not valid, or of other slaves, change nothing" {
 	names_of_session
 	sed -i 's/0x1c213052/0x1c213053/' "$FAKE_NAMES"
