@@ -111,7 +111,16 @@ static int draw(const struct tool *t, const char *from, const struct plot_data *
 	if (t->force ? save_begin(&s, t->output_file) : save_new(&s, t->output_file))
 		return 1;
 	plot_svg(s.f, &v, c, n);
-	return save_end(&s);
+	if (save_end(&s))
+		return 1;
+	if (out_is_json()) {
+		out_object(NULL);
+		out_str("file", t->output_file, NULL);
+		out_u("values", n, NULL);
+		out_u("records", p->rows, NULL);
+		out_end();
+	}
+	return 0;
 }
 
 static int run(struct tool *t, int argc, char **argv)
@@ -119,8 +128,11 @@ static int run(struct tool *t, int argc, char **argv)
 	const struct plot_column *chosen[DRAWN_MAX];
 	struct plot_data p;
 	size_t n = 0;
-	int ret = plot_read(argv[0], &p);
+	int ret;
 
+	if (t->json && !t->output_file)
+		return usage_error("--json needs --output-file: the drawing goes to stdout");
+	ret = plot_read(argv[0], &p);
 	if (!ret && !p.rows)
 		ret = fail("%s has no records", argv[0]);
 	ret = ret || choose(argv[0], &p, argc - 1, argv + 1, chosen, &n) ||
@@ -142,6 +154,7 @@ const struct cmd cmd_plot = {
 		"SVG is replaced with --force, the recording never. Where\n"
 		"records are missing the line has a gap, which is marked. Other CSV files with a line of\n"
 		"names and numbers below it are drawn as well, over time_s or the number of the row.\n",
+	.json = "file, values, records",
 	.min_args = 1,
 	.max_args = 1000,
 };

@@ -370,6 +370,8 @@ assert abs(a["axis.position"][1] - 1.4) < 1e-9, a'
 	refused 1 "is the recording" plot - -o a.csv --force <a.csv
 	refused 1 "'b.csv' exists; replace it with --force" plot a.csv -o b.csv
 	cmp a.csv b.csv
-	ethercat plot a.csv -o b.csv --force
+	ethercat plot a.csv -o b.csv --force --json |
+		json '(d["file"], d["values"], d["records"]) == ("b.csv", 1, 20)'
+	refused 1 '--json needs --output-file' plot a.csv --json
 	grep -q '<svg' b.csv
 }
