@@ -6,9 +6,14 @@
 #include "fuzz.h"
 
 #include <stdarg.h>
+#include <signal.h>
+#include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "../../tool/plot.h"
+#include "../../tool/record_file.h"
 #include "../../tool/record_when.h"
 #include "../../tool/tool.h"
 
@@ -88,6 +93,57 @@ static void condition(const uint8_t *data, size_t len)
 	free(text);
 }
 
+void note(const char *fmt, ...)
+{
+	(void)fmt;
+}
+
+/* A recording with a long header, on a disk that is full at @limit bytes: whole rows are left. */
+static void record(const char *path, rlim_t limit)
+{
+	static struct record_column columns[4000];
+	static u64 bits[ARRAY_SIZE(columns)];
+	static char names[ARRAY_SIZE(columns)][40];
+	const struct rlimit all = { RLIM_INFINITY, RLIM_INFINITY }, full = { limit, RLIM_INFINITY };
+	struct record_row row = { .bits = bits, .wc_state = 2 };
+	struct record_file f;
+	struct plot_data p;
+	int ret;
+
+	for (size_t i = 0; i < ARRAY_SIZE(columns); i++) {
+		snprintf(names[i], sizeof(names[i]), "a_slave_%zu.a_value", i);
+		columns[i] = (struct record_column){
+			.name = names[i], .unit = "", .kind = EC_KIND_UINT, .bits = 8,
+		};
+	}
+	MUST(!record_file_open(&f, path, false, columns, ARRAY_SIZE(columns)));
+	MUST(!setrlimit(RLIMIT_FSIZE, &full));
+	record_file_begin(&f, 0, 0, "test");
+	for (unsigned int i = 0; i < 40; i++)
+		record_file_row(&f, &row);
+	ret = record_file_close(&f);
+	MUST(!setrlimit(RLIMIT_FSIZE, &all));
+	MUST(ret == 2);
+	failures = 0;
+	/* below the header nothing but the comment is left */
+	ret = plot_read(path, &p);
+	MUST(limit < 80000 ? ret == 1 : !ret && p.n == 4005 && p.rows);
+	plot_free(&p);
+	unlink(path);
+}
+
+static void full_disk(void)
+{
+	char dir[] = "/tmp/fuzz_record.XXXXXX", path[sizeof(dir) + 8];
+
+	MUST(mkdtemp(dir));
+	signal(SIGXFSZ, SIG_IGN);
+	snprintf(path, sizeof(path), "%s/a.csv", dir);
+	record(path, 50000);
+	record(path, 200000);
+	rmdir(dir);
+}
+
 static void draw(const struct plot_data *p)
 {
 	const struct plot_column *c[64];
@@ -106,8 +162,12 @@ static void draw(const struct plot_data *p)
 
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 {
+	static bool again;
 	struct plot_data p;
 
+	if (!again)
+		full_disk();
+	again = true;
 	failures = 0;
 	if (len && *data == '?') {
 		condition(data + 1, len - 1);
