@@ -174,7 +174,7 @@ static bool asks_slaves(const struct bus_wish *wish)
 			if (s->pdo_count || s->module_count || s->clock || s->startup_count)
 				return true;
 		}
-	return wish->whole;
+	return wish->whole || wish->pdos;
 }
 
 static int make(const struct tool *t, struct dev *d, struct bus_wish *wish, struct ecb_bus **bus)

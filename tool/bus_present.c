@@ -35,14 +35,15 @@ static int wish_values(const struct ecb_slave *file, struct present *l)
 }
 
 /* of slaves of its kind, since ecb_compare() finds out which one it is */
-static int wish_of_file(const struct ecb_master *m, const struct ect_slave *s, struct present *l)
+static int wish_of_file(const struct ecb_master *m, const struct ect_slave *s, bool pdos,
+			struct present *l)
 {
 	for (size_t i = 0; i < m->slave_count; i++) {
 		const struct ecb_slave *file = m->slaves[i];
 
 		if (file->vendor != s->vendor_id || file->product != s->product_code)
 			continue;
-		l->wish |= (file->pdo_count ? PRESENT_PDOS : 0) |
+		l->wish |= (pdos || file->pdo_count ? PRESENT_PDOS : 0) |
 			(file->module_count ? PRESENT_MODULES : 0) |
 			(file->clock ? PRESENT_CLOCK : 0);
 		if (wish_values(file, l))
@@ -59,7 +60,7 @@ int bus_present_wish(const struct bus_wish *wish, unsigned int master, const str
 		l->wish = PRESENT_PDOS | PRESENT_NAMES | PRESENT_MODULES | PRESENT_CLOCK;
 	for (size_t i = 0; wish->file && i < wish->file->master_count; i++)
 		if (wish->file->masters[i]->index == master)
-			return wish_of_file(wish->file->masters[i], s, l);
+			return wish_of_file(wish->file->masters[i], s, wish->pdos, l);
 	return 0;
 }
 

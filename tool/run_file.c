@@ -167,7 +167,7 @@ static int check_units(const struct job *j)
 
 static int prepare(struct job *j)
 {
-	struct bus_wish wish = { .file = j->bus };
+	struct bus_wish wish = { .pdos = true };
 	struct ecb_error e;
 
 	if (read_file(j))
@@ -176,6 +176,7 @@ static int prepare(struct job *j)
 	if (!j->want)
 		return fail("%s has no master %u; choose one of the file with -m", j->path,
 			    j->d->master);
+	wish.file = j->bus;
 	if (bus_of_machine(j->t, &wish, &j->machine))
 		return 1;
 	j->found = master_of(j->machine, j->d->master);

@@ -258,7 +258,7 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	# names are those of the file
 	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    slaves:/
 		s/name: el2008$/name: lamps/; s/parent: el2008/parent: lamps/
-		s/name: channel_1.input/name: alarm, type: bool, unit: Pa, scale: 20/' "$f"
+		s/name: channel_1.input/name: alarm, unit: Pa, scale: 20/' "$f"
 	run ethercat run "$f"
 	echo "$output"
 	[ "$status" = 0 ]
