@@ -358,7 +358,8 @@ output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
 @test "a name that two values would have belongs to none" {
 	names_of_session
 	# another value, which the file does not have, is called so
-	sed -i 's/name: axis/name: el7201/; s/name: position/name: controlword/; s/0x7010:01/0x7010:02/' \
+	sed -i -e 's/name: axis/name: el7201/; s/name: position/name: controlword/' \
+		-e 's/0x7010:01/0x7010:02/' \
 		"$FAKE_NAMES"
 	out data --names | awk '{ print $1 }' >"$BATS_TEST_TMPDIR/out"
 	cat "$BATS_TEST_TMPDIR/out"
