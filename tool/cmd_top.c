@@ -150,6 +150,7 @@ static int top(const struct tool *t, struct dev *d)
 			faults = !faults;
 	}
 	screen_release();
+	screen_forget_interruption();
 	return ret;
 }
 

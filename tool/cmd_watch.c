@@ -147,10 +147,11 @@ static int watch(const struct tool *t, struct dev *d, struct watch *w)
 		else
 			print_changes(d, w, from);
 		if (ferror(stdout))
-			return 0;
+			break;
 		screen_wait(every);
 		err = current_poll(d, &w->l);
 	}
+	screen_forget_interruption();
 	if (err == -ESTALE || err == -ENOENT || err == -EINVAL) {
 		note("Master%u: the session has ended", d->master);
 		return 0;

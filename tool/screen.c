@@ -40,6 +40,12 @@ bool screen_ended(void)
 	return ended;
 }
 
+void screen_forget_interruption(void)
+{
+	if (ended)
+		clearerr(stdout);
+}
+
 void screen_wait(double seconds)
 {
 	struct pollfd p = { .fd = STDOUT_FILENO };

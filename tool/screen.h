@@ -16,6 +16,8 @@ void screen_end(void);
 void screen_catch_end(void);
 bool screen_ended(void);
 void screen_wait(double seconds);
+/* what it has interrupted may have been a write, which is no fault of the output */
+void screen_forget_interruption(void);
 
 /* keys come one by one; until screen_release() */
 void screen_grab(void);
