@@ -6,12 +6,14 @@
  *
  * WARNING: it changes the output. Run it only where that moves or heats nothing.
  */
+#define _POSIX_C_SOURCE 200809L	/* clock_gettime() */
 #include <ethercat-bus.h>
 #include <ethercat-bus/load.h>
 #include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <time.h>
 
 #define PERIOD_NS	1000000U
 #define SECONDS_MAX	1000000UL
@@ -67,13 +69,23 @@ static int setup(char **argv)
 }
 
 /* Receives and sends all domains; the two values may be in different ones. */
-static int exchange(unsigned long cycles)
+static double now_s(void)
 {
+	struct timespec t;
+
+	clock_gettime(CLOCK_MONOTONIC, &t);
+	return (double)t.tv_sec + (double)t.tv_nsec * 1e-9;
+}
+
+/* the cycle is that of the file */
+static int exchange(unsigned long seconds)
+{
+	double end = now_s() + (double)seconds;
 	const uint8_t *from = ecrt_domain_data(input.domain);
 	uint8_t *to = ecrt_domain_data(output.domain);
 	double value = 0;
 
-	for (unsigned long n = 0; n < cycles && !stop; n++) {
+	while (now_s() < end && !stop) {
 		if (ecrt_master_wait_cycle(master, 1000000) < 0 && !stop)
 			return 1;
 		ecrt_master_receive(master);
@@ -108,7 +120,7 @@ int main(int argc, char **argv)
 	master = ecrt_request_master(0);
 	if (!master)
 		return 1;
-	ret = setup(argv) || exchange(seconds * 1000);
+	ret = setup(argv) || exchange(seconds);
 	ecrt_release_master(master);
 	return ret;
 }

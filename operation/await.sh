@@ -7,12 +7,13 @@
 # usage: await.sh FILE [SECONDS]	default: 60
 
 [ $# = 1 ] || [ $# = 2 ] || { echo "usage: await.sh FILE [SECONDS]" >&2; exit 2; }
-left=${2:-60}
+# seconds since the computer was started, which no clock step changes
+now() { cut -d. -f1 /proc/uptime; }
+end=$(($(now) + ${2:-60}))
 while ! said=$(ethercat run --dry-run "$1" 2>&1); do
-	[ "$left" -gt 0 ] || {
+	[ "$(now)" -lt "$end" ] || {
 		echo "$said" >&2
 		exit 1
 	}
-	left=$((left - 1))
 	sleep 1
 done

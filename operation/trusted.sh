@@ -12,8 +12,10 @@ refuse() {
 }
 
 [ $# = 1 ] || { echo "usage: trusted.sh FILE" >&2; exit 2; }
-# the place behind links, so that each folder is one of the way
+# each folder below is one of the way
 file=$(readlink -e -- "$1") || refuse "there is no file $1" "write it with 'ethercat bus save'"
+[ "$file" = "$(realpath -s -- "$1")" ] ||
+	refuse "a part of $1 is a link, which is not followed" "name $file"
 [ -f "$file" ] || refuse "$file is no regular file" "name a bus file"
 at=$file me=$(id -u)
 while :; do

@@ -22,7 +22,8 @@ static void read_slave(const struct ect_slave *s, struct ecb_slave *to)
 	to->revision = s->revision_number;
 	to->alias = s->alias;
 	to->identification = s->identification;
-	to->serial = into.wish->whole || into.wish->file ? s->serial_number : 0;
+	if (into.wish->whole || into.wish->file || into.wish->serials)
+		to->serial = s->serial_number;
 	to->type = ecb_bus_text(into.bus, s->order[0] ? s->order : s->name);
 }
 

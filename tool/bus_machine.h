@@ -10,12 +10,14 @@
  * struct bus_wish - what is read of a machine
  * @whole: all that is known, also of slaves themselves and of a running session
  * @file: without @whole: only what this file says; NULL: what finds a slave again
+ * @serials: serial numbers, by which slaves are found as well
  * @pdos: with @file: PDOs also of its slaves that keep their own
  * @unread: set to the number of slaves of which something was not read
  */
 struct bus_wish {
 	bool whole;
 	const struct ecb_bus *file;
+	bool serials;
 	bool pdos;
 	size_t unread;
 };

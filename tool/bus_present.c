@@ -83,7 +83,8 @@ static int take_values(struct ecb_bus *bus, const struct present *l, struct ecb_
 
 int bus_present_take(struct ecb_bus *bus, const struct present *l, struct ecb_slave *to)
 {
-	for (unsigned int slot = 1; slot <= l->slots; slot++) {
+	for (unsigned int slot = 1; l->known & PRESENT_MODULES && slot <= l->slots;
+	     slot++) {
 		struct ecb_module *m = l->idents[slot] ? ecb_module_add(bus, to) : NULL;
 
 		if (!l->idents[slot])

@@ -53,7 +53,7 @@ static int check_twice(const char *path, const struct current *l)
 
 int bus_values(const struct tool *t, struct dev *d, const char *path, struct current *l)
 {
-	struct bus_wish wish = { 0 };
+	struct bus_wish wish = { .serials = true };
 	struct ecb_bus *file, *machine;
 	struct ecb_error e;
 	struct named n = { 0 };

@@ -274,7 +274,9 @@ int current_parse(const struct current *l, const struct ect_value *v, const char
 	if (current_is_scaled(l, v)) {
 		if (!current_unscaled(l, v, text, raw, sizeof(raw)))
 			return fail("%s is scaled: '%s' is no number", v->name, text);
-		text = raw;
+		text = strcmp(raw, "-0") ? raw : "0";
+		if (*text == '-' && t.kind != EC_KIND_INT && t.kind != EC_KIND_FLOAT)
+			return does_not_fit(v, text, "it has no sign");
 	}
 	if (t.kind != EC_KIND_FLOAT && t.kind != EC_KIND_INT)
 		return parse_bits(v, text, bits);

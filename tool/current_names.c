@@ -167,6 +167,7 @@ int current_rename_value(struct current *l, size_t i, const struct ecb_slave *s)
 	if (begin_units(l))
 		return 1;
 	snprintf(v->name, sizeof(v->name), "%s", name);
+	/* else the one that the EEPROM has */
 	if (e->type)
 		v->type = codes[e->type];
 	l->units[i].scale = e->scale;

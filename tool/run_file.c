@@ -235,6 +235,35 @@ static int set_cycle(const struct job *j, ec_master_t *m)
 	return err ? err : ecrt_master_set_cycle(m, &c);
 }
 
+static bool same_slave(const struct ecb_slave *a, const struct ecb_slave *b)
+{
+	return a->vendor == b->vendor && a->product == b->product && a->serial == b->serial &&
+		a->alias == b->alias && a->identification == b->identification;
+}
+
+/* What was read before the master was reserved must still be so: places depend on it. */
+static int check_again(const struct job *j)
+{
+	struct bus_wish wish = { .serials = true };
+	const struct ecb_master *now;
+	struct ecb_bus *bus;
+	size_t i = 0;
+
+	if (bus_of_machine(j->t, &wish, &bus))
+		return 1;
+	now = master_of(bus, j->d->master);
+	while (now && i < now->slave_count && i < j->found->slave_count &&
+	       same_slave(now->slaves[i], j->found->slaves[i]))
+		i++;
+	if (now && i == now->slave_count && i == j->found->slave_count)
+		now = NULL;
+	else if (!now)
+		now = j->found;
+	ecb_bus_free(bus);
+	return now ? fail("Master%u: its slaves have changed meanwhile; repeat the command",
+			  j->d->master) : 0;
+}
+
 static int start(const struct job *j, ec_master_t *m)
 {
 	struct ecb_loaded l = { .struct_size = sizeof(l) };
@@ -242,6 +271,8 @@ static int start(const struct job *j, ec_master_t *m)
 	size_t n;
 	int err;
 
+	if (check_again(j))
+		return 1;
 	if (ecrt_master_load_bus(m, &j->load, &e))
 		return fail("%s", e.text);
 	err = ecrt_master_loaded(m, &l);

@@ -40,6 +40,8 @@ static int entry(struct check *c, const struct ecb_entry *e)
 	if (e->type && bits[e->type] != e->bits)
 		return BAD(c, e->line, "type of %u bits for an entry of %u bits; expected the same",
 			   bits[e->type], e->bits);
+	if (e->scale == 0)
+		return BAD(c, e->line, "'scale' 0 makes each value the same; expected another number");
 	return 0;
 }
 

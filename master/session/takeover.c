@@ -232,6 +232,18 @@ static void adopt_late(struct ec_session *s, u32 per_s)
 	WRITE_ONCE(s->sessions->links->carry->share.late_per_s, per_s);
 }
 
+/* Its values are called as the new application says. */
+static void take_names(struct ec_session *s, struct ec_session *candidate)
+{
+	lockdep_assert_held(s->wanted.lock);
+	s->wanted.budget.bytes += candidate->names_size;
+	s->wanted.budget.bytes -= s->names_size;
+	candidate->wanted.budget.bytes += s->names_size;
+	candidate->wanted.budget.bytes -= candidate->names_size;
+	swap(s->names, candidate->names);
+	swap(s->names_size, candidate->names_size);
+}
+
 /**
  * ec_session_take_over() - give the detached session to the application of the candidate
  * @ss: sessions of a master with a detached session and a candidate
@@ -276,6 +288,7 @@ int ec_session_take_over(struct ec_sessions *ss, char *why, size_t size, bool ke
 	s->owner_pid = candidate->owner_pid;
 	memcpy(s->owner_comm, candidate->owner_comm, sizeof(s->owner_comm));
 	ec_report(ss->base, EC_EVENT_TAKEN_OVER, s->owner_pid);
+	take_names(s, candidate);
 	/* the previous application has no handles any more */
 	if (s->handles)
 		ec_session_free(s->handles);

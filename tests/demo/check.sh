@@ -52,7 +52,7 @@ shows() { grep -qE "$1" "$out.y"; }
 t "DEMO=run and the others end with 0" [ $rc = 0 ]
 t "DEMO=run saves the bus and shows a value that follows an output" \
 	shows '^ +[0-9.]+  el1008.channel_1.input = 1$'
-t "DEMO=run records each cycle and draws it" shows '^\$ ethercat plot '
+t "DEMO=run records each cycle and draws it" shows 'time \[s\], 0 is 2'
 t "DEMO=compare names the exchanged slave" \
 	shows "^[^ ]*yesterday.yaml:[0-9]+: slave 'el1008' exchanged: expected EL1008,.* found EL3062"
 t "DEMO=syncunits shows the unit that has failed" shows '^  failed, outputs zero, 1 fault'

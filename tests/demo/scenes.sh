@@ -10,9 +10,6 @@
 # EC_BUILD: where things were built; DEMO_START: when demo.sh began
 
 set -u
-here=$(cd "$(dirname "$0")" && pwd)
-top=$here/../..
-
 list() {
 	cat <<-'END'
 	run         save a bus as a file, run, watch, set, record and plot: no program is written
@@ -87,13 +84,11 @@ line() {
 }
 
 # is NAME VALUE: of the process data
-is() { ethercat data --names | grep -qE "^ *$1 .* $2\$"; }
-
 scene_run() {
 	local lamp=el2008.channel_1.output sensor=el1008.channel_1.input pid recorder
 
 	step "run: a bus that nobody has configured; output 1 is wired to input 1"
-	line out | bus 3
+	bus 3 < <(line out)
 	step "save: what is there becomes a file"
 	show ethercat bus save "$tmp/bus.yaml" || die "bus save" "see above"
 	cat "$tmp/bus.yaml"
@@ -127,7 +122,7 @@ scene_run() {
 
 scene_compare() {
 	step "compare: the machine of yesterday is saved"
-	line lamps | bus 3
+	bus 3 < <(line lamps)
 	show ethercat bus save "$tmp/yesterday.yaml" || die "bus save" "see above"
 	step "overnight somebody exchanges the inputs for analog ones, and adds a slave"
 	line lamps | sed 's/^slave in EL1008/slave in EL3062/; /^connect/d' >"$tmp/night"
@@ -183,7 +178,7 @@ judge() {
 
 scene_syncunits() {
 	step "syncunits: two parts of a machine, each a sync unit of its own"
-	two_lines "" | bus 6
+	bus 6 < <(two_lines "")
 	step "the coupler of the right part loses its power for 2 s; only this unit fails"
 	parts units 'off coupler2' 'on coupler2' units
 	judge
@@ -191,7 +186,7 @@ scene_syncunits() {
 
 scene_hotconnect() {
 	step "hotconnect: the right part is a group that comes and goes"
-	two_lines alias=7 | bus 6
+	bus 6 < <(two_lines alias=7)
 	step "its cable is taken away for 2 s; the left part keeps all of its cycles"
 	parts groups 'unplug coupler.2' 'plug coupler.2 coupler2.0' slaves
 	judge

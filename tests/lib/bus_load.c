@@ -343,6 +343,7 @@ static int load(const char *text, unsigned int flags, struct ecb_error *e)
 #define LAMPS	"  - {name: lamps, vendor: 2, product: 0x20, alias: 5}\n"
 #define DRIVE	"  - {name: axis, vendor: 2, product: 0x30"
 #define INPUTS	"  - {name: in, vendor: 2, product: 0x40}\n"
+#define AT_PORT	"  groups: [{name: g, parent: lamps, port: 1}]\n"
 #define PART	HEAD COUPLER LAMPS DRIVE
 
 /* what is refused, before anything is configured */
@@ -359,6 +360,14 @@ static const struct {
 	  "t:6: slave 'axis' exchanged: expected vendor 0x00000002, product 0x00000031, found drive, vendor" },
 	{ PART "}\n" INPUTS "  - {name: more, vendor: 2, product: 0x40}\n", -ENODEV,
 	  "t:8: slave 'more' missing: vendor 0x00000002, product 0x00000040; connect it" },
+	/* the drive is at the port of the group, as its slave or as another one */
+	{ HEAD COUPLER LAMPS DRIVE ", group: g}\n" INPUTS AT_PORT, -EINVAL,
+	  "t:7: slave 'in' is connected behind a hot connect group" },
+	{ HEAD COUPLER LAMPS "  - {name: tool, vendor: 2, product: 0x99, group: g}\n" INPUTS AT_PORT,
+	  -EINVAL, "t:7: slave 'in' is connected behind a hot connect group" },
+	{ PART "}\n  - {name: in, vendor: 2, product: 0x40, group: g}\n"
+	  "  groups: [{name: g, identification: 7}]\n", -EINVAL,
+	  "t:8: hot connect group 'g': an application does not see identifications, and slave 'axis'" },
 	{ PART ", parent: k, port: 2}\n" INPUTS, -ENODEV, "t:6: slave 'axis' moved: expected port 2" },
 	{ HEAD "  - {vendor: 9, product: 9}\n  - {vendor: 9, product: 8}\n", -ENODEV,
 	  "(1 more differences; 'ethercat bus check' shows all)" },
@@ -466,7 +475,7 @@ static void published(void)
 	}
 	CHECK(bus->masters[0]->slave_count == 4);
 	CHECK(!strcmp(bus->masters[0]->slaves[1]->name, "axis"));
-	CHECK(!strcmp(bus->masters[0]->slaves[2]->name, "k"));
+	CHECK(!strcmp(bus->masters[0]->slaves[3]->name, "k"));
 	CHECK(!strcmp(bus->masters[0]->slaves[1]->pdos[1]->entries[2]->name, "x6000_11"));
 	ecb_bus_free(bus);
 }
@@ -475,18 +484,19 @@ static void published(void)
 static void groups(void)
 {
 	loads("ethercat: 1\nmasters:\n- groups: [{name: g, parent: lamps, port: 1, mandatory: true, fast: true}]\n"
-	      "  slaves:\n" COUPLER LAMPS DRIVE ", serial: 5, group: g}\n" INPUTS, 0,
+	      "  slaves:\n" COUPLER LAMPS DRIVE ", serial: 5, group: g}\n"
+	      "  - {name: in, vendor: 2, product: 0x40, group: g}\n", 0,
 	      "domain0\n"
 	      "config0 = 5:0 0x2:0x20\n"
 	      "group g by 3 value 0 port 1 at 0 flags 3\n"
 	      "config1 = group 0 member 0 0x2:0x30\n"
-	      "config2 = 0:0 0x2:0x10\n"
-	      "config3 = 0:2 0x2:0x40\n"
+	      "config2 = group 0 member 1 0x2:0x40\n"
+	      "config3 = 0:0 0x2:0x10\n"
 	      "config1 flag ExpectedSerial 5\n"
 	      "domain0: config0 SM0 0.0\n"
 	      "domain0: config1 SM2 0.0\n"
 	      "domain0: config1 SM3 0.0\n"
-	      "domain0: config3 SM0 0.0\n");
+	      "domain0: config2 SM0 0.0\n");
 }
 
 /* slot by slot, each time that the slave is configured; an empty slot is expected as such */

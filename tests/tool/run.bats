@@ -211,6 +211,12 @@ assert [json.loads(l)["value"] for l in sys.stdin] == [
 	[[ $output == *"axis.speed has the type int16, 16 bit(s), which "*" does not fit"* ]]
 	run ethercat set --file "$f" el7201.controlword 1
 	[[ $output == *"Master0 has no value el7201.controlword"* ]]
+	# a number without sign does not become a large one
+	sed -i 's/name: speed, type: int16/name: speed, type: uint16/' "$f"
+	run ethercat set --file "$f" axis.speed -12.5
+	[ "$status" = 1 ]
+	[[ $output == *"'-75' does not fit: it has no sign"* ]]
+	[[ $(log_of set --file "$f" axis.speed -5.001) == *"16 bits, 0x0,"* ]]
 	# another machine
 	sed -i 's/vendor: 2/vendor: 3/' "$f"
 	run ethercat watch --file "$f"

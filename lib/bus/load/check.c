@@ -75,8 +75,31 @@ static int check_unit(struct load *l, const struct ecb_unit *u)
 	return 0;
 }
 
+/*
+ * An application does not see identifications, so not where such a group is: what counts from
+ * there on by ring position might be another slave.
+ */
+static int check_hidden(struct load *l, const struct ecb_group *g)
+{
+	if (!g->identification || g->alias || l->how->found)
+		return 0;
+	for (size_t i = 0; i < l->want->slave_count; i++) {
+		const struct plan *p = &l->plans[i];
+
+		if (p->there && p->group < 0 && p->position && !p->s->alias)
+			return BAD(l, g->line,
+				   "hot connect group '%s': an application does not see identifications, and slave '%s' has no alias; give it one, or use 'ethercat run'",
+				   g->name, p->s->name);
+	}
+	return 0;
+}
+
 static int check_group(struct load *l, size_t group)
 {
+	int ret = check_hidden(l, l->want->groups[group]);
+
+	if (ret)
+		return ret;
 	for (size_t i = 0; i < l->want->slave_count; i++)
 		if (l->plans[i].group == (long)group)
 			return 0;
@@ -85,7 +108,6 @@ static int check_group(struct load *l, size_t group)
 		   l->want->groups[group]->name);
 }
 
-/* an 'at' that is in a group itself, and members that are not behind one another, are refused */
 static int check_master(struct load *l)
 {
 	const struct ecb_master *m = l->want;

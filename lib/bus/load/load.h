@@ -11,7 +11,7 @@
  * @s: it
  * @there: slave of the machine, NULL: absent
  * @position: of @there in the ring
- * @ring: @position without slaves of groups
+ * @ring: @position without slaves of groups and those behind them
  * @group: number of its hot connect group in the file, or -1
  * @omitted: it gets no configuration
  * @pdos: what it gets, in the order of the file; PDOs without entries are those of @there

@@ -110,10 +110,56 @@ static int compare(struct search *s)
 	return -ENODEV;
 }
 
-static void take_peers(struct load *l, const struct match *m)
+/* Is found slave @k the head of a group, whatever it is? */
+static bool is_head(const struct load *l, const struct match *m, size_t k)
 {
-	size_t before = 0;
+	const struct ecb_slave *s = l->found->slaves[k];
+	size_t up = m->b.parent[k], at = up == NO_SLAVE ? NO_SLAVE : m->b.peer[up];
+	const char *parent = at == NO_SLAVE ? "" : l->want->slaves[at]->name;
 
+	for (size_t i = 0; i < l->want->group_count; i++) {
+		const struct ecb_group *g = l->want->groups[i];
+
+		if (g->alias ? s->alias == g->alias :
+		    g->identification ? s->identification == g->identification :
+		    g->parent && s->port == g->port && !strcmp(parent, g->parent))
+			return true;
+	}
+	return false;
+}
+
+/*
+ * Ring positions, as ec_groups_mark() counts: without the heads of groups and all slaves behind
+ * them, also those that the file does not have.
+ */
+static int find_positions(struct load *l, const struct match *m)
+{
+	size_t n = l->found->slave_count, before = 0;
+	bool *in = calloc(n + 1, sizeof(*in));
+	int ret = in ? 0 : load_no_memory(l);
+
+	for (size_t k = 0; k < n && !ret; k++) {
+		size_t up = m->b.parent[k], i = m->b.peer[k];
+		struct plan *p = i == NO_SLAVE ? NULL : &l->plans[i];
+
+		in[k] = is_head(l, m, k) || (up < k && in[up]);
+		if (p && p->there) {
+			/* of groups by identification, which an application does not see */
+			in[k] |= p->group >= 0;
+			p->ring = k - before;
+		}
+		if (p && p->there && p->group < 0 && in[k])
+			ret = BAD(l, p->s->line,
+				  "slave '%s' is connected behind a hot connect group; put it into that group, or connect it elsewhere",
+				  p->s->name);
+		before += in[k];
+	}
+	free(in);
+	return ret;
+}
+
+static int take_peers(struct load *l, const struct match *m)
+{
 	for (size_t i = 0; i < l->want->slave_count; i++) {
 		struct plan *p = &l->plans[i];
 		size_t k = m->a.peer[i];
@@ -125,15 +171,7 @@ static void take_peers(struct load *l, const struct match *m)
 		/* a group may come later */
 		p->omitted = !p->there && p->group < 0;
 	}
-	/* ring positions count no slaves of groups */
-	for (size_t k = 0; k < l->found->slave_count; k++) {
-		size_t i = m->b.peer[k];
-
-		if (i == NO_SLAVE || !l->plans[i].there)
-			continue;
-		l->plans[i].ring = k - before;
-		before += l->plans[i].group >= 0;
-	}
+	return find_positions(l, m);
 }
 
 /* without the slave at whose port it is, a group cannot be configured */
@@ -202,10 +240,10 @@ int load_place(struct load *l)
 		ret = compare(&s);
 	if (!ret && match_slaves(&m, &s.want, l->found, false))
 		ret = load_no_memory(l);
-	if (!ret) {
-		take_peers(l, &m);
+	if (!ret)
+		ret = take_peers(l, &m);
+	if (!ret)
 		omit_groups(l);
-	}
 	match_free(&m);
 	free(s.copies);
 	free(s.slaves);

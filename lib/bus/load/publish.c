@@ -59,6 +59,9 @@ int load_publish_names(struct load *l)
 	/* with more of them tools show the names that slaves give */
 	else if (size <= NAMES_MAX)
 		ret = ecrt_master_set_names(l->m, text, size);
+	/* nor with an older module, or without memory for them: they are for tools only */
+	if (ret == -ENOTTY || ret == -EDQUOT)
+		ret = 0;
 	if (ret && ret != -ENOMEM)
 		load_failed(l, 0, ret, "cannot set the names of values");
 	free(text);

@@ -195,7 +195,7 @@ ECB_API int ecb_value_write(const struct ecb_value *value, uint8_t *data, double
 	if (value->type == ECB_TYPE_REAL32 || value->type == ECB_TYPE_REAL64) {
 		bool single = value->type == ECB_TYPE_REAL32;
 
-		if (single && fabs(raw) > 3.4028234663852886e38)
+		if (isinf(raw) || (single && fabs(raw) > 3.4028234663852886e38))
 			return -ERANGE;
 		if (single)
 			ecrt_write_real(copy, (float)raw);
