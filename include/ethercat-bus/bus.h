@@ -29,7 +29,7 @@ extern "C" {
 
 /* struct ecb_entry.type and struct ecb_command.type */
 enum ecb_type {
-	ECB_TYPE_NONE = 0,	/* unsigned, of the entry's size; tools show the type of the EEPROM */
+	ECB_TYPE_NONE = 0,	/* unsigned, of the entry's size; for tools: as in the EEPROM */
 	ECB_TYPE_BOOL,
 	ECB_TYPE_INT8,
 	ECB_TYPE_INT16,

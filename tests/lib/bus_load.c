@@ -363,8 +363,8 @@ static const struct {
 	/* the drive is at the port of the group, as its slave or as another one */
 	{ HEAD COUPLER LAMPS DRIVE ", group: g}\n" INPUTS AT_PORT, -EINVAL,
 	  "t:7: slave 'in' is connected behind a hot connect group" },
-	{ HEAD COUPLER LAMPS "  - {name: tool, vendor: 2, product: 0x99, group: g}\n" INPUTS AT_PORT,
-	  -EINVAL, "t:7: slave 'in' is connected behind a hot connect group" },
+	{ HEAD COUPLER LAMPS "  - {name: tool, vendor: 2, product: 0x99, group: g}\n" INPUTS
+	  AT_PORT, -EINVAL, "t:7: slave 'in' is connected behind a hot connect group" },
 	{ PART "}\n  - {name: in, vendor: 2, product: 0x40, group: g}\n"
 	  "  groups: [{name: g, identification: 7}]\n", -EINVAL,
 	  "t:8: hot connect group 'g': an application does not see identifications, and slave 'axis'" },
