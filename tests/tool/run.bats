@@ -230,9 +230,12 @@ assert [json.loads(l)["value"] for l in sys.stdin] == [
 # on_terminal ARG...: with a terminal of 80 columns and 24 lines as stdin and stdout
 on_terminal() {
 	python3 - "$HERE/build/fake/ethercat" "$@" <<-'END'
-	import fcntl, os, pty, struct, sys, termios
+	import fcntl, os, pty, signal, struct, sys, termios
 	pid, fd = pty.fork()
 	if not pid:
+	    # a shell in the background ignores them
+	    for s in signal.SIGINT, signal.SIGQUIT:
+	        signal.signal(s, signal.SIG_DFL)
 	    fcntl.ioctl(0, termios.TIOCSWINSZ, struct.pack('HHHH', 24, 80, 0, 0))
 	    os.execv(sys.argv[1], sys.argv[1:])
 	keys = os.environ.get('KEYS', 'ejq').encode() if sys.argv[2] == 'top' else b''
