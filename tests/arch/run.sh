@@ -58,11 +58,11 @@ programs() {	# programs COMPILER
 	make -s -C examples O="$out/$1/examples" LIB="$out/$1/lib" "${vars[@]}" all
 }
 
-# libatomic, for example, is not on each machine
+# libatomic, for example, is not on each machine; libm is a part of the C library
 libc_only() {
 	! readelf -d "$out/$1/lib/libethercat.so" "$out/$1/tools/libethercat-tools.so" \
 		"$out/$1/tool/ethercat" | grep NEEDED |
-		grep -v 'libc\.so\|ld-linux\|ld64\.so\|libethercat-tools\.so\.1'
+		grep -v 'libc\.so\|libm\.so\|ld-linux\|ld64\.so\|libethercat-tools\.so\.1'
 }
 
 for c in $compilers; do
