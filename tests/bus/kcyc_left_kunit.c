@@ -387,9 +387,37 @@ static void left_names_stay(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_SET_NAMES, NULL, &size), 0);
 }
 
+/* An application that takes a session over says what its values are called from then on. */
+static void left_names_are_of_the_new_application(struct kunit *test)
+{
+	const struct ec_ioc_cycle all = { .flags = EC_CYCLE_FLAG_ALL };
+	struct bus *b = kcyc_bus(test);
+	struct kcyc *a = kcyc_configure(b, all);
+	char old[8] = "before", new[8] = "new", read[8] = "";
+	u32 size = 6;
+
+	KUNIT_ASSERT_EQ(test, names(b, EC_IOC_SET_NAMES, old, &size), 0);
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	kcyc_wait_cycles(a, 20);
+	bus_end(b);
+	a = kcyc_configure(b, all);
+	size = 3;
+	KUNIT_ASSERT_EQ(test, names(b, EC_IOC_SET_NAMES, new, &size), 0);
+	KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
+	KUNIT_EXPECT_TRUE(test, a->taken_over);
+	size = sizeof(read);
+	KUNIT_EXPECT_EQ(test, names(b, EC_IOC_NAMES, read, &size), 0);
+	KUNIT_EXPECT_EQ(test, size, 3u);
+	KUNIT_EXPECT_STREQ(test, read, "new");
+	bus_end(b);
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_END_DETACHED, NULL), 0);
+	KUNIT_EXPECT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 5000), ~0ull);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(left_session_continues),
 	KUNIT_CASE(left_names_stay),
+	KUNIT_CASE(left_names_are_of_the_new_application),
 	KUNIT_CASE(left_with_last_outputs),
 	KUNIT_CASE(left_leases_end),
 	KUNIT_CASE(left_lease_is_renewed),
