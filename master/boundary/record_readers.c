@@ -222,7 +222,7 @@ static int ring_new(struct ec_record_readers *rs, const struct ec_recorder_form 
 	int ret;
 
 	if (rs->rings == RINGS_MAX)
-		return -EUSERS;
+		return -EMFILE;
 	if (rs->ring)
 		number_after(rs, rs->ring);
 	r = ec_recorder_new(f, rs->next);
@@ -323,6 +323,10 @@ static int recorder_failed(struct ec_call *call, int ret)
 	case -ERANGE:
 		return ec_refuse(call, ret,
 				 "the process data end before the last byte that is wanted; another session may have begun: repeat the command");
+	case -EMFILE:
+		return ec_refuse(call, -EUSERS,
+				 "recordings of %u ended sessions are still open; end their programs",
+				 RINGS_MAX);
 	case -EUSERS:
 		return ec_refuse(call, ret,
 				 "at most %u programs record at a time, and %u without write permission; end one of them",

@@ -388,7 +388,7 @@ static void left_names_stay(struct kunit *test)
 }
 
 /* An application that takes a session over says what its values are called from then on. */
-static void left_names_are_of_the_new_application(struct kunit *test)
+static void left_names_of_new_application(struct kunit *test)
 {
 	const struct ec_ioc_cycle all = { .flags = EC_CYCLE_FLAG_ALL };
 	struct bus *b = kcyc_bus(test);
@@ -417,7 +417,7 @@ static void left_names_are_of_the_new_application(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(left_session_continues),
 	KUNIT_CASE(left_names_stay),
-	KUNIT_CASE(left_names_are_of_the_new_application),
+	KUNIT_CASE(left_names_of_new_application),
 	KUNIT_CASE(left_with_last_outputs),
 	KUNIT_CASE(left_leases_end),
 	KUNIT_CASE(left_lease_is_renewed),

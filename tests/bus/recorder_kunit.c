@@ -303,6 +303,7 @@ static void recorder_rings_of_ended_sessions_are_limited(struct kunit *test)
 		KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 		f[i] = file_new(b, true);
 		KUNIT_EXPECT_EQ(test, want(f[i], 0, 4, &arg), i < 3 ? 0 : -EUSERS);
+		KUNIT_EXPECT_EQ(test, i == 3, !!strstr(f[i]->reason, "3 ended sessions"));
 		if (i == 3)
 			break;
 		cyc_release(a->c);
