@@ -78,7 +78,7 @@ count() {
 # LINES (40) of comment; at most ALL lines (200)
 failures() {
 	awk -v most="${2:-40}" '
-		/^[ \t]*(not ok|FAILED:|demo: FAILED)/ { n = 0; max = most; print; next }
+		/^[ \t]*(not ok|FAIL |FAILED:|ERROR: |KERNEL REPORT|demo: FAILED)/ { n = 0; max = most; print; next }
 		max > 12 && !/^#/ { max = 12 }
 		n++ < max' "$1" | head -n "${3:-200}"
 }
@@ -140,7 +140,7 @@ report() {
 		failures "$log/$name"
 		tail -n 20 "$log/$name"
 		echo "=== $name failed (exit $rc)"
-		names=$(grep -E '^[[:space:]]*(not ok|FAILED:|demo: FAILED)' "$log/$name" |
+		names=$(grep -E '^[[:space:]]*(not ok|FAIL |FAILED:|ERROR: |demo: FAILED)' "$log/$name" |
 			head -n 20 | sed "s/^[[:space:]]*/$name: /")
 		failed_names+=${names:-"$name: ended with $rc"}$'\n'
 		why+=${why:+$'\n'}$(failures "$log/$name" 12 26 | sed "s/^/$name: /")
