@@ -150,22 +150,63 @@ err_free:
 	return ERR_PTR(ret);
 }
 
-static int master_check_name(const char *spec, unsigned int index)
+static int master_check_name(const char *list, const char *spec, unsigned int index)
 {
 	if (!spec || !*spec) {
-		pr_err("EtherCAT: main_devices: entry %u is empty; give a MAC address, an interface name or sim0\n",
-		       index);
+		pr_err("EtherCAT: %s: entry %u is empty; give a MAC address, an interface name or sim0\n",
+		       list, index);
 		return -EINVAL;
 	}
 	if (ec_spec_is_valid(spec))
 		return 0;
 	if (strchr(spec, ':'))
-		pr_err("EtherCAT: main_devices: \"%s\" is neither the MAC address of a device, as 00:11:22:33:44:55 (ff:ff:ff:ff:ff:ff: the first device), nor a PCI address, as 0000:01:00.0\n",
-		       spec);
+		pr_err("EtherCAT: %s: \"%s\" is neither the MAC address of a device, as 00:11:22:33:44:55 (ff:ff:ff:ff:ff:ff: the first device), nor a PCI address, as 0000:01:00.0\n",
+		       list, spec);
 	else
-		pr_err("EtherCAT: main_devices: \"%s\" cannot be an interface name (1 to %u characters, no slash, no space)\n",
-		       spec, IFNAMSIZ - 1);
+		pr_err("EtherCAT: %s: \"%s\" cannot be an interface name (1 to %u characters, no slash, no space)\n",
+		       list, spec, IFNAMSIZ - 1);
 	return -EINVAL;
+}
+
+static bool is_listed(const char *spec, char **names, unsigned int n)
+{
+	unsigned int i;
+
+	for (i = 0; i < n; i++)
+		if (names[i] && *names[i] && ec_spec_same(spec, names[i]))
+			return true;
+	return false;
+}
+
+/* An empty entry: that master has no backup device. */
+static int check_backups(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
+{
+	unsigned int i;
+	int ret;
+
+	for (i = 0; i < n_backup; i++) {
+		if (!backup[i] || !*backup[i])
+			continue;
+		ret = master_check_name("backup_devices", backup[i], i);
+		if (ret)
+			return ret;
+		if (i >= n_main) {
+			pr_err("EtherCAT: backup_devices: %s: there is no master %u; main_devices= has %u entries\n",
+			       backup[i], i, n_main);
+			return -EINVAL;
+		}
+		if (ec_spec_is_any(backup[i]) || ec_spec_is_any(main[i])) {
+			pr_err("EtherCAT: backup_devices: master %u: with a backup device both ends of the ring need the name of their device, not ff:ff:ff:ff:ff:ff\n",
+			       i);
+			return -EINVAL;
+		}
+		if (!is_listed(backup[i], main, n_main) && !is_listed(backup[i], backup, i))
+			continue;
+		pr_err("EtherCAT: backup_devices: device %s is listed twice; each end of a ring needs its own\n",
+		       backup[i]);
+		return -EINVAL;
+	}
+	return 0;
 }
 
 /*
@@ -174,42 +215,32 @@ static int master_check_name(const char *spec, unsigned int index)
  */
 static int check_names(char **main, unsigned int n_main, char **backup, unsigned int n_backup)
 {
-	unsigned int i, k;
+	unsigned int i;
 	int ret;
 
 	for (i = 0; i < n_main; i++) {
-		ret = master_check_name(main[i], i);
+		ret = master_check_name("main_devices", main[i], i);
 		if (ret)
 			return ret;
-		for (k = 0; k < i && !ec_spec_same(main[i], main[k]); k++)
-			;
-		if (k == i)
+		if (!is_listed(main[i], main, i))
 			continue;
 		pr_err("EtherCAT: main_devices: device %s is listed twice; each master needs its own\n",
 		       main[i]);
 		return -EINVAL;
 	}
-	for (i = 0; i < n_backup; i++) {
-		if (!backup[i] || !*backup[i])
-			continue;
-		pr_err("EtherCAT: backup_devices: \"%s\": this version has no cable redundancy; load ec_master without backup_devices=\n",
-		       backup[i]);
-		return -EOPNOTSUPP;
-	}
-	return 0;
+	return check_backups(main, n_main, backup, n_backup);
 }
 
 /**
  * ec_masters_create() - create the masters the module parameters name
  * @main: main device of each: MAC address or device name
  * @n_main: how many
- * @backup: backup devices: empty strings only, as there is no redundancy
+ * @backup: backup device of each, at the other end of its ring; "": none
  * @n_backup: how many
  * @debug: log level
  *
  * Context: Process. May sleep.
- * Return: 0; -EINVAL for invalid names or level; -EOPNOTSUPP for a backup device;
- * -ENOMEM, or another -errno.
+ * Return: 0; -EINVAL for invalid names or level; -ENOMEM, or another -errno.
  */
 int ec_masters_create(char **main, unsigned int n_main, char **backup, unsigned int n_backup,
 		      unsigned int debug)

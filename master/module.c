@@ -15,7 +15,7 @@ MODULE_PARM_DESC(main_devices,
 static char *backup_devices[EC_MAX_MASTERS];
 static unsigned int n_backup;
 module_param_array(backup_devices, charp, &n_backup, 0444);
-MODULE_PARM_DESC(backup_devices, "refused: this version has no cable redundancy");
+MODULE_PARM_DESC(backup_devices, "backup device of each master, at the other end of a ring; \"\": none");
 
 static unsigned int debug_level;
 module_param(debug_level, uint, 0444);

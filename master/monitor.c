@@ -52,6 +52,7 @@ static const char doubled[] =
 struct watch {
 	struct ec_master *m;
 	bool link_up;
+	u8 up;			/* mask of the links that are */
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
 	u64 moving_ns;		/* since when counts differ and no scan has begun, 0: they do not */
@@ -81,12 +82,26 @@ struct watch {
 	struct ec_quiet quiet;	/* looks of the timer */
 };
 
+/* A link of a ring that comes or goes changes the way of all frames. */
+static void note_links(struct watch *w)
+{
+	const struct ec_link *link;
+	u8 up = 0;
+
+	ec_links_for_each(&w->m->links, link)
+		up |= link->up << link->side;
+	if (up != w->up && !w->m->links.only)
+		WRITE_ONCE(w->m->links.ring.news, true);
+	w->up = up;
+}
+
 static void check_links(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	u64 now = ktime_get_ns();
 
 	w->link_up = ec_links_look(&m->links);
+	note_links(w);
 	if (now - w->rates_ns >= NSEC_PER_SEC) {
 		w->rates_ns = now;
 		ec_links_update_rates(&m->links);
@@ -245,7 +260,9 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 	struct ec_rider *r = &m->rider;
 	int ret = -EAGAIN;
 
-	if (first && ec_access_is_cyclic(&m->links.access) && ktime_get_ns() >= w->alone_ns) {
+	/* only a frame of its own shows which link's copy has passed which slaves */
+	if (first && m->links.only && ec_access_is_cyclic(&m->links.access) &&
+	    ktime_get_ns() >= w->alone_ns) {
 		set_rider(r, dg);
 		ret = ec_rider_exchange(&m->riders, r);
 		if (ret == -EAGAIN)
@@ -262,9 +279,13 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 
 static void set_present(struct ec_master *m, unsigned int count, u32 al_states)
 {
+	unsigned int main;
+
 	WRITE_ONCE(m->bus.responding, count);
 	WRITE_ONCE(m->bus.al_states, al_states);
-	ec_link_saw(&m->links.link[EC_MAIN], count, al_states);
+	main = min(count, m->links.only ? count : m->links.ring.front);
+	ec_link_saw(&m->links.link[EC_MAIN], main, main ? al_states : 0);
+	ec_link_saw(&m->links.link[EC_BACKUP], count - main, count > main ? al_states : 0);
 }
 
 static void ask_slaves(struct watch *w)
@@ -282,7 +303,7 @@ static void ask_slaves(struct watch *w)
 
 		if (ret == -EBUSY || ret == -ENOMEM)
 			return;		/* nothing was sent, so nothing is known */
-		if (ret)
+		if (ret || !ec_scan_see_ring(&m->bus, &dg, try + 1 == TRIES))
 			continue;
 		lost = false;
 		count = believable(w, dg.back);
@@ -309,6 +330,8 @@ static void ask_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
+	if (w->scanned && m->bus.front != m->links.ring.front && !w->held)
+		scan_next(w);
 	survey(w);
 	if (w->scanned && count && wkc >= w->survey.replying)
 		m->bus.complete_ns = ktime_get_ns();
@@ -343,6 +366,10 @@ static bool all_well(struct watch *w)
 	if (!w->riding)
 		return false;
 	w->riding = false;
+	if (READ_ONCE(m->links.ring.news)) {
+		ec_rider_end(&m->rider);
+		return false;
+	}
 	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count)
 		return false;
 	ored = get_unaligned_le16(r->data);

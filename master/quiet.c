@@ -17,9 +17,12 @@
 
 static u64 frames_missed(const struct ec_links *l)
 {
-	const struct ec_link_stats *stats = &ec_links_at(l, 0)->stats;
+	const struct ec_link *link;
+	u64 n = 0;
 
-	return atomic64_read(&stats->lost) + atomic64_read(&stats->late);
+	ec_links_for_each(l, link)
+		n += atomic64_read(&link->stats.lost) + atomic64_read(&link->stats.late);
+	return n;
 }
 
 static bool is_reply_as_before(const struct ec_quiet *q)

@@ -22,6 +22,18 @@ bool ec_sim_link(const struct ec_sim *sim, int port)
 	return m->peer >= 0 && sim->esc[m->peer]->port[m->peer_port].link;
 }
 
+/**
+ * ec_sim_is_ring() - has a segment a cable at its second master port?
+ * @sim: segment
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it has, perhaps one that is cut.
+ */
+bool ec_sim_is_ring(const struct ec_sim *sim)
+{
+	return sim->mport[1].peer >= 0;
+}
+
 static void dl_event(struct ec_esc *esc)
 {
 	if (!ec_esc_bug(esc, EC_SIM_BUG_DL_SILENT))

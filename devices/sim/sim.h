@@ -416,6 +416,7 @@ bool ec_sim_foreign(struct ec_sim *sim, struct ec_sim_foreign *f);
 void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
 u64 ec_sim_next_event(struct ec_sim *sim);
 bool ec_sim_link(const struct ec_sim *sim, int port);
+bool ec_sim_is_ring(const struct ec_sim *sim);
 bool ec_sim_has_port(const struct ec_sim *sim, int slave, int port);
 
 /* looking */

@@ -9,78 +9,110 @@
 #include "sim_wire.h"
 
 /**
- * struct ec_sim_link - one virtual device
- * @wire: the segment
- * @dev: handle of the offer, known before the first frame
+ * struct end - one virtual device: an end of the segment
+ * @link: both ends
+ * @port: master port of the segment
+ * @offer: handle of the offer, NULL: none
+ * @dev: the same while a master uses the device, known before the first frame
+ * @polled: that master polls
  * @txbuf: transmit buffer; one sender at a time
+ */
+struct end {
+	struct ec_sim_link *link;
+	int port;
+	struct ecdev *offer;
+	struct ecdev *dev;
+	bool polled;
+	u8 txbuf[EC_ETH_MAX];
+};
+
+/**
+ * struct ec_sim_link - virtual devices of a segment
+ * @wire: the segment
+ * @lock: protects members of the ends that more than one of them depends on
+ * @end: by master port
  */
 struct ec_sim_link {
 	struct ec_sim_wire wire;
-	struct ecdev *dev;
-	u8 txbuf[EC_ETH_MAX];
+	spinlock_t lock;
+	struct end end[EC_SIM_PORTS];
 };
 
 static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 {
 	struct ec_sim_link *l = container_of(w, struct ec_sim_link, wire);
+	struct ecdev *dev;
 
 	/* a network stack, too, has only these for the master; a host may send others */
-	if (port || (eth[12] << 8 | eth[13]) != EC_ETHERTYPE)
+	if ((eth[12] << 8 | eth[13]) != EC_ETHERTYPE)
 		return;
 	rcu_read_lock();
-	ecdev_receive(l->dev, eth + 6, eth + EC_ETH_HDR, len - EC_ETH_HDR);
+	dev = READ_ONCE(l->end[port].dev);
+	if (dev)
+		ecdev_receive(dev, eth + 6, eth + EC_ETH_HDR, len - EC_ETH_HDR);
 	rcu_read_unlock();
+}
+
+/* The segment runs while a master uses an end, and is polled while all of these poll. */
+static void set_dev(struct end *e, struct ecdev *dev)
+{
+	struct ec_sim_link *l = e->link;
+	bool runs = false;
+	unsigned int i;
+
+	WRITE_ONCE(e->dev, dev);
+	for (i = 0; i < EC_SIM_PORTS; i++)
+		runs |= READ_ONCE(l->end[i].dev) != NULL;
+	ec_sim_wire_run(&l->wire, runs);
 }
 
 static int link_start(void *priv, struct ecdev *dev)
 {
-	struct ec_sim_link *l = priv;
-
-	l->dev = dev;
-	ec_sim_wire_run(&l->wire, true);
+	set_dev(priv, dev);
 	return 0;
 }
 
 static void link_stop(void *priv)
 {
-	struct ec_sim_link *l = priv;
-
-	ec_sim_wire_run(&l->wire, false);
+	set_dev(priv, NULL);
 }
 
 static u8 *link_tx_get(void *priv)
 {
-	struct ec_sim_link *l = priv;
+	struct end *e = priv;
 
-	return l->txbuf;
+	return e->txbuf;
 }
 
 static int link_tx_send(void *priv, u8 *buf, size_t len)
 {
-	struct ec_sim_link *l = priv;
+	struct end *e = priv;
 
-	return ec_sim_wire_send(&l->wire, 0, buf, len);
+	return ec_sim_wire_send(&e->link->wire, e->port, buf, len);
 }
 
 static void link_poll(void *priv)
 {
-	struct ec_sim_link *l = priv;
+	struct end *e = priv;
 
-	ec_sim_wire_poll(&l->wire);
+	ec_sim_wire_poll(&e->link->wire);
 }
 
 static void link_cycle(void *priv, bool on)
 {
-	struct ec_sim_link *l = priv;
+	struct end *e = priv, *other = &e->link->end[!e->port];
 
-	ec_sim_wire_set_polled(&l->wire, on);
+	spin_lock_bh(&e->link->lock);
+	e->polled = on;
+	ec_sim_wire_set_polled(&e->link->wire, on && (other->polled || !READ_ONCE(other->dev)));
+	spin_unlock_bh(&e->link->lock);
 }
 
 static bool link_up(void *priv)
 {
-	struct ec_sim_link *l = priv;
+	struct end *e = priv;
 
-	return ec_sim_wire_up(&l->wire);
+	return ec_sim_wire_up(&e->link->wire, e->port);
 }
 
 static const struct ecdev_ops link_ops = {
@@ -94,6 +126,20 @@ static const struct ecdev_ops link_ops = {
 	.cycle = link_cycle,
 	.link_up = link_up,
 };
+
+static int offer_end(struct ec_sim_link *l, int port, const char *name, const u8 *mac)
+{
+	struct end *e = &l->end[port];
+	struct ecdev *dev;
+
+	e->link = l;
+	e->port = port;
+	dev = ecdev_offer(name, mac, &link_ops, e);
+	if (IS_ERR(dev))
+		return PTR_ERR(dev);
+	e->offer = dev;
+	return 0;
+}
 
 /**
  * ec_sim_link_create() - offer a segment as a virtual device
@@ -109,19 +155,17 @@ struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct e
 				       u64 start_ns)
 {
 	struct ec_sim_link *l = kzalloc(sizeof(*l), GFP_KERNEL);
-	struct ecdev *dev;
 	int ret;
 
 	if (!l)
 		return ERR_PTR(-ENOMEM);
+	spin_lock_init(&l->lock);
 	ret = ec_sim_wire_init(&l->wire, sim, start_ns, deliver);
 	if (ret)
 		goto err_free;
-	dev = ecdev_offer(name, mac, &link_ops, l);
-	ret = PTR_ERR_OR_ZERO(dev);
+	ret = offer_end(l, 0, name, mac);
 	if (ret)
 		goto err_wire;
-	l->dev = dev;
 	return l;
 
 err_wire:
@@ -129,6 +173,33 @@ err_wire:
 err_free:
 	kfree(l);
 	return ERR_PTR(ret);
+}
+
+/**
+ * ec_sim_link_second() - offer the other end of a ring as a virtual device as well
+ * @l: link, once
+ * @name: device name, "sim0b"
+ * @mac: its address
+ *
+ * Context: Process. May sleep.
+ * Return: 0 or -ENOMEM.
+ */
+int ec_sim_link_second(struct ec_sim_link *l, const char *name, const u8 *mac)
+{
+	return offer_end(l, 1, name, mac);
+}
+
+/**
+ * ec_sim_link_second_withdraw() - take the device of the other end away
+ * @l: link
+ *
+ * Context: Process. May sleep.
+ */
+void ec_sim_link_second_withdraw(struct ec_sim_link *l)
+{
+	if (l->end[1].offer)
+		ecdev_withdraw(l->end[1].offer);
+	l->end[1].offer = NULL;
 }
 
 /**
@@ -144,14 +215,15 @@ struct ec_sim_wire *ec_sim_link_wire(struct ec_sim_link *l)
 }
 
 /**
- * ec_sim_link_destroy() - take the virtual device away and free the segment
+ * ec_sim_link_destroy() - take the virtual devices away and free the segment
  * @l: link
  *
  * Context: Process. May sleep.
  */
 void ec_sim_link_destroy(struct ec_sim_link *l)
 {
-	ecdev_withdraw(l->dev);
+	ec_sim_link_second_withdraw(l);
+	ecdev_withdraw(l->end[0].offer);
 	ec_sim_wire_exit(&l->wire);
 	ec_sim_free(l->wire.sim);
 	kfree(l);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * ec_sim.ko: segment=<built-in name or path of a description>[,<another>], as the
- * virtual devices sim0, sim1..., or one segment with netdev=<name>[,<name>]
+ * virtual devices sim0, sim1... (the other end of a ring: sim0b...), or one segment with netdev=<name>[,<name>]
  * answering at network devices.
  */
 #include <linux/err.h>
@@ -107,6 +107,7 @@ static struct ec_sim *build(const char *name)
 static int offer(unsigned int i)
 {
 	const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, i };
+	const u8 second[6] = { 0x02, 0x00, 0x00, 0xec, 0x52, i };
 	struct ec_sim *sim = build(segment[i]);
 	struct ec_sim_link *l;
 	char name[8];
@@ -120,7 +121,10 @@ static int offer(unsigned int i)
 		return PTR_ERR(l);
 	}
 	sim_link[i] = l;
-	return 0;
+	if (!ec_sim_is_ring(sim))
+		return 0;
+	snprintf(name, sizeof(name), "sim%ub", i);
+	return ec_sim_link_second(l, name, second);
 }
 
 static int respond(void)

@@ -317,20 +317,21 @@ void ec_sim_wire_show(struct ec_sim_wire *w, u32 index, char *buf, size_t size)
 }
 
 /**
- * ec_sim_wire_up() - is there a cable at the first master port now
+ * ec_sim_wire_up() - is there a cable at a master port now
  * @w: wire
+ * @port: master port, 0 or 1
  *
  * Context: Any.
  * Return: whether there is.
  */
-bool ec_sim_wire_up(struct ec_sim_wire *w)
+bool ec_sim_wire_up(struct ec_sim_wire *w, int port)
 {
 	unsigned long flags;
 	bool up;
 
 	raw_spin_lock_irqsave(&w->lock, flags);
 	advance(w);
-	up = ec_sim_link(w->sim, 0);
+	up = ec_sim_link(w->sim, port);
 	raw_spin_unlock_irqrestore(&w->lock, flags);
 	return up;
 }

@@ -68,6 +68,11 @@ struct ec_bus {
 	struct ec_slave **slaves;
 	/** @n_slaves: entries in @slaves */
 	unsigned int n_slaves;
+	/**
+	 * @front: of an open ring, slaves before the break; at least @n_slaves: there is none
+	 * before the last of them
+	 */
+	unsigned int front;
 	/** @known: device numbers */
 	struct ec_known known;
 	/** @border: ports at which not every device is let in */

@@ -53,16 +53,30 @@ static bool has_times(const struct ec_slave *s)
 	return ec_slave_features(s) & EC_FEAT_DC;
 }
 
+static bool in_ring(const struct ec_slave *s)
+{
+	return !s->bus->links->only;
+}
+
+/* Is it the first one behind a break? Seen from the main device it hangs nowhere. */
+static bool is_behind_break(const struct ec_slave *s)
+{
+	return in_ring(s) && s->position && s->position == s->bus->front;
+}
+
 /*
  * The port the frame comes in by: the open one that latched first. Without receive
  * times (no DC) it is port 0; with that closed the last one, so that all others come
- * behind the processing unit, as usual.
+ * behind the processing unit, as usual. In a ring it is port 0, since a port from which no frame
+ * returns has no receive time.
  */
 static u8 entry_of(const struct ec_slave *s)
 {
 	int best = -1;
 	unsigned int i;
 
+	if (in_ring(s))
+		return 0;
 	for (i = 0; i < EC_MAX_PORT; i++) {
 		u8 p = ec_graph_order[i];
 
@@ -135,6 +149,37 @@ static u32 away(const struct ec_slave *s, unsigned int step, bool all)
 struct ec_slave *ec_graph_parent(const struct ec_slave *s)
 {
 	return s->graph.at[s->graph.upstream];
+}
+
+/**
+ * ec_graph_is_reversed() - do frames pass a slave in the other direction than in a closed ring?
+ * @s: slave of the list
+ *
+ * Context: Any.
+ * Return: whether it is behind the break of a ring.
+ */
+bool ec_graph_is_reversed(const struct ec_slave *s)
+{
+	return in_ring(s) && s->position >= READ_ONCE(s->bus->front);
+}
+
+/**
+ * ec_graph_ring_exit() - by which port does a closed ring leave a slave for the backup device?
+ * @s: slave of the list
+ *
+ * Context: The monitor thread, or as for ec_bus_assert_stays().
+ * Return: port, or -1: by none.
+ */
+int ec_graph_ring_exit(const struct ec_slave *s)
+{
+	unsigned int p;
+
+	if (READ_ONCE(s->bus->links->ring.state) != EC_RING_CLOSED)
+		return -1;
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (p != s->graph.upstream && ec_graph_is_open(s, p) && !s->graph.at[p])
+			return p;
+	return -1;
 }
 
 /**
@@ -314,6 +359,9 @@ void ec_graph_note_ports(struct ec_slave *s)
 	for (p = 0; p < EC_MAX_PORT; p++)
 		if (!ec_graph_is_open(s, p))
 			part(s, p);
+	/* a break that has healed */
+	if (in_ring(s) && !s->graph.at[entry])
+		s->graph.hung = false;
 }
 
 /* Slaves that precede @s because they are behind its port 0; returns the last one before. */
@@ -343,6 +391,8 @@ static struct ec_slave *join_before(struct ec_slave **slaves, struct ec_slave *s
 static void hang(struct ec_slave **slaves, struct ec_slave *s, struct ec_slave *parent)
 {
 	s->graph.hung = true;
+	if (is_behind_break(s))
+		return;
 	while (parent) {
 		struct ec_slave *up = ec_graph_parent(parent);
 		int port = next_port(parent);
@@ -397,10 +447,10 @@ void ec_graph_fit(struct ec_slave **slaves, unsigned int n)
 			hang(slaves, slaves[i], join_before(slaves, slaves[i]));
 }
 
-/* The first slave that a frame along the graph does not pass in its turn. */
-static unsigned int out_of_turn(struct ec_slave *root, unsigned int n)
+/* The first slave that a frame along the graph from @root on does not pass in its turn. */
+static unsigned int out_of_turn(struct ec_slave *root, unsigned int turn, unsigned int n)
 {
-	unsigned int port = root->graph.upstream, turn = 0, arrivals, from, to;
+	unsigned int port = root->graph.upstream, arrivals, from, to;
 	struct ec_slave *s = root, *at = root;
 
 	for (arrivals = 0; s && arrivals < 2 * n; arrivals++) {
@@ -429,13 +479,16 @@ static unsigned int out_of_turn(struct ec_slave *root, unsigned int n)
 unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n)
 {
 	unsigned int i, p, first = n, roots = 0, free = 0;
-	struct ec_slave *root = NULL;
+	struct ec_slave *root = NULL, *second = NULL;
 
 	for (i = 0; i < n; i++) {
 		struct ec_slave *s = slaves[i];
-		bool bad = !ec_graph_parent(s) && roots++;
+		bool behind = is_behind_break(s), bad = !ec_graph_parent(s) && !behind && roots++;
 
-		root = ec_graph_parent(s) ? root : s;
+		if (behind)
+			second = s;
+		else
+			root = ec_graph_parent(s) ? root : s;
 		if (READ_ONCE(s->reply.silent) || !s->regs[EC_REG_TYPE])
 			return n;
 		for (p = 0; p < EC_MAX_PORT; p++)
@@ -448,5 +501,7 @@ unsigned int ec_graph_misfit(struct ec_slave **slaves, unsigned int n)
 	/* the one that leads to the other device of a ring */
 	if (n && free == 1 && roots == 1 && ec_links_ring_end_up(slaves[0]->bus->links))
 		first = n;
-	return first == n && root ? out_of_turn(root, n) : first;
+	if (first == n && root)
+		first = out_of_turn(root, 0, n);
+	return first == n && second ? out_of_turn(second, second->position, n) : first;
 }

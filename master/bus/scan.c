@@ -339,6 +339,7 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 	struct scan sc = {
 		.bus = bus, .n = count,
 		.fresh = !bus->n_slaves && !ec_access_is_cyclic(&bus->links->access),
+		.front = bus->links->ring.front,
 	};
 	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	int ret = scan_alloc(&sc);

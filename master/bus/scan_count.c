@@ -21,7 +21,41 @@ int ec_scan_count(struct ec_bus *bus)
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
 	int ret = ec_xfer(bus->links, &dg, 1);
 
+	if (!ret)
+		ec_scan_see_ring(bus, &dg, true);
 	return ret ?: dg.back;
+}
+
+static bool came(const struct ec_dg *dg, unsigned int side)
+{
+	return dg->side_wkc[side] != EC_DG_NO_COPY;
+}
+
+/**
+ * ec_scan_see_ring() - take the state of the ring from the copies of a broadcast
+ * @bus: bus
+ * @dg: the broadcast, with its result
+ * @last: a copy that is missing although its link is up is lost behind a device that does not
+ *	answer, not only this time
+ *
+ * Context: The monitor thread.
+ * Return: false: a copy is missing, so the number of slaves is not known.
+ */
+bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
+{
+	struct ec_links *l = bus->links;
+	const struct ec_link *link;
+
+	if (l->only)
+		return true;
+	ec_links_for_each(l, link)
+		if (!came(dg, link->side) && !last && ec_link_is_up(link))
+			return false;
+	/* the copy that the slaves of a closed ring have processed is missing */
+	if (dg->crossed && !dg->back)
+		return false;
+	ec_ring_set(l, dg->crossed, came(dg, EC_MAIN) ? dg->side_back[EC_MAIN] : 0);
+	return true;
 }
 
 /* Has a slave other ports than the list says, or has one shown an event without such a reason? */

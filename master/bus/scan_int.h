@@ -55,6 +55,7 @@ struct scan {
 	u16 *aliases;			/* first slave with each alias, ring position + 1 */
 	bool changed;	/* other slaves than before */
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
+	u32 front;	/* struct ec_ring.front when it began */
 };
 
 static inline u16 ec_scan_address(const struct scan *sc, unsigned int i)

@@ -126,6 +126,8 @@ static int ask_found(struct proof *p)
 	}
 	p->dg[2 * i] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, p->type);
 	ret = ec_xfer(sc->bus->links, p->dg, 2 * sc->n + 1);
+	if (!ret)
+		ec_scan_see_ring(sc->bus, &p->dg[2 * i], true);
 	note_seen(p);
 	return ret;
 }
@@ -150,7 +152,7 @@ static bool ring_stands(const struct proof *p)
 		    ec_graph_open_ports(get_unaligned_le16(r->dl)))
 			return false;
 	}
-	return !count->err && count->back == sc->n;
+	return !count->err && count->back == sc->n && sc->bus->links->ring.front == sc->front;
 }
 
 /* Slaves of a stretch, the one before it, the one after it, and at which these hang. */

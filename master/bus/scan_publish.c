@@ -234,6 +234,7 @@ static void set_list(struct scan *sc, struct list *l)
 
 	lockdep_assert_held_write(&bus->topo);
 	leave_list(sc, l);
+	WRITE_ONCE(bus->front, sc->front);
 	for (i = 0; i < l->n; i++)
 		l->slaves[i]->position = i;
 	leave_places(sc);

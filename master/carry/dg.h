@@ -41,7 +41,11 @@ struct ec_dg {
 	u16 wkc;
 	/** @side_wkc: result: working counter of each link's copy, or %EC_DG_NO_COPY */
 	u16 side_wkc[EC_MAX_LINKS];
-	/** @back: result: @adp of the reply (position plus slaves passed) */
+	/** @side_back: result: slaves that each link's copy has passed */
+	u16 side_back[EC_MAX_LINKS];
+	/** @crossed: result: mask of the links whose copy came back by the other one */
+	u8 crossed;
+	/** @back: result: @adp of the reply (position plus slaves passed by all copies) */
 	u16 back;
 	/** @irq: result: OR of the enabled events of the slaves passed */
 	u16 irq;
@@ -80,19 +84,34 @@ static inline void ec_dg_begin(struct ec_dg *dg)
 	dg->err = -EINPROGRESS;
 	dg->wkc = 0;
 	dg->irq = 0;
+	dg->back = dg->adp;
+	dg->crossed = 0;
 	for (i = 0; i < EC_MAX_LINKS; i++)
 		dg->side_wkc[i] = EC_DG_NO_COPY;
 }
 
-/* Take a received copy. The data are those of the first one that a slave has processed. */
-static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 side)
+/* commands that each slave counts as one more position */
+static inline bool ec_dg_is_broadcast(const struct ec_dg *dg)
 {
-	u16 wkc = ec_dgram_wkc(d);
+	return dg->cmd == EC_CMD_BRD || dg->cmd == EC_CMD_BWR || dg->cmd == EC_CMD_BRW;
+}
 
-	if (dg->err || (wkc && !dg->wkc)) {
-		dg->back = d->adp;
-		if (ec_cmd_reads(d->cmd) && !dg->keep)
+/*
+ * Take a received copy, whose address was sent with @shift added. The data are those of the first
+ * one that a slave has processed, of a broadcast those of all.
+ */
+static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 side, u16 shift)
+{
+	u16 wkc = ec_dgram_wkc(d), i;
+
+	dg->side_back[side] = d->adp - shift - dg->adp;
+	dg->back += dg->side_back[side];
+	if (ec_cmd_reads(d->cmd) && !dg->keep) {
+		if (dg->err || (wkc && !dg->wkc))
 			memcpy(dg->data, d->data, d->len);
+		else if (wkc && ec_dg_is_broadcast(dg))
+			for (i = 0; i < d->len; i++)
+				((u8 *)dg->data)[i] |= d->data[i];
 	}
 	dg->side_wkc[side] = wkc;
 	dg->wkc += wkc;

@@ -67,7 +67,8 @@ static void build(struct ec_flight *f, struct ec_slot *slot, u8 *frame)
 
 			if (dg->err != -EINPROGRESS)
 				continue;
-			p = ec_frame_add(&fb, dg->cmd, slot->index, dg->adp, dg->ado, dg->len);
+			p = ec_frame_add(&fb, dg->cmd, slot->index, dg->adp + post->shift, dg->ado,
+					 dg->len);
 			if (WARN_ON_ONCE(!p))
 				break;
 			ec_dg_fill(dg, p);
@@ -250,9 +251,13 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 	return ret ?: wire_ns;
 }
 
-/* Take the results of a post from the copy of each link. */
-static void take_results(const struct ec_slot *slot, struct ec_post *post)
+/*
+ * Take the results of a post from the copy of each link. Return: false: no slave has processed one
+ * of its datagrams, and a copy is missing: it is not known whether one has.
+ */
+static bool take_results(const struct ec_slot *slot, struct ec_post *post)
 {
+	bool known = true;
 	struct ec_frame_iter it[EC_MAX_LINKS];
 	struct ec_dgram d;
 	unsigned long left;
@@ -272,26 +277,34 @@ static void take_results(const struct ec_slot *slot, struct ec_post *post)
 		for (left = slot->back; left; left &= left - 1)
 			/* compared with what was sent when the frame was matched */
 			if (ec_frame_iter_next(&it[__ffs(left)], &d) == 1)
-				ec_dg_take(&post->dg[i], &d, __ffs(left));
+				ec_dg_take(&post->dg[i], &d, __ffs(left), post->shift);
+		post->dg[i].crossed = slot->crossed;
 		post->dg[i].sent_ns = slot->sent_ns;
-		if (post->dg[i].err)
+		if (post->dg[i].err) {
 			post->dg[i].err = -EIO;
+		} else if (!post->dg[i].wkc && slot->back != slot->sides) {
+			ec_dg_begin(&post->dg[i]);
+			known = false;
+		}
 	}
+	return known;
 }
 
 /* The posts of a frame get their results from its reply. */
 static void land(struct ec_slot *slot)
 {
 	struct ec_carry *c = slot->user;
-	struct ec_post *post;
+	struct ec_post *post, *next;
 	unsigned long flags;
+	LIST_HEAD(unknown);
 	LIST_HEAD(posts);
 
 	raw_spin_lock_irqsave(&c->lock, flags);
 	ec_flight_end(c, slot, &posts);
 	raw_spin_unlock_irqrestore(&c->lock, flags);
-	list_for_each_entry(post, &posts, list)
-		take_results(slot, post);
+	list_for_each_entry_safe(post, next, &posts, list)
+		if (unlikely(!take_results(slot, post)))
+			list_move_tail(&post->list, &unknown);
 	ec_links_lost(c->links, slot, slot->sides & ~slot->back);
 	ec_slot_put(slot);
 	/* the thread sends held posts; the place before @held, pairs with send_ready() */
@@ -299,6 +312,8 @@ static void land(struct ec_slot *slot)
 	if (READ_ONCE(c->held))
 		ec_carry_kick(c);
 	ec_post_finish(c, &posts);
+	if (unlikely(!list_empty(&unknown)))
+		ec_post_lost(c, &unknown, -ETIMEDOUT);
 }
 
 /**

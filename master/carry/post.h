@@ -71,6 +71,8 @@ struct ec_post {
 	u8 train;
 	/** @sides: mask of the links on which it is sent, which the user sets; 0: all */
 	u8 sides;
+	/** @shift: added to the positions in its datagrams, see ec_ring_way() */
+	u16 shift;
 	/** @patient: its end may wait until the cycle has sent, which the user sets */
 	bool patient;
 

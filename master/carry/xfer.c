@@ -38,6 +38,8 @@ struct batch {
 static unsigned int xfer_count(const struct batch *b, unsigned int first)
 {
 	const struct ec_links *l = b->c->links;
+	const struct ec_dg *dg = &b->dg[first];
+	u8 sides = ec_ring_way(l, dg->cmd, dg->adp).sides;
 	unsigned int most = l->max_datagrams, len = 0, i;
 	u16 least = b->dg[first].len +
 		    (b->dg[first].pair ? EC_DGRAM_OVERHEAD + b->dg[first + 1].len : 0);
@@ -53,7 +55,7 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 	room = min_t(u16, room, EC_FRAME_BODY_MAX);
 	for (i = first; i < b->n && i - first < most && b->dg[i].err == -EAGAIN; i++) {
 		len += EC_DGRAM_OVERHEAD + b->dg[i].len;
-		if (len > room)
+		if (len > room || ec_ring_way(l, b->dg[i].cmd, b->dg[i].adp).sides != sides)
 			break;
 		if (b->class == EC_POST_TRAIN && b->dg[i].last)
 			return i + 1 - first;
@@ -103,6 +105,7 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 
 	for (h->n = 0; h->n < b->most; h->n++) {
 		struct ec_post *post = &h->post[h->n];
+		struct ec_ring_way way;
 
 		while (first < b->n && b->dg[first].err != -EAGAIN)
 			first++;
@@ -114,6 +117,9 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 		post->class = b->class;
 		post->dg = &b->dg[first];
 		post->n = xfer_count(b, first);
+		way = ec_ring_way(b->c->links, post->dg->cmd, post->dg->adp);
+		post->sides = way.sides;
+		post->shift = way.shift;
 		first += post->n;
 	}
 	if (!h->n)

@@ -56,9 +56,15 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = up ? up->position : EC_DC_NONE;
 	n->entry = s->graph.upstream;
-	n->dc = dc_job_has_times(s);
+	/* behind a break no delay fits the direction in which frames pass */
+	n->dc = dc_job_has_times(s) && !ec_graph_is_reversed(s);
 	n->parent_port = up ? s->graph.parent_port : 0;
 	n->open = ec_graph_open_ports(s->dl_status);
+	if (ec_graph_ring_exit(s) >= 0) {
+		j->exit = i;
+		j->exit_port = ec_graph_ring_exit(s);
+		n->open &= ~BIT(j->exit_port);
+	}
 }
 
 /**
@@ -180,6 +186,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends)
 	j->path = READ_ONCE(dc->path_scanned);
 	down_read(&dc->bus->topo);
 	j->n = dc->bus->n_slaves;
+	j->exit = j->n;
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);
 	for (i = 0; j->slaves && i < j->n; i++)
@@ -397,10 +404,28 @@ static void sum_up(struct ec_dc_job *j)
 }
 
 /*
+ * In a closed ring no frame returns to the ports through which it has left. So while delays are
+ * measured the last port before the backup device is closed: frames turn there.
+ */
+static void close_exit(struct ec_dc_job *j, bool close)
+{
+	const struct ec_slave *s;
+	u8 loops;
+
+	if (j->exit == j->n)
+		return;
+	s = j->slaves[j->exit];
+	loops = s->ports.loops;
+	if (close)
+		loops |= EC_LOOP_CLOSED << 2 * j->exit_port;
+	ec_xfer_fpwr(j->dc->links, s->station, EC_REG_DL_LOOPS, &loops, 1);
+}
+
+/*
  * The receive times of a latch are read in the transfer of the next one: by then the frame has
  * passed all ports.
  */
-static int dc_job_measure(struct ec_dc_job *j)
+static int measure_rounds(struct ec_dc_job *j)
 {
 	unsigned int rounds = 0, lost = 0, n;
 	bool latched = false;
@@ -434,6 +459,16 @@ static int dc_job_measure(struct ec_dc_job *j)
 		latched = !j->dg[n - 1].err;
 	}
 	return 0;
+}
+
+static int dc_job_measure(struct ec_dc_job *j)
+{
+	int ret;
+
+	close_exit(j, true);
+	ret = measure_rounds(j);
+	close_exit(j, false);
+	return ret;
 }
 
 /* Delays measured since the last scan stay valid, counted from the present reference clock. */

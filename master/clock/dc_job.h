@@ -27,6 +27,8 @@
  * @silent: slaves without a valid reply in the last transfer
  * @followed: station address of the clock that the others are synchronized to, or 0
  * @ref: index of the reference clock, @n: none
+ * @exit: index of the slave at which a closed ring leads to the backup device, @n: none
+ * @exit_port: its port there
  * @latch_ns: when the last latch was sent (ktime)
  * @path: changes of ports that the list of slaves takes into account
  * @compensated: the cycle has compensated clocks until now
@@ -48,6 +50,8 @@ struct ec_dc_job {
 	bool *silent;
 	u16 followed;
 	unsigned int ref;
+	unsigned int exit;
+	u8 exit_port;
 	u64 latch_ns;
 	u32 path;
 	bool compensated;

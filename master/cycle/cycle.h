@@ -195,6 +195,8 @@ struct ec_cycle {
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	/** @n_flight: entries in @flight */
 	unsigned int n_flight;
+	/** @mute: links of a ring whose copy of the last frame is missing */
+	u8 mute;
 	/** @last: frames of the last send */
 	struct ec_cyc_wire last;
 	/** @send: number of the last send */

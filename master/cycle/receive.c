@@ -9,6 +9,7 @@
 #include "../base/bytes.h"
 #include "../base/once64.h"
 #include "../base/report.h"
+#include "../wire/merge.h"
 #include "receive.h"
 #include "units_run.h"
 
@@ -121,7 +122,8 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	c->back |= BIT_ULL(d->domain);
 	if (unlikely(!complete))
 		dom->partial++;
-	if (wkc)
+	/* more in a ring: a slave was reached from both ends, perhaps with two values */
+	if (wkc && (c->links->only || wkc <= d->expected))
 		take_inputs(c, d, f, data, complete);
 }
 
@@ -264,12 +266,29 @@ void ec_cycle_log_stale(struct ec_cycle *c)
 
 /*
  * Can the data be taken? Of several copies the last one is awaited until the next receive, which
- * takes the data of the others.
+ * takes the data of the others. One of a link that was missing the last time is not awaited.
  */
-static bool has_reply(const struct ec_cyc_flight *f, struct ec_slot *slot)
+static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
+		      struct ec_slot *slot)
 {
-	return likely(atomic_read_acquire(&slot->state) == EC_SLOT_DONE) ||
-	       (f->missed && ec_slot_settle(slot));
+	u8 back;
+
+	if (likely(atomic_read_acquire(&slot->state) == EC_SLOT_DONE))
+		return true;
+	back = READ_ONCE(slot->back);
+	return (f->missed || (back && !(slot->sides & ~back & ~c->mute))) && ec_slot_settle(slot);
+}
+
+/* The copies of both ends of a ring: one reply, and where they came back. */
+static noinline void join_copies(struct ec_cycle *c, struct ec_slot *slot)
+{
+	c->mute = slot->sides & ~slot->back;
+	ec_ring_note(c->links, slot);
+	if (c->mute)
+		return;
+	ec_merge_frame(slot->copy[EC_MAIN], slot->copy[EC_BACKUP], ec_slot_body(slot),
+		       slot->eth_len - EC_ETH_HDR);
+	slot->reply = slot->copy[EC_MAIN];
 }
 
 /* Is the frame lost? Not at the first receive without reply: the machine may have stood still. */
@@ -326,9 +345,11 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		struct ec_cyc_flight *f = &c->flight[i];
 		struct ec_slot *slot = f->slot;
 
-		if (has_reply(f, slot)) {
+		if (has_reply(c, f, slot)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
+			if (unlikely(slot->sides & (slot->sides - 1)))
+				join_copies(c, slot);
 			irq |= take_frame(c, f);
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);

@@ -65,6 +65,12 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 			     a->offset_stride, a->len, a->count);
 }
 
+/* The clock datagrams of a ring go one way, process data both ways. */
+static bool is_alone(const struct ec_cycle *c, const struct send *send)
+{
+	return unlikely(!c->links->only) && send->dc;
+}
+
 /* Queued datagrams from @g on, as many as fit; returns how many were added or not queued. */
 static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
 			 struct send *send)
@@ -79,7 +85,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 	if (send->dc)
 		ec_dc_datagrams_fill(&c->clock, &fb, slot->index, send->dc, send->now);
 	dc = fb.count;
-	room = max(c->links->max_datagrams, dc) - dc;
+	room = is_alone(c, send) ? 0 : max(c->links->max_datagrams, dc) - dc;
 	for (; g < c->layout.n_dgrams && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
@@ -94,7 +100,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 		room--;
 	}
 	send->riding.mask = 0;
-	if (unlikely(atomic_read(&c->riders->queued)))
+	if (unlikely(atomic_read(&c->riders->queued)) && !is_alone(c, send))
 		ec_riders_add(c->riders, &fb, slot->index, &send->riding);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	return g - first;
@@ -124,6 +130,7 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_links *l = c->links;
+	u8 sides = is_alone(c, send) ? BIT(EC_MAIN) : l->sides;
 	struct ec_slot *slot = NULL;
 	struct ec_tx tx;
 	unsigned int count;
@@ -133,19 +140,19 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	if (make_room(c, send->now))
 		slot = ec_slot_get(&l->slots, true, send->now);
 	if (!slot) {
-		ec_links_count(l, l->sides, tx_errors);
+		ec_links_count(l, sides, tx_errors);
 		send->dc = 0;
 		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
-	frame = ec_links_tx_get(l, l->sides, &tx) ?: slot->frame;
+	frame = ec_links_tx_get(l, sides, &tx) ?: slot->frame;
 	count = fill(c, slot, frame, g, send);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
 	ret = ec_links_transmit(l, slot, frame, &tx, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		ec_links_count(l, l->sides, tx_errors);
+		ec_links_count(l, sides, tx_errors);
 	if (!ret) {
 		note_flight(c, slot, g, count, send);
 	} else {

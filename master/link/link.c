@@ -89,6 +89,24 @@ int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, 
 	return ret;
 }
 
+/*
+ * Those of @sides that are up; all if none is. One that the monitor has seen last as down is looked
+ * at again: a ring that is closed there needs its frames at once.
+ */
+static u8 live(const struct ec_links *l, u8 sides)
+{
+	unsigned long left = sides;
+	u8 up = 0;
+
+	for (; left; left &= left - 1) {
+		const struct ec_link *link = &l->link[__ffs(left)];
+
+		if (READ_ONCE(link->up) || ec_link_is_up(link))
+			up |= BIT(link->side);
+	}
+	return up ?: sides;
+}
+
 /**
  * ec_links_send() - send a frame on several links
  * @l: links
@@ -96,7 +114,8 @@ int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, 
  * @sides: mask of the links
  * @now: time
  *
- * A link that fails does not stop the others: the slot awaits only the copies of links that have
+ * A link that is down is left out while another one is up. One that fails does not stop the
+ * others: the slot awaits only the copies of links that have
  * sent the frame. One without transmit buffer counts an error then, since the frame does not wait
  * for it. ec_links_flush() must follow.
  *
@@ -108,10 +127,11 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
 	struct ecdev *dev[EC_MAX_LINKS];
 	u8 *buf[EC_MAX_LINKS], unsent = 0, full = 0;
-	unsigned long left = sides;
+	unsigned long left;
 	int ret = -ENODEV;
 
-	for (; left; left &= left - 1) {
+	sides = live(l, sides);
+	for (left = sides; left; left &= left - 1) {
 		unsigned int i = __ffs(left);
 
 		buf[i] = ec_link_tx_get(&l->link[i], &dev[i]);

@@ -26,8 +26,10 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	strscpy(l->main, main, sizeof(l->main));
 	raw_spin_lock_init(&l->main_lock);
 	l->backup = backup;
-	l->sides = BIT(EC_MAIN);
-	l->only = &l->link[EC_MAIN];
+	l->sides = backup ? BIT(EC_MAIN) | BIT(EC_BACKUP) : BIT(EC_MAIN);
+	l->only = backup ? NULL : &l->link[EC_MAIN];
+	l->ring.state = backup ? EC_RING_UNKNOWN : EC_RING_NONE;
+	l->ring.front = U32_MAX;
 	l->max_datagrams = 15;
 	l->io_timeout_us = 20000;
 	for (i = 0; i < EC_MAX_LINKS; i++)

@@ -16,6 +16,7 @@
 #include "access.h"
 #include "device.h"
 #include "link.h"
+#include "ring.h"
 #include "slots.h"
 
 struct ec_capture;
@@ -47,7 +48,7 @@ struct ec_links {
 	char main[EC_UAPI_STRING];
 	/** @main_lock: for readers of @main and of the name of an attached device */
 	raw_spinlock_t main_lock;
-	/** @backup: backup device as the module parameters name it, NULL: none; immutable */
+	/** @backup: backup device at the other end of a ring, as the user names it, NULL: none */
 	const char *backup;
 	/** @closed: gets no main device, under the device lock */
 	bool closed;
@@ -59,6 +60,8 @@ struct ec_links {
 	u8 sides;
 	/** @only: the link that carries all of them, NULL: several; immutable */
 	struct ec_link *only;
+	/** @ring: state of the ring, with a backup device */
+	struct ec_ring ring;
 	/** @slots: frame slots */
 	struct ec_slots slots;
 	/** @access: bus access */
@@ -239,6 +242,24 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
 	if (unlikely(!tx->link || sides != l->sides))
 		tx->link = is_power_of_2(sides) ? &l->link[__ffs(sides)] : NULL;
 	return tx->link ? ec_link_tx_get(tx->link, &tx->dev) : NULL;
+}
+
+/**
+ * ec_ring_way() - on which link does an acyclic datagram reach its slave?
+ * @l: links
+ * @cmd: enum ec_cmd
+ * @adp: low half of its address: for a command by position that of the closed ring
+ *
+ * Behind a break the slave next to it has the position 0, so a datagram by position has only one
+ * way, as has one that gives the time of the reference clock to others. Others go both ways.
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the links, and what its address on these differs by.
+ */
+static inline struct ec_ring_way ec_ring_way(const struct ec_links *l, u8 cmd, u16 adp)
+{
+	return likely(l->only) ? (struct ec_ring_way){ .sides = l->sides } :
+				 ec_ring_find_way(l, cmd, adp);
 }
 
 void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long sides);

@@ -17,11 +17,11 @@ static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
 }
 
 /*
- * Find the slot that a frame belongs to, and fill it. With @keep a reply to the cycle stays in the
- * memory of the device: the cycle owner takes it before it leaves the links.
+ * Find the slot that a frame belongs to, and fill it. A reply to the cycle may stay in the memory of
+ * the device, see struct ec_link.keep: the cycle owner takes it before it leaves the links.
  */
-static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, const u8 *data,
-					   size_t len, bool keep)
+static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_link *by,
+					   const u8 *src, const u8 *data, size_t len)
 {
 	u32 seq = get_unaligned_le32(src + 2);
 	void (*done)(struct ec_slot *slot);
@@ -51,7 +51,9 @@ static __always_inline enum ec_match match(struct ec_slots *s, const u8 *src, co
 	}
 	/* read before the slot may be used for another frame */
 	done = slot->done;
-	if (keep && !done && slot->sides == BIT(side)) {
+	if (unlikely(side != by->side))
+		slot->crossed |= BIT(side);
+	if (READ_ONCE(by->keep) && !done && slot->sides == BIT(side)) {
 		slot->reply = data;
 		slot->back = slot->sides;
 		ec_slot_release(slot, EC_SLOT_DONE);
@@ -73,7 +75,7 @@ static __always_inline enum ec_match receive(struct ec_link *link, const u8 *src
 		ec_link_trace(link, "received", data, len);
 	if (unlikely(l->capture) && !ec_capture_received(l->capture, src, data, len))
 		atomic64_inc(&link->stats.not_captured);
-	what = match(&l->slots, src, data, len, READ_ONCE(link->keep));
+	what = match(&l->slots, link, src, data, len);
 	if (unlikely(what == EC_MATCH_LATE))
 		atomic64_inc(&link->stats.late);
 	else if (unlikely(what == EC_MATCH_UNMATCHED))

@@ -10,7 +10,8 @@
  * and may be used again after 20 ms.
  *
  * A mask says on which links a frame is sent. Its slot is DONE when the copy of each link is
- * received, or when no more copies are expected.
+ * received, or when no more copies are expected. In a closed ring the copy of one link comes back
+ * by the other one, and only one of the two has been processed by the slaves.
  */
 #ifndef EC_SLOTS_H
 #define EC_SLOTS_H
@@ -41,6 +42,10 @@ struct ec_slot {
 	u8 sides;
 	/** @back: mask of the links whose copy is received */
 	u8 back;
+	/** @crossed: of these, the copies that came in by another link: the ring is closed */
+	u8 crossed;
+	/** @blank: of these, the copies that no slave has processed; they have no @copy */
+	u8 blank;
 	/** @eth_len: bytes of the Ethernet frame without padding and FCS */
 	u16 eth_len;
 	/** @seq: sequence number in the source MAC address */
@@ -105,6 +110,8 @@ static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
 	slot->done = NULL;
 	slot->sides = 0;
 	slot->back = 0;
+	slot->crossed = 0;
+	slot->blank = 0;
 	return slot;
 }
 

@@ -9,11 +9,12 @@
 #include "master/boundary/cdev.h"
 
 static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
+static const u8 second_mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x52, 0x00 };
 
 /**
  * bus_new() - a master waiting for its device, and a segment
  * @test: case; its suite has bus_exit() as .exit
- * @text: description of the segment, or the name of a built-in one
+ * @text: description of the segment, or the name of a built-in one; a ring has a backup device
  *
  * Return: bus; the case fails when there is none.
  */
@@ -21,7 +22,7 @@ struct bus *bus_new(struct kunit *test, const char *text)
 {
 	struct bus *b = kzalloc(sizeof(*b), GFP_KERNEL);
 	struct ec_sim_error err = { 0 };
-	char *device = "bus0";
+	char *device = "bus0", *backup = "bus0b";
 	int ret;
 
 	KUNIT_ASSERT_NOT_NULL(test, b);
@@ -30,7 +31,8 @@ struct bus *bus_new(struct kunit *test, const char *text)
 	test->priv = b;
 	ret = ec_sim_describe(&b->sim, &ec_sim_kernel_ops, text, strlen(text), NULL, &err);
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
-	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
+	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, &backup, ec_sim_is_ring(b->sim), 0),
+			0);
 	b->m = ec_cdev_master(0);
 	ec_file_init(&b->app, b->m, true);
 	return b;
@@ -48,6 +50,8 @@ void bus_plug(struct bus *b)
 	l = ec_sim_link_create("bus0", mac, b->sim, 0);
 	KUNIT_ASSERT_FALSE(b->test, IS_ERR(l));
 	b->link = l;
+	if (ec_sim_is_ring(b->sim))
+		KUNIT_ASSERT_EQ(b->test, ec_sim_link_second(l, "bus0b", second_mac), 0);
 }
 
 /**
@@ -296,6 +300,24 @@ void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, 
 	struct ec_sim_fault f = {
 		.at_ns = ktime_get_ns(), .type = type, .slave = slave, .port = port,
 		.arg = arg, .arg2 = arg2,
+	};
+
+	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);
+}
+
+/**
+ * bus_fault_later() - something goes wrong at a cable, or is mended
+ * @b: bus
+ * @type: what
+ * @slave: index in the segment
+ * @port: port
+ * @after_ns: from now
+ */
+void bus_fault_later(struct bus *b, enum ec_sim_fault_type type, int slave, int port,
+		     u32 after_ns)
+{
+	struct ec_sim_fault f = {
+		.at_ns = ktime_get_ns() + after_ns, .type = type, .slave = slave, .port = port,
 	};
 
 	KUNIT_ASSERT_EQ(b->test, ec_sim_add_fault(b->sim, &f), 0);

@@ -67,6 +67,8 @@ struct ec_app *bus_app(struct bus *b, const char *name);
 u32 bus_log_lines(const char *words);
 void bus_fault(struct bus *b, enum ec_sim_fault_type type, int slave, int port, u32 arg,
 	       u32 arg2);
+void bus_fault_later(struct bus *b, enum ec_sim_fault_type type, int slave, int port,
+		     u32 after_ns);
 void bus_command(struct bus *b, const char *text);
 void bus_expect_graph(struct bus *b, const char *after);
 void bus_fill_eeprom(struct bus *b, u32 index, size_t bytes);

@@ -145,6 +145,11 @@ void cyc_activate(struct cyc *c)
 
 	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_ACTIVATE, &a), 0, "%s",
 			    c->b->app.reason);
+	/*
+	 * In virtual time each reading of the clock takes some time, and no kernel thread is
+	 * preempted: one that is woken together with the application must not come first.
+	 */
+	sched_set_fifo_low(current);
 	c->next = ktime_get();
 }
 

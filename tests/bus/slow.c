@@ -138,7 +138,7 @@ static int tx_send(void *priv, u8 *buf, size_t len)
 	struct slow *s = priv;
 	unsigned long flags;
 
-	if (!ec_sim_wire_up(&s->wire))
+	if (!ec_sim_wire_up(&s->wire, 0))
 		return -ENETDOWN;
 	if (s->refuse && buf[EC_ETH_HDR + EC_FRAME_HDR] == s->refused_cmd) {
 		if (!s->pass) {
@@ -191,7 +191,7 @@ static bool link_up(void *priv)
 {
 	struct slow *s = priv;
 
-	return ec_sim_wire_up(&s->wire);
+	return ec_sim_wire_up(&s->wire, 0);
 }
 
 static const struct ecdev_ops ops = {

@@ -1,0 +1,47 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/*
+ * A ring: the backup device is at its other end. Each frame enters at both ends. In a closed ring
+ * the slaves process the copy of one end, and each copy comes back at the other end. In an open one
+ * each copy reaches the slaves up to the break, and comes back where it was sent.
+ */
+#ifndef EC_RING_H
+#define EC_RING_H
+
+#include <linux/types.h>
+
+struct ec_links;
+struct ec_slot;
+
+enum ec_ring_state {
+	EC_RING_NONE,		/* one device */
+	EC_RING_UNKNOWN,	/* no reply yet */
+	EC_RING_CLOSED,
+	EC_RING_OPEN,
+};
+
+/** struct ec_ring - what is known of a ring */
+struct ec_ring {
+	/** @state: enum ec_ring_state; written by the monitor */
+	u8 state;
+	/**
+	 * @front: slaves that the copy of the main link passes: further positions are counted from
+	 * the break, on the backup link; written by the monitor
+	 */
+	u32 front;
+	/** @news: the cycle has received a copy that contradicts @state; the monitor clears it */
+	bool news;
+};
+
+/** struct ec_ring_way - how a datagram with a position gets to its slave */
+struct ec_ring_way {
+	/** @sides: mask of the links */
+	u8 sides;
+	/** @shift: to be added to its address */
+	u16 shift;
+};
+
+struct ec_ring_way ec_ring_find_way(const struct ec_links *l, u8 cmd, u16 adp);
+void ec_ring_note(struct ec_links *l, const struct ec_slot *slot);
+bool ec_ring_set(struct ec_links *l, bool closed, u32 front);
+
+#endif

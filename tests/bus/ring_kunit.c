@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Cable redundancy: a ring with a device at each end, which is cut, and heals. */
+#include "cyc.h"
+#include "devices/sim/esc_int.h"
+#include "master/bus/graph.h"
+
+#define SLAVES		8
+#define CUTS		(SLAVES + 1)	/* cables of the ring */
+#define MANY		50
+#define EVENTS		1000		/* of the long run, half of them cuts */
+#define HISTORY		4
+#define ECHO		6	/* byte of the outputs of a drive that comes back in its inputs */
+
+static const char ring_text[] =
+	"segment seed=8 response=100us transition=1ms\n"
+	"repeat 8 slave d drive in=8 out=8 cable=50\n"
+	"wire d8.1 -> master.1 cable=50\n";
+
+static const char many_text[] =
+	"segment seed=9 response=100us transition=1ms\n"
+	"repeat 50 slave d drive in=8 out=8 cable=50\n"
+	"wire d50.1 -> master.1 cable=50\n";
+
+/**
+ * struct ring - an application at a ring
+ * @b: bus
+ * @c: its cycle
+ * @n: slaves
+ * @in: where the value of each is in the image
+ * @out: likewise
+ * @value: outputs of all slaves in the last sends, the newest first
+ * @disturbed: frames of the model that met an event, up to the last cycle
+ * @late: cycles since then
+ * @met: cycles whose frame, or the one before, met an event
+ * @wrong: values that a slave never had
+ * @lost: cycles in which a slave's value, or a working counter, was missing, without such a frame
+ * @flown: likewise, with one
+ * @left: cycles in which a slave was not in OP
+ */
+struct ring {
+	struct bus *b;
+	struct cyc *c;
+	u32 n;
+	u8 *in[MANY];
+	u8 *out[MANY];
+	u8 value[HISTORY];
+	u64 disturbed;
+	u32 late;
+	u32 met;
+	u32 wrong;
+	u32 lost;
+	u32 flown;
+	u32 left;
+};
+
+/* The drive copies outputs to inputs: LRW reads before it writes. */
+static void ring_look(struct cyc *c)
+{
+	struct ring *r = c->ctx;
+	bool missing = false;
+	u32 i, k;
+
+	ec_sim_advance(r->b->sim, ktime_get_ns());
+	r->late = r->b->sim->disturbed == r->disturbed ? r->late + 1 : 0;
+	r->disturbed = r->b->sim->disturbed;
+	r->met += r->late < 2;
+	for (i = 0; i < r->n; i++) {
+		u8 is = *r->in[i];
+
+		for (k = 0; k < HISTORY && is != r->value[k]; k++)
+			;
+		r->wrong += k == HISTORY;
+		missing |= is != r->value[1];
+		r->left += bus_esc(r->b, i)->mem[EC_REG_AL_STATUS] != EC_AL_OP;
+	}
+	missing |= cyc_state(c, 0)->wc_state != EC_STATUS_WC_COMPLETE;
+	r->lost += missing && r->late >= 2;
+	r->flown += missing && r->late < 2;
+	memmove(r->value + 1, r->value, HISTORY - 1);
+	r->value[0] = r->value[0] % 255 + 1;
+	for (i = 0; i < r->n; i++)
+		*r->out[i] = r->value[0];
+}
+
+static struct ring *ring_new(struct kunit *test, struct bus *b)
+{
+	struct ring *r = kunit_kzalloc(test, sizeof(*r), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(test, r);
+	r->b = b;
+	return r;
+}
+
+/* All @n slaves in OP, and the values are as expected for a while. */
+static void ring_run(struct ring *r, u32 n)
+{
+	u32 i;
+
+	r->c = cyc_in_op(r->b, 0, n);
+	r->n = n;
+	for (i = 0; i < n; i++) {
+		r->in[i] = cyc_pd(r->c, i, 3) + ECHO;
+		r->out[i] = cyc_pd(r->c, i, 2) + ECHO;
+	}
+	r->c->ctx = r;
+	r->c->each = ring_look;
+	cyc_run(r->c, 20);
+	r->wrong = r->lost = r->flown = r->left = r->met = 0;
+	cyc_run(r->c, 50);
+	KUNIT_EXPECT_EQ(r->b->test, r->lost, 0u);
+	KUNIT_EXPECT_EQ(r->b->test, r->wrong, 0u);
+}
+
+static void ring_expect(struct ring *r, const char *after)
+{
+	KUNIT_EXPECT_EQ_MSG(r->b->test, r->wrong, 0u, "after %s", after);
+	KUNIT_EXPECT_EQ_MSG(r->b->test, r->lost, 0u, "after %s", after);
+	KUNIT_EXPECT_EQ_MSG(r->b->test, r->left, 0u, "after %s", after);
+}
+
+/* Cable number @i of @n slaves: 0 at the main device, @n at the backup device. */
+static void cable_of(struct bus *b, bool cut, u32 i, u32 n, u32 after_ns)
+{
+	bus_fault_later(b, cut ? EC_SIM_FAULT_CUT : EC_SIM_FAULT_HEAL, min(i, n - 1), i == n,
+			after_ns);
+}
+
+static void cable(struct bus *b, bool cut, u32 i)
+{
+	cable_of(b, cut, i, SLAVES, 0);
+}
+
+static void expect_ring(struct bus *b, u8 state, u32 front, u32 n)
+{
+	KUNIT_EXPECT_EQ(b->test, bus_links(b)->ring.state, state);
+	KUNIT_EXPECT_EQ(b->test, bus_links(b)->ring.front, front);
+	KUNIT_EXPECT_EQ(b->test, bus_n_slaves(b), n);
+}
+
+static void expect_closed(struct bus *b, u32 n)
+{
+	expect_ring(b, EC_RING_CLOSED, n, n);
+}
+
+static void expect_open(struct bus *b, u32 front)
+{
+	expect_ring(b, EC_RING_OPEN, front, SLAVES);
+}
+
+static void ring_is_found(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	u32 i;
+
+	bus_idle(b);
+	expect_closed(b, SLAVES);
+	for (i = 0; i < SLAVES; i++) {
+		KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, i), 0), i ? i - 1 : EC_UAPI_NONE16);
+		KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, i), 1),
+				i + 1 < SLAVES ? i + 1 : EC_UAPI_NONE16);
+		KUNIT_EXPECT_FALSE(test, bus_slave(b, i)->graph.inconsistent);
+	}
+}
+
+/* Nothing of it reaches the application: the same cable, cut while nothing runs. */
+static void ring_cut_at_rest(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	u16 station[SLAVES];
+	u32 i, k;
+
+	bus_idle(b);
+	for (k = 0; k < SLAVES; k++)
+		station[k] = bus_slave(b, k)->station;
+	for (i = 0; i < CUTS; i++) {
+		cable(b, true, i);
+		bus_idle(b);
+		expect_open(b, i);
+		for (k = 0; k < SLAVES; k++) {
+			KUNIT_EXPECT_EQ(test, bus_slave(b, k)->station, station[k]);
+			KUNIT_EXPECT_FALSE(test, bus_slave(b, k)->graph.inconsistent);
+		}
+		cable(b, false, i);
+		bus_idle(b);
+		expect_closed(b, SLAVES);
+	}
+}
+
+static void ring_cut_in_op(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct ring *r = ring_new(test, b);
+	u32 i;
+
+	ring_run(r, SLAVES);
+	for (i = 0; i < CUTS; i++) {
+		cable(b, true, i);
+		cyc_run(r->c, 300);
+		expect_open(b, i);
+		ring_expect(r, "a cut");
+		cable(b, false, i);
+		cyc_run(r->c, 300);
+		expect_closed(b, SLAVES);
+		ring_expect(r, "it has healed");
+	}
+	bus_figure("ring of %u slaves, cut and healed at each of %u cables: %u cycles met an event, %u without a value",
+		   SLAVES, CUTS, r->met, r->flown);
+	KUNIT_EXPECT_LE(test, r->flown, 2 * CUTS);
+}
+
+/* The slaves are found from both ends, in the order that the closed ring would have. */
+static void ring_starts_open(struct kunit *test)
+{
+	struct bus *b = bus_new(test, ring_text);
+	struct ring *r = ring_new(test, b);
+
+	cable(b, true, 3);
+	bus_plug_scanned(b, SLAVES, 5000);
+	expect_open(b, 3);
+	ring_run(r, SLAVES);
+	cyc_run(r->c, 100);
+	cable(b, false, 3);
+	cyc_run(r->c, 300);
+	expect_closed(b, SLAVES);
+	ring_expect(r, "it has healed");
+}
+
+/* Cuts and repairs at random places and instants, also while frames are on their way. */
+static void ring_random(struct kunit *test)
+{
+	struct bus *b = bus_up(test, many_text, MANY);
+	struct ring *r = ring_new(test, b);
+	struct rnd_state rnd;
+	u32 at = 0, i;
+
+	prandom_seed_state(&rnd, 37);
+	ring_run(r, MANY);
+	for (i = 0; i < EVENTS; i++) {
+		at = i % 2 ? at : prandom_u32_state(&rnd) % (MANY + 1);
+		/* known before the frame sets out that it may meet */
+		cable_of(b, !(i % 2), at, MANY,
+			 NSEC_PER_MSEC + prandom_u32_state(&rnd) % (NSEC_PER_MSEC / 4));
+		cyc_run(r->c, 2 + prandom_u32_state(&rnd) % 200);
+	}
+	cyc_run(r->c, 300);
+	ring_expect(r, "random events");
+	KUNIT_EXPECT_LE(test, r->flown, (u32)EVENTS);
+	expect_closed(b, MANY);
+	bus_figure("ring of %u slaves, %u random cuts and repairs: %llu cycles, %u wrong values, %u of cycles that met none without a value, %u of %u that met one",
+		   MANY, EVENTS, r->c->cycles, r->wrong, r->lost, r->flown, r->met);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(ring_is_found),
+	KUNIT_CASE(ring_cut_at_rest),
+	KUNIT_CASE(ring_cut_in_op),
+	KUNIT_CASE(ring_starts_open),
+	KUNIT_CASE(ring_random),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_ring", .exit = bus_exit, .test_cases = cases,
+};
+
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
