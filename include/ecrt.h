@@ -56,7 +56,7 @@
 #define ECRT_VERSION(a, b)	(((a) << 8) + (b))
 #define ECRT_VERSION_MAGIC	ECRT_VERSION(ECRT_VER_MAJOR, ECRT_VER_MINOR)
 
-/* EC_HAVE_REDUNDANCY is not defined so far; ecrt_master_link_state() exists nevertheless */
+#define EC_HAVE_REDUNDANCY
 /* ecrt_master_select_reference_clock() */
 #define EC_HAVE_SELECT_REF_CLOCK
 /* ecrt_master_reference_clock_time() */

@@ -123,6 +123,42 @@ static void common(const struct ect_list *devices)
 	out_end();
 }
 
+static void number(const char *key, bool there, unsigned int value)
+{
+	if (there && value != ECT_NONE32)
+		out_u(key, value, NULL);
+	else
+		out_null(key, NULL);
+}
+
+/* of both devices */
+static void ring(const struct ect_master *m)
+{
+	static const char *const key[] = { "none", "unknown", "closed", "open" };
+	bool open = m->ring == ECT_RING_OPEN;
+
+	out_object("ring");
+	out_str("state", m->ring < ARRAY_SIZE(key) ? key[m->ring] : "unknown", NULL);
+	number("slave", open, m->ring_slave);
+	number("port", open, m->ring_port);
+	number("next", open, m->ring_next);
+	out_end();
+	if (m->ring == ECT_RING_NONE)
+		return;
+	out_text("  Ring: %s", m->ring < ARRAY_SIZE(key) ? key[m->ring] : "unknown");
+	if (open && m->ring_slave == ECT_NONE32)
+		out_text(" between the main device");
+	else if (open && m->ring_port == ECT_NONE32)
+		out_text(" between slave %u", m->ring_slave);
+	else if (open)
+		out_text(" between port %u of slave %u", m->ring_port, m->ring_slave);
+	if (open && m->ring_next == ECT_NONE32)
+		out_text(" and the backup device");
+	else if (open)
+		out_text(" and slave %u", m->ring_next);
+	out_text("\n");
+}
+
 /* a cycle of the kernel that is synchronized to the reference clock */
 static void lock(const struct ect_master *m)
 {
@@ -244,6 +280,7 @@ static int show(const struct tool *t, struct dev *d)
 	for (size_t i = 0; (one = ect_list_get(devices, i)); i++)
 		device(i ? "Backup" : "Main", one);
 	out_end();
+	ring(&m);
 	common(devices);
 	out_u("frames_not_captured", m.not_captured, NULL);
 	if (m.not_captured)

@@ -28,6 +28,12 @@ extern "C" {
 #define ECT_LOCK_LOCKED	2
 #define ECT_LOCK_HOLD	3	/* no reply, the last rate is kept */
 
+/* struct ect_master.ring */
+#define ECT_RING_NONE		0	/* no backup device */
+#define ECT_RING_UNKNOWN	1	/* no reply so far */
+#define ECT_RING_CLOSED		2
+#define ECT_RING_OPEN		3
+
 struct ect_master {
 	uint32_t struct_size;
 	uint32_t index;
@@ -75,6 +81,11 @@ struct ect_master {
 	char owner[ECT_STRING];	/* the application that has reserved the master, or "" */
 	uint32_t left;		/* detached and left to the master: ect_run_leave() */
 	uint32_t reserved;
+	uint32_t ring;		/* ECT_RING_* */
+	/* of an open ring */
+	uint32_t ring_slave;	/* before the break; ECT_NONE32: the main device */
+	uint32_t ring_port;	/* its port there; ECT_NONE32: not known */
+	uint32_t ring_next;	/* behind the break; ECT_NONE32: the backup device */
 };
 
 /* the main device of a master, or its backup device */

@@ -57,6 +57,13 @@
 #define EC_EVENT_LINE_ERRORS	0x1b
 
 /*
+ * the ring of both devices is open: slave before the break or EC_EVENT_NONE: the main device, its
+ * port or EC_EVENT_NONE: not known; slave behind it or EC_EVENT_NONE: the backup device
+ */
+#define EC_EVENT_RING_OPEN	0x1c
+#define EC_EVENT_RING_CLOSED	0x1d	/* slaves */
+
+/*
  * as requested: AL state, before, slaves: this one and those after it, the lowest AL state in
  * between if it is lower than both
  */

@@ -121,8 +121,19 @@ struct ec_ioc_master {
 	__u32 reserved;
 	char owner[EC_UAPI_STRING];	/* application that has reserved the master, or empty */
 	__u32 left;		/* detached by EC_IOC_DETACH: EC_IOC_OUTPUT works */
+	__u32 ring;		/* EC_RING_* */
+	/* of an open ring */
+	__u32 ring_slave;	/* before the break; EC_EVENT_NONE: the main device */
+	__u32 ring_port;	/* its port there; EC_EVENT_NONE: not known */
+	__u32 ring_next;	/* behind the break; EC_EVENT_NONE: the backup device */
 	__u32 reserved2;
 };
+
+/* struct ec_ioc_master.ring */
+#define EC_RING_NONE		0	/* no backup device */
+#define EC_RING_UNKNOWN		1	/* no reply so far */
+#define EC_RING_CLOSED		2
+#define EC_RING_OPEN		3
 
 /* a port of a slave */
 struct ec_ioc_port {

@@ -54,6 +54,10 @@ static void convert_master(struct ect_master *to, struct ec_ioc_master *from)
 	COPY(held);
 	COPY(links_up);
 	COPY(left);
+	COPY(ring);
+	COPY(ring_slave);
+	COPY(ring_port);
+	COPY(ring_next);
 	memcpy(to->owner, from->owner, sizeof(to->owner));
 }
 

@@ -148,6 +148,7 @@ static bool apply_rules(struct why *w)
 {
 	if (why_bus(w))
 		return true;
+	why_ring(w);
 	why_cycle(w);
 	why_late_frames(w);
 	why_absent(w);

@@ -99,6 +99,7 @@ struct ect_finding *why_scan(struct why *w);
 
 /* rules: each adds what it finds; true: nothing else can be known */
 bool why_bus(struct why *w);
+void why_ring(struct why *w);
 void why_cycle(struct why *w);
 void why_unsent(struct why *w);
 void why_absent(struct why *w);

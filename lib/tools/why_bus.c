@@ -79,6 +79,31 @@ bool why_bus(struct why *w)
 	return true;
 }
 
+/* A ring that is open works as well as before, until it breaks again. */
+void why_ring(struct why *w)
+{
+	const struct ect_master *m = &w->m;
+	bool inside = m->ring_slave != ECT_NONE32 && m->ring_next != ECT_NONE32;
+	char before[2 * ECT_STRING] = "the main device", behind[2 * ECT_STRING] = "the backup device";
+	char name[ECT_STRING];
+
+	if (m->ring != ECT_RING_OPEN || !w->bus->n)
+		return;
+	if (m->ring_slave != ECT_NONE32) {
+		why_slave_name(w, m->ring_slave, name, sizeof(name));
+		if (m->ring_port != ECT_NONE32)
+			snprintf(before, sizeof(before), "port %u of %s", m->ring_port, name);
+		else
+			snprintf(before, sizeof(before), "%s", name);
+	}
+	if (m->ring_next != ECT_NONE32)
+		why_slave_name(w, m->ring_next, behind, sizeof(behind));
+	if (inside)
+		why_add(w, RING_OPEN, before, behind);
+	else
+		why_add(w, RING_END, before, behind);
+}
+
 /* the newest finding explains slaves that need a cycle to be in OP */
 static void explain_cycle(struct why *w)
 {

@@ -31,6 +31,12 @@
 	  "link up at the main device %s, but no slave replies") \
 	X(SCAN, "scan", WARNING, "slaves_read slaves", WHY_SCAN_REMEDY, \
 	  "bus scan in progress: %u of %u slaves read") \
+	X(RING_OPEN, "ring_open", WARNING, "", \
+	  "check the cable there, and the power of both slaves; all slaves run on, but those between this break and a second one would stop", \
+	  "ring open between %s and %s") \
+	X(RING_END, "ring_open", WARNING, "", \
+	  "check the cable of the device there; all slaves run on, but a break of the ring would stop some", \
+	  "ring open between %s and %s") \
 	/* the cycle */ \
 	X(NO_CYCLE, "no_cycle", FAULT, "", \
 	  "let the application call ecrt_master_receive() and ecrt_master_send() in each cycle, or let the kernel run the cycle: ecrt_master_set_cycle()", \

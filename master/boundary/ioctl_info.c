@@ -17,9 +17,11 @@
 #include "../bus/absent.h"
 #include "../bus/border.h"
 #include "../bus/find.h"
+#include "../bus/graph.h"
 #include "../bus/line_errors.h"
 #include "../bus/ports.h"
 #include "../bus/slave.h"
+#include "../bus/ring_break.h"
 #include "../config/why.h"
 
 #ifndef EC_RELEASE
@@ -185,6 +187,7 @@ int ec_ioc_master(struct ec_call *call)
 		       READ_ONCE(m->dc.ref_station) ? m->dc.ref->position : -1;
 	if (m->sessions.session)
 		session_info(call, m->sessions.session, i);
+	ec_ring_break_show(&m->bus, &i->ring, &i->ring_slave, &i->ring_port, &i->ring_next);
 	ec_show_end(&m->base->show);
 	i->phase = !ec_links_attached(&m->links) ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;
@@ -342,6 +345,7 @@ int ec_ioc_slave(struct ec_call *call)
 
 	i->device = s->device;
 	i->position = s->position;
+	i->device_index = s->bus->links->ring.state == EC_RING_OPEN && ec_graph_is_reversed(s);
 	i->station = s->station;
 	i->alias = s->alias;
 	i->al_status = READ_ONCE(s->al.status);

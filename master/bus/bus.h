@@ -73,6 +73,10 @@ struct ec_bus {
 	 * before the last of them
 	 */
 	unsigned int front;
+	/** @break_at: of an open ring: the slave before the break, its port, EC_EVENT_NONE: none */
+	u32 break_at[2];
+	/** @ring_told: state and front of the ring as the log has them; the monitor's */
+	u32 ring_told[2];
 	/** @known: device numbers */
 	struct ec_known known;
 	/** @border: ports at which not every device is let in */

@@ -6,6 +6,7 @@
 #include "absent.h"
 #include "graph.h"
 #include "known.h"
+#include "ring_break.h"
 #include "scan_count.h"
 #include "scan_int.h"
 #include "scan_lost.h"
@@ -233,8 +234,9 @@ static void set_list(struct scan *sc, struct list *l)
 	unsigned int i;
 
 	lockdep_assert_held_write(&bus->topo);
-	leave_list(sc, l);
 	WRITE_ONCE(bus->front, sc->front);
+	ec_ring_break_note(bus, l->slaves, l->n);
+	leave_list(sc, l);
 	for (i = 0; i < l->n; i++)
 		l->slaves[i]->position = i;
 	leave_places(sc);
@@ -304,6 +306,7 @@ int ec_scan_publish(struct scan *sc)
 		ec_stop_gone(&l.lost[i]->stop);
 	ec_lost_report(bus, l.lost, l.n_lost);
 	ec_lost_report_found(sc, n_old);
+	ec_ring_break_report(bus);
 	for (i = 0; i < n_old; i++)
 		ec_slave_unref(old[i]);
 	kvfree(old);

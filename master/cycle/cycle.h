@@ -197,6 +197,8 @@ struct ec_cycle {
 	unsigned int n_flight;
 	/** @mute: links of a ring whose copy of the last frame is missing */
 	u8 mute;
+	/** @from_backup: slaves have processed the copy of the backup link in an open ring */
+	bool from_backup;
 	/** @last: frames of the last send */
 	struct ec_cyc_wire last;
 	/** @send: number of the last send */

@@ -209,6 +209,15 @@ static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 	       READ_ONCE(st->wc_state) == EC_STATUS_WC_COMPLETE && !d->age && !d->rate.more;
 }
 
+/* Does the backup link contribute to the domains that were received? */
+static noinline void show_backup(const struct ec_cycle *c, struct ec_status *page)
+{
+	u64 left;
+
+	for (left = c->back; left; left &= left - 1)
+		WRITE_ONCE(page->domains[__ffs64(left)].redundancy_active, c->from_backup);
+}
+
 /* Judge domains that were sent or received since the last receive. */
 static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 {
@@ -233,6 +242,8 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		WRITE_ONCE(st->age, judge_age(c, d, i));
 		note_wkc(c, d, i, wkc, state);
 	}
+	if (unlikely(!c->links->only))
+		show_backup(c, page);
 	if (ec_units_of(c) && !ec_units_are_calm(c->units, steady))
 		ec_units_judge(c, c->sent | c->back);
 	c->judged = c->send;
@@ -283,6 +294,7 @@ static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
 static noinline void join_copies(struct ec_cycle *c, struct ec_slot *slot)
 {
 	c->mute = slot->sides & ~slot->back;
+	c->from_backup = !slot->crossed && slot->back & BIT(EC_BACKUP);
 	ec_ring_note(c->links, slot);
 	if (c->mute)
 		return;

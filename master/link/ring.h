@@ -12,16 +12,9 @@
 struct ec_links;
 struct ec_slot;
 
-enum ec_ring_state {
-	EC_RING_NONE,		/* one device */
-	EC_RING_UNKNOWN,	/* no reply yet */
-	EC_RING_CLOSED,
-	EC_RING_OPEN,
-};
-
 /** struct ec_ring - what is known of a ring */
 struct ec_ring {
-	/** @state: enum ec_ring_state; written by the monitor */
+	/** @state: EC_RING_*; written by the monitor */
 	u8 state;
 	/**
 	 * @front: slaves that the copy of the main link passes: further positions are counted from

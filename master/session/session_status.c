@@ -77,16 +77,18 @@ static void note_timeouts(struct ec_session *s, u64 now)
 void ec_session_note_counts(struct ec_session *s, bool first, bool all)
 {
 	static const u32 kinds[] = { EC_EVENT_OVERRUN, EC_EVENT_FRAMES_LOST, EC_EVENT_FRAMES_LATE };
-	const struct ec_link_stats *stats = &ec_links_at(s->sessions->links, 0)->stats;
 	struct ec_status *st = s->cycle.shared->status;
 	struct ec_count_notes *n = &s->notes;
-	u64 counts[3], now = ktime_get_ns();
+	u64 counts[3] = { 0 }, now = ktime_get_ns();
+	const struct ec_link *link;
 	unsigned int i;
 
 	lockdep_assert_held(s->wanted.lock);
 	ec_status_copy(st, &counts[0], &st->kernel.overruns, sizeof(counts[0]));
-	counts[1] = atomic64_read(&stats->lost);
-	counts[2] = atomic64_read(&stats->late);
+	ec_links_for_each(s->sessions->links, link) {
+		counts[1] += atomic64_read(&link->stats.lost);
+		counts[2] += atomic64_read(&link->stats.late);
+	}
 	for (i = 0; i < ARRAY_SIZE(counts); i++) {
 		/* less: a caller has reset it, or the device has changed */
 		n->more[i] += counts[i] - (counts[i] < n->count[i] ? 0 : n->count[i]);

@@ -72,6 +72,8 @@ static const struct row kinds[] = {
 	     U("period_s"), U("longest_wait_s"), U("vendor_id"), U("product_code"), U("slaves")),
 	KIND(LINE_ERRORS, "line_errors", WARNING, SPECIAL, U("port"), U("invalid_frames"),
 	     U("receiver_errors"), U("duration_s"), S("to_slave"), U("to_port"), U("to_master")),
+	KIND(RING_OPEN, "ring_open", WARNING, SPECIAL, S("slave"), U("port"), S("next")),
+	KIND(RING_CLOSED, "ring_closed", INFO, "ring of %0 slave(s) closed", U("slaves")),
 	/* only what fails has a line */
 	KIND(AL_STATE, "al_state", NONE | SLAVE, SPECIAL, AL("state"), AL("before"),
 	     U("slaves"), AL("lowest")),

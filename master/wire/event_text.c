@@ -103,6 +103,26 @@ static void about_line(struct ec_event_buf *t, const struct ec_event *e,
 	add(t, "; check that cable, its plugs and shielding");
 }
 
+static void about_ring(struct ec_event_buf *t, const struct ec_event *e,
+		       const struct ec_event_more *more)
+{
+	const u32 *a = e->arg;
+
+	(void)more;
+	add(t, "ring open between ");
+	if (a[0] == EC_EVENT_NONE)
+		add(t, "the main device");
+	else if (a[1] == EC_EVENT_NONE)
+		add(t, "slave %u", a[0]);
+	else
+		add(t, "port %u of slave %u", a[1], a[0]);
+	if (a[2] == EC_EVENT_NONE)
+		add(t, " and the backup device");
+	else
+		add(t, " and slave %u", a[2]);
+	add(t, ": slaves run on, a second break is not covered; check the cable there");
+}
+
 static void about_back(struct ec_event_buf *t, const struct ec_event *e,
 		       const struct ec_event_more *more)
 {
@@ -434,6 +454,7 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 	} texts[] = {
 		{ EC_EVENT_MISSED, about_missed },
 		{ EC_EVENT_SLAVE_LOST, about_place },
+		{ EC_EVENT_RING_OPEN, about_ring },
 		{ EC_EVENT_SLAVE_FOUND, about_place },
 		{ EC_EVENT_PORT_KEPT, about_port },
 		{ EC_EVENT_LINE_ERRORS, about_line },

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "../base/report.h"
+#include "../link/links.h"
+#include "graph.h"
+#include "ring_break.h"
+#include "slave.h"
+
+static bool is_open(const struct ec_bus *bus)
+{
+	return bus->links->ring.state == EC_RING_OPEN;
+}
+
+/**
+ * ec_ring_break_note() - the list of slaves changes: where will the ring be open?
+ * @bus: bus, @front set; the graph is that of the list before
+ * @slaves: list that it gets
+ * @n: entries in @slaves
+ *
+ * The port before the break is that at which the slave behind it hung so far.
+ *
+ * Context: The monitor thread, topo held for writing.
+ */
+void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
+{
+	const struct ec_slave *next = bus->front < n ? slaves[bus->front] : NULL, *up;
+	u32 *at = bus->break_at;
+
+	lockdep_assert_held_write(&bus->topo);
+	if (!is_open(bus))
+		return;
+	up = next ? ec_graph_parent(next) : NULL;
+	if (up) {
+		at[0] = up->position;
+		at[1] = next->graph.parent_port;
+	} else if (!bus->front) {
+		at[0] = at[1] = EC_EVENT_NONE;
+	} else if (at[0] != bus->front - 1 || bus->ring_told[0] != EC_RING_OPEN) {
+		at[0] = min(bus->front, n) - 1;
+		at[1] = EC_EVENT_NONE;
+	}
+}
+
+/**
+ * ec_ring_break_report() - an event and a line if the ring is not what these have said last
+ * @bus: bus with its new list
+ *
+ * Context: The monitor thread.
+ */
+void ec_ring_break_report(struct ec_bus *bus)
+{
+	u32 state = bus->links->ring.state, slave, port, next;
+
+	if (state < EC_RING_CLOSED || !bus->n_slaves ||
+	    (bus->ring_told[0] == state &&
+	     (state == EC_RING_CLOSED || bus->ring_told[1] == bus->front)))
+		return;
+	bus->ring_told[0] = state;
+	bus->ring_told[1] = bus->front;
+	ec_ring_break_show(bus, &state, &slave, &port, &next);
+	if (state == EC_RING_CLOSED)
+		ec_report(bus->base, EC_EVENT_RING_CLOSED, bus->n_slaves);
+	else
+		ec_report(bus->base, EC_EVENT_RING_OPEN, slave, port, next);
+}
+
+/**
+ * ec_ring_break_show() - the state of the ring, for users
+ * @bus: bus
+ * @state: result: EC_RING_*
+ * @slave: result: of an open ring: slave before the break, EC_EVENT_NONE: the main device
+ * @port: result: its port there, EC_EVENT_NONE: not known
+ * @next: result: slave behind the break, EC_EVENT_NONE: the backup device
+ *
+ * Context: The monitor thread, or as for ec_bus_assert_stays().
+ */
+void ec_ring_break_show(const struct ec_bus *bus, u32 *state, u32 *slave, u32 *port, u32 *next)
+{
+	u32 front = READ_ONCE(bus->front);
+
+	*state = READ_ONCE(bus->links->ring.state);
+	*slave = *port = *next = EC_EVENT_NONE;
+	if (*state != EC_RING_OPEN)
+		return;
+	*slave = bus->break_at[0];
+	*port = bus->break_at[1];
+	*next = front < bus->n_slaves ? front : EC_EVENT_NONE;
+}
