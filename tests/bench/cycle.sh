@@ -9,9 +9,10 @@
 # host and is printed only; the CPU time of the host that it needs is gated.
 # profile.sh shows in which functions the instructions are.
 #
-# usage: cycle.sh [--gates|--record] [--cycles N]
+# usage: cycle.sh [--gates|--record|--ring] [--cycles N]
 #   --gates   what has a limit only, and each limit once: for make check
 #   --record  only what a recording costs the cycle
+#   --ring    only what a second device costs it, at the other end of a ring
 #   N         cycles of the long run, default 10000
 
 set -u
@@ -24,6 +25,7 @@ while [ $# -gt 0 ]; do
 	case $1 in
 	--gates) all= ;;
 	--record) only=record ;;
+	--ring) only=ring ;;
 	--cycles) cycles=${2:-} && shift ;;
 	*) echo "cycle.sh: unknown option '$1'" >&2 && exit 2 ;;
 	esac
@@ -398,6 +400,33 @@ record_cost() {
 	done
 }
 
+# The same cycle with one native device, and with one at each end of a ring, closed and open.
+ring_cost() {
+	local n state limit one work
+	local -A most=([closed]=140 [open]=160)
+
+	echo "# a ring with two native devices, of what one device costs"
+	for n in 1 100; do
+		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 300 \
+			--period-us 4100 || return
+		one=${v[total_mean]}
+		work=$((v[application_work] + v[card_work] + v[master_work] + v[rest_work]))
+		for state in closed open; do
+			[ $n-$state != 1-open ] || continue
+			run "ring$n, $state" "${icount[@]}" --nics --more-nics e1000e -- ring \
+				"ring$n$([ $state = closed ] || echo -open).seg" --cycles 300 \
+				--period-us 4100 || return
+			cost ring
+			reliable "ring, $state"
+			echo "# all work: $((v[application_work] + v[card_work] + v[master_work] + v[rest_work])), with one device $work"
+			limit=$((one * ${most[$state]} / 100))
+			row "${v[total_mean]}" $limit "instructions of the calls of a cycle, ring $state, two native devices: $n drive(s)"
+			gate "$n drive(s), ring $state: ${v[total_mean]} instructions of the calls, $(ratio "${v[total_mean]}" $one) of those with one device; at most ${most[$state]} %" \
+				"${v[total_mean]} > one && ${v[total_mean]} <= limit"
+		done
+	done
+}
+
 # calls DEVICE DRIVES [OPTION...]: of the application's cycle, mean, in $calls
 calls() {
 	run "$2 drives, $1" "${icount[@]}" --nics -- "$1" "drive$2.seg" --cycles 300 \
@@ -482,8 +511,8 @@ in_real_time() {
 	echo "# lateness: median ${v[late_ns_median]} ns, 99.9 % ${v[late_ns_p999]} ns, max ${v[late_ns_max]} ns"
 }
 
-if [ "$only" = record ]; then
-	record_cost
+if [ -n "$only" ]; then
+	${only}_cost
 	echo "$passed passed, $failed failed"
 	[ $failed = 0 ]
 	exit

@@ -7,7 +7,8 @@
 # EC_INTERRUPT=legacy: of eth0, instead of MSI-X
 #   DEVICE  virtual: the model as sim0; generic: eth0, the model answers on
 #           eth1, which is joined with it (run.sh --nics); native: the same, and
-#           eth0 has the native driver
+#           eth0 has the native driver; ring: native on eth0 and eth2, the model
+#           answers on eth1 and eth3 (--more-nics e1000e)
 
 set -u
 build=$1 device=$2 segment=$3
@@ -21,7 +22,7 @@ virtual)
 	insmod "$build/modules/master/ec_master.ko" main_devices=sim0 &&
 	insmod "$build/modules/devices/sim/ec_sim.ko" segment="$segment" || exit 1
 	;;
-generic|native)
+generic|native|ring)
 	# The simulator's interrupts come late, after the calls that are measured. QEMU's
 	# card cannot do MSI: the driver falls back to the legacy interrupt.
 	mode=2
@@ -34,18 +35,26 @@ generic|native)
 			echo "$floor" | sed "s/^floor/floor$us/"
 		done
 	fi
-	modprobe e1000e IntMode=$mode,0 RxIntDelay=0,200 && ip link set eth1 up || exit 1
+	[ "$device" != ring ] || mode=$mode,0,$mode,0
+	modprobe e1000e IntMode=${mode%,0},0 RxIntDelay=0,200,0,200 && ip link set eth1 up || exit 1
+	ends=eth1 backup=
+	if [ "$device" = ring ]; then
+		ends="eth1 eth3"
+		ip link set eth3 up || exit 1
+		backup=backup_devices=$(cat /sys/class/net/eth2/address)
+	fi
 	# of a real-time task the timers expire in the interrupt: no thread of the kernel
 	# works for the simulator
-	chrt -f 1 "$build/tool/ethercat-sim" --segment "$segment" eth1 &
+	chrt -f 1 "$build/tool/ethercat-sim" --segment "$segment" $ends &
 	main=eth0
 	[ "$device" = generic ] || main=$(cat /sys/class/net/eth0/address)
-	insmod "$build/modules/master/ec_master.ko" main_devices=$main || exit 1
+	insmod "$build/modules/master/ec_master.ko" main_devices=$main $backup || exit 1
 	if [ "$device" = generic ]; then
 		insmod "$build/modules/devices/ec_generic.ko" || exit 1
 	else
 		insmod "$build/modules/devices/intel/ec_intel.ko" &&
 			"$build/tool/ethercat" device bind eth0 || exit 1
+		[ "$device" = native ] || "$build/tool/ethercat" device bind eth2 || exit 1
 	fi
 	;;
 *)
