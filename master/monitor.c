@@ -612,6 +612,7 @@ static void maybe_scan(struct watch *w)
 	} else {
 		w->same = 0;
 	}
+	ec_dc_look_behind(&m->dc);
 	w->survey_ns = 0;
 	WRITE_ONCE(m->bus.scan_busy, false);
 	ec_bus_settled(&m->bus);

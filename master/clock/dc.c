@@ -12,6 +12,7 @@
 #include "dc_sync.h"
 #include "dc_watch.h"
 #include "../base/once64.h"
+#include "../bus/graph.h"
 #include "../base/report.h"
 
 #define EXTRA_DGRAMS	16000	/* of drift compensation by the cycle */
@@ -92,6 +93,52 @@ int ec_dc_measure(struct ec_dc *dc)
 	mutex_unlock(&dc->lock);
 	ec_dc_job_free(&j);
 	return ret;
+}
+
+/* The first clock behind the break that is set. */
+static const struct ec_slave *first_behind(const struct ec_bus *bus)
+{
+	ec_for_each_slave(s, bus)
+		if (ec_graph_is_reversed(s) && ec_clock_is_set(s))
+			return s;
+	return NULL;
+}
+
+/**
+ * ec_dc_look_behind() - which clocks are behind the break of a ring?
+ * @dc: clocks
+ *
+ * Context: The monitor thread, after a scan.
+ */
+void ec_dc_look_behind(struct ec_dc *dc)
+{
+	struct ec_dc_behind *b = &dc->behind;
+	u32 front = dc->bus->front, delay = 0;
+	const struct ec_slave *first = NULL;
+	u16 station = 0;
+
+	if (dc->bus->links->only)
+		return;
+	if (dc->bus->links->ring.state == EC_RING_OPEN && dc->ref) {
+		if (ec_graph_is_reversed(dc->ref))
+			first = dc->ref;
+		else
+			first = first_behind(dc->bus);
+	}
+	if (first) {
+		station = first->station;
+		delay = ec_clock_of(first)->delay;
+	}
+	if (b->station == station && b->front == front)
+		return;
+	/* the cycle begins anew when it has seen the number */
+	WRITE_ONCE(b->station, 0);
+	WRITE_ONCE(b->delay, delay);
+	WRITE_ONCE(b->ref, first && first == dc->ref);
+	WRITE_ONCE(b->front, front);
+	WRITE_ONCE(b->station, station);
+	/* pairs with ec_ring_clock_wanted() */
+	smp_store_release(&b->number, b->number + 1);
 }
 
 /**

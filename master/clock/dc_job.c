@@ -471,6 +471,24 @@ static int dc_job_measure(struct ec_dc_job *j)
 	return ret;
 }
 
+static u64 device_before(const struct ec_dc_job *j, unsigned int i)
+{
+	return i ? j->slaves[i - 1]->device : 0;
+}
+
+/*
+ * Does a delay stay valid? A ring that opens and closes changes no way in it, and cannot be measured
+ * while it runs without opening it: there a delay is valid as long as the slave is behind the same
+ * one.
+ */
+static bool stays(const struct ec_dc_job *j, unsigned int i, u32 scan)
+{
+	const struct ec_clock *c = ec_job_clock(j, i);
+
+	return j->dc->links->only ? c->measured == scan :
+				    c->measured && c->measured_after == device_before(j, i);
+}
+
 /* Delays measured since the last scan stay valid, counted from the present reference clock. */
 static bool known(struct ec_dc_job *j, u32 scan)
 {
@@ -478,11 +496,11 @@ static bool known(struct ec_dc_job *j, u32 scan)
 	unsigned int i;
 
 	for (i = 0; i < j->n; i++)
-		if (j->nodes[i].dc && ec_job_clock(j, i)->measured != scan)
+		if (j->nodes[i].dc && !stays(j, i, scan))
 			return false;
 	/* also of excluded slaves: their clocks may be set again */
 	for (i = 0; i < j->n; i++)
-		if (ec_job_clock(j, i)->measured == scan)
+		if (stays(j, i, scan))
 			ec_job_clock(j, i)->delay -= zero;
 	return true;
 }
@@ -515,6 +533,7 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 		c->delay = (u32)div_s64(j->sum[i], j->rounds);
 		c->prev_delay = j->nodes[i].hop;
 		c->measured = scan;
+		c->measured_after = device_before(j, i);
 		WRITE_ONCE(c->delay_unreliable, j->nodes[i].unreliable);
 	}
 	return ret;

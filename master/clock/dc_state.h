@@ -119,6 +119,8 @@ struct ec_clock {
 	u32 prev_delay;
 	/** @measured: 1 + number of the scan after which the two were measured, 0: never */
 	u32 measured;
+	/** @measured_after: device number of the slave before it then, 0: none */
+	u64 measured_after;
 	/** @state: enum ec_clock_state; atomic */
 	u32 state;
 	/** @delay_unreliable: the receive times contradict the topology; of a measurement */
@@ -193,6 +195,20 @@ struct ec_dc_app {
 	u64 log_ns;
 };
 
+/** struct ec_dc_behind - clocks that frames of the backup link reach alone */
+struct ec_dc_behind {
+	/** @number: of the break; changes with what follows */
+	u32 number;
+	/** @station: of the reference clock if it is there, else of the first clock; 0: none */
+	u16 station;
+	/** @ref: it is the reference clock */
+	bool ref;
+	/** @delay: in its register */
+	u32 delay;
+	/** @front: slaves before the break */
+	u32 front;
+};
+
 /**
  * struct ec_dc - distributed clocks of a master
  *
@@ -240,6 +256,8 @@ struct ec_dc {
 	struct ec_slave *ref;
 	/** @ref_station: its station address for the cycle, 0: none */
 	u16 ref_station;
+	/** @behind: clocks behind the break of a ring; written by the monitor */
+	struct ec_dc_behind behind;
 	/** @ref_wide: it has 64 bits */
 	bool ref_wide;
 	/**

@@ -297,6 +297,22 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 	}
 }
 
+/**
+ * ec_dc_datagrams_fill_behind() - add the datagram for clocks behind the break of a ring
+ * @k: of the active cycle
+ * @fb: empty frame, for the backup link
+ * @index: of its slot
+ * @now: time of the send (ktime)
+ * @f: result
+ *
+ * Context: The cycle owner. RT-safe.
+ */
+void ec_dc_datagrams_fill_behind(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index,
+				 u64 now, struct ec_ring_clock_flight *f)
+{
+	ec_ring_clock_fill(&k->ring, k->dc, fb, index, predicted(k, now), k->path_held, f);
+}
+
 static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
 {
 	return data + len + EC_DGRAM_OVERHEAD;
@@ -342,6 +358,27 @@ const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_fli
 		data = dc_datagrams_skip(data, 4);
 	}
 	return data;
+}
+
+/**
+ * ec_dc_datagrams_take_behind() - result of the datagram for clocks behind the break of a ring
+ * @k: of the active cycle
+ * @f: what was sent in that frame
+ * @sent_ns: when it was sent (ktime)
+ * @data: of the datagram, matched against what was sent
+ *
+ * Context: The cycle owner. RT-safe.
+ */
+void ec_dc_datagrams_take_behind(struct ec_dc_datagrams *k, const struct ec_ring_clock_flight *f,
+				 u64 sent_ns, const u8 *data)
+{
+	u8 time[8];
+	u64 t;
+
+	if (!ec_ring_clock_take(&k->ring, k->dc, f, data, &t))
+		return;
+	put_unaligned_le64(t, time);
+	take_time(k, time, READ_ONCE(k->dc->ref_wide) ? 8 : 4, sent_ns);
 }
 
 /**

@@ -5,6 +5,7 @@
 
 #include <linux/types.h>
 #include "ethercat.h"
+#include "ring_clock.h"
 
 struct ec_access;
 struct ec_dc;
@@ -58,6 +59,8 @@ struct ec_dc_datagrams {
 	u32 path_held_us;
 	/** @lead: application time less ktime, ns */
 	u64 lead;
+	/** @ring: time for clocks behind the break of a ring */
+	struct ec_ring_clock ring;
 };
 
 /** struct ec_dc_flight - the clock datagrams of a frame in flight */
@@ -66,12 +69,18 @@ struct ec_dc_flight {
 	u32 dgrams;
 	/** @time: time that was sent in them, ns */
 	u64 time;
+	/** @behind: a frame with the time for clocks behind the break of a ring */
+	struct ec_ring_clock_flight behind;
 };
 
 u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k);
 u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags);
 void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 now);
+void ec_dc_datagrams_fill_behind(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index,
+				 u64 now, struct ec_ring_clock_flight *f);
+void ec_dc_datagrams_take_behind(struct ec_dc_datagrams *k, const struct ec_ring_clock_flight *f,
+				 u64 sent_ns, const u8 *data);
 const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 			       u64 sent_ns, const u8 *data);
 void ec_dc_datagrams_events(struct ec_dc_datagrams *k, u16 irq);

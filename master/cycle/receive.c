@@ -135,6 +135,10 @@ static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 	unsigned int i;
 	u16 irq = 0;
 
+	if (unlikely(f->clocks.behind.there)) {
+		ec_dc_datagrams_take_behind(&c->clock, &f->clocks.behind, f->slot->sent_ns, data);
+		return get_unaligned_le16(data - 2);
+	}
 	if (f->clocks.dgrams)
 		data = ec_dc_datagrams_take(&c->clock, &f->clocks, f->slot->sent_ns, data);
 	for (i = 0; i < f->count; i++, d++) {

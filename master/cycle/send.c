@@ -123,6 +123,7 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 		f->direct &= ~c->units->replaced;
 	f->clocks.dgrams = send->dc;
 	f->clocks.time = c->clock.sent;
+	f->clocks.behind.there = false;
 	f->riding = send->riding;
 }
 
@@ -162,6 +163,36 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	}
 	send->dc = 0;
 	return g + count;
+}
+
+/* The time for the clocks behind the break of a ring. */
+static noinline void send_behind(struct ec_cycle *c, struct send *send)
+{
+	struct ec_links *l = c->links;
+	struct ec_slot *slot = make_room(c, send->now) ? ec_slot_get(&l->slots, true, send->now) :
+							 NULL;
+	struct ec_ring_clock_flight behind;
+	struct ec_frame_buf fb;
+	struct ec_tx tx;
+	u8 *frame;
+	int ret;
+
+	if (!slot)
+		return;
+	frame = ec_links_tx_get(l, BIT(EC_BACKUP), &tx) ?: slot->frame;
+	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
+	ec_dc_datagrams_fill_behind(&c->clock, &fb, slot->index, send->now, &behind);
+	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
+	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
+	ret = ec_links_transmit(l, slot, frame, &tx, send->now);
+	if (ret) {
+		ec_slot_put(slot);
+		return;
+	}
+	send->dc = 0;
+	send->riding.mask = 0;
+	note_flight(c, slot, c->layout.n_dgrams, 0, send);
+	c->flight[c->n_flight - 1].clocks.behind = behind;
 }
 
 /* Wire time of a send of all domains and clock datagrams at most, ns. */
@@ -226,6 +257,11 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
 	/* frames that are repeated go behind all others: a disturbance may last a while */
+	if (unlikely(!l->only) && send.dc & EC_SEND_FLAG_SYNC_SLAVES) {
+		g = send_frame(c, g, &send);
+		if (ec_ring_clock_wanted(&c->clock.ring, c->dc))
+			send_behind(c, &send);
+	}
 	do {
 		while (g < c->layout.n_dgrams || send.dc) {
 			if (send.dc || send.queued & BIT_ULL(c->layout.dgrams[g].domain))
