@@ -56,8 +56,10 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = up ? up->position : EC_DC_NONE;
 	n->entry = s->graph.upstream;
-	/* behind a break no delay fits the direction in which frames pass */
-	n->dc = dc_job_has_times(s) && !ec_graph_is_reversed(s);
+	/* behind a break nothing can be measured */
+	n->dc = dc_job_has_times(s) &&
+		(!ec_graph_is_reversed(s) ||
+		 (ec_clock_is_set(s) && ec_clock_of(s)->measured));
 	n->parent_port = up ? s->graph.parent_port : 0;
 	n->open = ec_graph_open_ports(s->dl_status);
 	if (ec_graph_ring_exit(s) >= 0) {
