@@ -97,6 +97,7 @@ struct ec_sim {
 	u32 count;
 	struct ec_esc **esc;
 	struct ec_esc_port mport[EC_SIM_PORTS];
+	bool mport_off[EC_SIM_PORTS];	/* the card there is off: no link */
 	bool dirty;			/* routes to be recomputed */
 	struct ec_sim_route route[EC_SIM_PORTS];
 	u32 *heap;			/* slaves by time of their next event */

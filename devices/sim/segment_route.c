@@ -23,6 +23,22 @@ bool ec_sim_link(const struct ec_sim *sim, int port)
 }
 
 /**
+ * ec_sim_card() - the network card at a master port is switched on or off
+ * @sim: segment
+ * @port: master port, 0 or 1
+ * @on: it is on: there is a link if a slave is connected; that is so initially
+ * @now: time, ns
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_sim_card(struct ec_sim *sim, int port, bool on, u64 now)
+{
+	sim->mport_off[port] = !on;
+	if (sim->mport[port].peer >= 0)
+		ec_sim_ports(sim->esc[sim->mport[port].peer], now);
+}
+
+/**
  * ec_sim_is_ring() - has a segment a cable at its second master port?
  * @sim: segment
  *
@@ -106,8 +122,11 @@ static void set_link(struct ec_esc *esc, int p, bool link, u64 now)
 /* there is all that a link needs but time */
 static bool has_partner(const struct ec_esc *esc, const struct ec_esc_port *port)
 {
-	return esc->powered && port->peer != -1 && !port->cut &&
-	       (port->peer < 0 || esc->sim->esc[port->peer]->powered);
+	if (!esc->powered || port->peer == -1 || port->cut)
+		return false;
+	if (port->peer >= 0)
+		return esc->sim->esc[port->peer]->powered;
+	return port->peer == EC_ESC_PEER_HOST || !esc->sim->mport_off[-2 - port->peer];
 }
 
 static u32 link_delay(const struct ec_esc *esc, const struct ec_esc_port *port)

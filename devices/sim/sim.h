@@ -417,6 +417,7 @@ void ec_sim_advance(struct ec_sim *sim, u64 now_ns);
 u64 ec_sim_next_event(struct ec_sim *sim);
 bool ec_sim_link(const struct ec_sim *sim, int port);
 bool ec_sim_is_ring(const struct ec_sim *sim);
+void ec_sim_card(struct ec_sim *sim, int port, bool on, u64 now);
 bool ec_sim_has_port(const struct ec_sim *sim, int slave, int port);
 
 /* looking */

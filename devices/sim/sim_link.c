@@ -61,6 +61,9 @@ static void set_dev(struct end *e, struct ecdev *dev)
 	unsigned int i;
 
 	WRITE_ONCE(e->dev, dev);
+	/* a card that is off has no link: frames turn at the last slave */
+	if (e->port)
+		ec_sim_wire_card(&l->wire, e->port, dev);
 	for (i = 0; i < EC_SIM_PORTS; i++)
 		runs |= READ_ONCE(l->end[i].dev) != NULL;
 	ec_sim_wire_run(&l->wire, runs);
@@ -163,6 +166,7 @@ struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct e
 	ret = ec_sim_wire_init(&l->wire, sim, start_ns, deliver);
 	if (ret)
 		goto err_free;
+	ec_sim_wire_card(&l->wire, 1, false);
 	ret = offer_end(l, 0, name, mac);
 	if (ret)
 		goto err_wire;

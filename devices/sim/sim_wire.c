@@ -317,6 +317,25 @@ void ec_sim_wire_show(struct ec_sim_wire *w, u32 index, char *buf, size_t size)
 }
 
 /**
+ * ec_sim_wire_card() - the network card at a master port is switched on or off
+ * @w: wire
+ * @port: master port, 0 or 1
+ * @on: as for ec_sim_card()
+ *
+ * Context: Any.
+ */
+void ec_sim_wire_card(struct ec_sim_wire *w, int port, bool on)
+{
+	unsigned long flags;
+
+	raw_spin_lock_irqsave(&w->lock, flags);
+	advance(w);
+	ec_sim_card(w->sim, port, on, now_ns(w));
+	arm(w);
+	raw_spin_unlock_irqrestore(&w->lock, flags);
+}
+
+/**
  * ec_sim_wire_up() - is there a cable at a master port now
  * @w: wire
  * @port: master port, 0 or 1

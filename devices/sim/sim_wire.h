@@ -53,6 +53,7 @@ void ec_sim_wire_poll(struct ec_sim_wire *w);
 int ec_sim_wire_send(struct ec_sim_wire *w, int port, const u8 *eth, size_t len);
 void ec_sim_wire_show(struct ec_sim_wire *w, u32 index, char *buf, size_t size);
 int ec_sim_wire_fault(struct ec_sim_wire *w, const struct ec_sim_fault *f);
+void ec_sim_wire_card(struct ec_sim_wire *w, int port, bool on);
 bool ec_sim_wire_up(struct ec_sim_wire *w, int port);
 bool ec_sim_wire_takes(struct ec_sim_wire *w, const struct ec_app *app);
 bool ec_sim_wire_enter(struct ec_sim_wire *w, struct ec_app *app, const u8 *frame, u16 len);

@@ -39,6 +39,15 @@ struct bus *bus_new(struct kunit *test, const char *text)
 }
 
 /**
+ * bus_plug_second() - offer the other end of a ring to the master
+ * @b: bus
+ */
+void bus_plug_second(struct bus *b)
+{
+	KUNIT_ASSERT_EQ(b->test, ec_sim_link_second(b->link, "bus0b", second_mac), 0);
+}
+
+/**
  * bus_plug() - offer the segment to the master
  * @b: bus
  */
@@ -51,7 +60,7 @@ void bus_plug(struct bus *b)
 	KUNIT_ASSERT_FALSE(b->test, IS_ERR(l));
 	b->link = l;
 	if (ec_sim_is_ring(b->sim))
-		KUNIT_ASSERT_EQ(b->test, ec_sim_link_second(l, "bus0b", second_mac), 0);
+		bus_plug_second(b);
 }
 
 /**

@@ -3,6 +3,7 @@
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/bus/graph.h"
+#include "master/mailbox/coe.h"
 
 #define SLAVES		8
 #define CUTS		(SLAVES + 1)	/* cables of the ring */
@@ -37,6 +38,7 @@ static const char many_text[] =
  * @lost: cycles in which a slave's value, or a working counter, was missing, without such a frame
  * @flown: likewise, with one
  * @left: cycles in which a slave was not in OP
+ * @absent: mask of slaves that no frame reaches: their last inputs hold
  */
 struct ring {
 	struct bus *b;
@@ -52,6 +54,7 @@ struct ring {
 	u32 lost;
 	u32 flown;
 	u32 left;
+	u64 absent;
 };
 
 /* The drive copies outputs to inputs: LRW reads before it writes. */
@@ -68,6 +71,8 @@ static void ring_look(struct cyc *c)
 	for (i = 0; i < r->n; i++) {
 		u8 is = *r->in[i];
 
+		if (r->absent & BIT_ULL(i))
+			continue;
 		for (k = 0; k < HISTORY && is != r->value[k]; k++)
 			;
 		r->wrong += k == HISTORY;
@@ -81,6 +86,56 @@ static void ring_look(struct cyc *c)
 	r->value[0] = r->value[0] % 255 + 1;
 	for (i = 0; i < r->n; i++)
 		*r->out[i] = r->value[0];
+}
+
+/* a tool that reads an object of one slave after the other */
+struct talk {
+	struct bus *b;
+	u32 n;
+	u32 done;
+	u32 failed;
+	bool stop;
+	struct completion end;
+};
+
+static int read_objects(void *arg)
+{
+	struct talk *t = arg;
+	u32 abort, i;
+
+	for (i = 0; !READ_ONCE(t->stop); i++) {
+		char text[64] = { 0 };
+		size_t got;
+		int ret = ec_coe_upload(&bus_slave(t->b, i % t->n)->mbox, 0x1008, 0, false, text,
+					sizeof(text), &got, &abort, 0);
+
+		if (ret && t->failed < 5)
+			pr_info("# SDO of slave %u: %d\n", i % t->n, ret);
+		if (ret || !got)
+			t->failed++;
+		else
+			t->done++;
+	}
+	complete(&t->end);
+	return 0;
+}
+
+static struct talk *talk_begin(struct bus *b, u32 n)
+{
+	struct talk *t = kunit_kzalloc(b->test, sizeof(*t), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(b->test, t);
+	t->b = b;
+	t->n = n;
+	init_completion(&t->end);
+	KUNIT_ASSERT_FALSE(b->test, IS_ERR(kthread_run(read_objects, t, "reader")));
+	return t;
+}
+
+static bool talk_end(struct talk *t)
+{
+	WRITE_ONCE(t->stop, true);
+	return try_wait_for_completion(&t->end);
 }
 
 static struct ring *ring_new(struct kunit *test, struct bus *b)
@@ -251,6 +306,132 @@ static void ring_random(struct kunit *test)
 		   MANY, EVENTS, r->c->cycles, r->wrong, r->lost, r->flown, r->met);
 }
 
+/* What is between two cuts stops; the others run on, and it comes back when one heals. */
+static void ring_second_cut(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct ring *r = ring_new(test, b);
+	u32 i;
+
+	ring_run(r, SLAVES);
+	cable(b, true, 2);
+	cyc_run(r->c, 100);
+	r->absent = BIT(2) | BIT(3) | BIT(4);
+	cable(b, true, 5);
+	cyc_run(r->c, 500);
+	for (i = 0; i < SLAVES; i++)
+		KUNIT_EXPECT_EQ_MSG(test, bus_esc(b, i)->mem[EC_REG_AL_STATUS] == EC_AL_OP,
+				    i < 2 || i >= 5, "slave %u", i);
+	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
+	expect_ring(b, EC_RING_OPEN, 2, SLAVES - 3);
+	cable(b, false, 2);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 5000), ~0ull);
+	cyc_run(r->c, 200);
+	r->absent = 0;
+	expect_open(b, 5);
+	cable(b, false, 5);
+	cyc_run(r->c, 200);
+	expect_closed(b, SLAVES);
+	r->lost = r->left = 0;
+	cyc_run(r->c, 100);
+	ring_expect(r, "both have healed");
+}
+
+/* One without power is a break on both of its sides. */
+static void ring_power(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct ring *r = ring_new(test, b);
+	u32 i;
+
+	ring_run(r, SLAVES);
+	r->absent = BIT(3);
+	bus_command(b, "off d4");
+	cyc_run(r->c, 500);
+	for (i = 0; i < SLAVES; i++)
+		if (i != 3)
+			KUNIT_EXPECT_EQ(test, bus_esc(b, i)->mem[EC_REG_AL_STATUS], EC_AL_OP);
+	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
+	expect_ring(b, EC_RING_OPEN, 3, SLAVES - 1);
+	bus_command(b, "on d4");
+	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 5000), ~0ull);
+	r->absent = 0;
+	cyc_run(r->c, 200);
+	expect_closed(b, SLAVES);
+	r->lost = r->left = 0;
+	cyc_run(r->c, 100);
+	ring_expect(r, "it has power again");
+}
+
+/* No link at all, then one, then both. */
+static void ring_both_ends(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct ring *r = ring_new(test, b);
+
+	ring_run(r, SLAVES);
+	cable(b, true, 0);
+	cyc_run(r->c, 50);
+	r->absent = ~0ull;
+	cable(b, true, SLAVES);
+	cyc_run(r->c, 300);
+	cable(b, false, SLAVES);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 5000), ~0ull);
+	r->absent = 0;
+	cyc_run(r->c, 200);
+	expect_open(b, 0);
+	cable(b, false, 0);
+	cyc_run(r->c, 200);
+	expect_closed(b, SLAVES);
+	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
+	r->lost = r->left = 0;
+	cyc_run(r->c, 100);
+	ring_expect(r, "both links are back");
+}
+
+/* A device that goes is as a link that goes; it may come back. */
+static void ring_device(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct ring *r = ring_new(test, b);
+
+	ring_run(r, SLAVES);
+	ec_sim_link_second_withdraw(b->link);
+	cyc_run(r->c, 300);
+	expect_open(b, SLAVES);
+	/* with a frame that it had received */
+	KUNIT_EXPECT_LE(test, r->lost, 1u);
+	r->lost = 0;
+	ring_expect(r, "the backup device is gone");
+	bus_plug_second(b);
+	cyc_run(r->c, 300);
+	expect_closed(b, SLAVES);
+	ring_expect(r, "it is back");
+}
+
+/* SDOs of slaves of both sides while cables are cut and mended: none fails. */
+static void ring_sdo(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct ring *r = ring_new(test, b);
+	struct talk *t;
+	u32 i;
+
+	ring_run(r, SLAVES);
+	t = talk_begin(b, SLAVES);
+	for (i = 0; i < 4 * CUTS; i++) {
+		cable(b, !(i % 2), i / 2 % CUTS);
+		cyc_run(r->c, 50);
+	}
+	while (!talk_end(t))
+		cyc_run(r->c, 1);
+	bus_figure("ring of %u slaves: %u SDO uploads beside %u cuts and repairs, %u failed",
+		   SLAVES, t->done, 4 * CUTS, t->failed);
+	KUNIT_EXPECT_GE(test, t->done, 100u);
+	KUNIT_EXPECT_EQ(test, t->failed, 0u);
+	ring_expect(r, "SDOs");
+}
+
 /* How far the clocks behind the break are from the reference clock, the worst of them, ns. */
 static s64 apart(struct bus *b, u32 n)
 {
@@ -334,6 +515,11 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_cut_in_op),
 	KUNIT_CASE(ring_starts_open),
 	KUNIT_CASE(ring_random),
+	KUNIT_CASE(ring_second_cut),
+	KUNIT_CASE(ring_power),
+	KUNIT_CASE(ring_both_ends),
+	KUNIT_CASE(ring_device),
+	KUNIT_CASE(ring_sdo),
 	KUNIT_CASE_PARAM(ring_clocks, clock_cut_gen_params),
 	{}
 };
