@@ -287,8 +287,11 @@ static int read_texts(struct ect_handle *h, const struct ect_slave *s, struct ec
 	return ret;
 }
 
-/* PDOs that the EEPROM has and does not assign; those that it assigns come first */
-static int image_texts(struct ect_handle *h, const struct slot *t, struct ect_list *texts)
+typedef int (*image_fn)(void *ctx, const struct slot *t, const struct ec_sii_pdo *pdo,
+			const struct ec_sii_pdo_entry *e);
+
+/* Entries of all PDOs that the EEPROM has, until @fn does not return 0 */
+static int image_entries(const struct slot *t, image_fn fn, void *ctx)
 {
 	static const u16 categories[] = { EC_SII_CAT_TXPDO, EC_SII_CAT_RXPDO };
 
@@ -300,23 +303,34 @@ static int image_texts(struct ect_handle *h, const struct slot *t, struct ect_li
 		while (ec_sii_pdo_iter_next(&it, &pdo) > 0)
 			for (unsigned int i = 0; i < pdo.entries; i++) {
 				struct ec_sii_pdo_entry e;
-				struct text *x;
+				int ret = ec_sii_pdo_entry(&pdo, i, &e) ? 0 : fn(ctx, t, &pdo, &e);
 
-				if (ec_sii_pdo_entry(&pdo, i, &e) || !e.index)
-					continue;
-				x = ect_list_add(texts);
-				if (!x)
-					return ect_no_memory(h);
-				*x = (struct text){
-					.pdo_index = pdo.index, .index = e.index, .subindex = e.sub,
-				};
-				ec_sii_string(t->image, t->size, pdo.name, x->pdo, sizeof(x->pdo));
-				ec_sii_string(t->image, t->size, e.name, x->name, sizeof(x->name));
-				string_clean(x->pdo, sizeof(x->pdo));
-				string_clean(x->name, sizeof(x->name));
+				if (ret)
+					return ret;
 			}
 	}
 	return 0;
+}
+
+static int add_text(void *ctx, const struct slot *t, const struct ec_sii_pdo *pdo,
+		    const struct ec_sii_pdo_entry *e)
+{
+	struct text *x = e->index ? ect_list_add(ctx) : NULL;
+
+	if (!x)
+		return e->index ? -ENOMEM : 0;
+	*x = (struct text){ .pdo_index = pdo->index, .index = e->index, .subindex = e->sub };
+	ec_sii_string(t->image, t->size, pdo->name, x->pdo, sizeof(x->pdo));
+	ec_sii_string(t->image, t->size, e->name, x->name, sizeof(x->name));
+	string_clean(x->pdo, sizeof(x->pdo));
+	string_clean(x->name, sizeof(x->name));
+	return 0;
+}
+
+/* PDOs that the EEPROM has and does not assign; those that it assigns come first */
+static int image_texts(struct ect_handle *h, const struct slot *t, struct ect_list *texts)
+{
+	return image_entries(t, add_text, texts) ? ect_no_memory(h) : 0;
 }
 
 static int name_entries(struct ect_handle *h, struct slot *t, const struct ect_list *texts)
@@ -354,26 +368,20 @@ static int read_image(struct ect_handle *h, struct slot *t)
 	return 0;
 }
 
-/* The types of the entries, where the EEPROM has them */
-static u16 type_of(const struct slot *t, const struct entry *e)
+static int find_type(void *ctx, const struct slot *t, const struct ec_sii_pdo *pdo,
+		     const struct ec_sii_pdo_entry *x)
 {
-	static const u16 categories[] = { EC_SII_CAT_TXPDO, EC_SII_CAT_RXPDO };
+	const struct entry *e = ctx;
 
-	for (unsigned int c = 0; c < 2; c++) {
-		struct ec_sii_pdo_iter it;
-		struct ec_sii_pdo pdo;
+	(void)t;
+	(void)pdo;
+	return x->index == e->index && x->sub == e->subindex && x->bits == e->bits ? x->type : 0;
+}
 
-		ec_sii_pdo_iter_init(&it, t->image, t->size, categories[c]);
-		while (ec_sii_pdo_iter_next(&it, &pdo) > 0)
-			for (unsigned int i = 0; i < pdo.entries; i++) {
-				struct ec_sii_pdo_entry x;
-
-				if (!ec_sii_pdo_entry(&pdo, i, &x) && x.index == e->index &&
-				    x.sub == e->subindex && x.bits == e->bits)
-					return x.type;
-			}
-	}
-	return 0;
+/* The type of an entry, 0: the EEPROM has none */
+static u16 type_of(const struct slot *t, struct entry *e)
+{
+	return (u16)image_entries(t, find_type, e);
 }
 
 static int add_values(struct ect_handle *h, const struct slot *t, const char *slave,
@@ -382,7 +390,7 @@ static int add_values(struct ect_handle *h, const struct slot *t, const char *sl
 	bool attached = t->device && t->slave && t->slave->device == t->device;
 
 	for (size_t i = 0; i < t->n; i++) {
-		const struct entry *e = &t->entries[i];
+		struct entry *e = &t->entries[i];
 		struct ect_value *v;
 
 		if (e->sm != f->sm || !e->index || !e->bits)
