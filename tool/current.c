@@ -70,6 +70,24 @@ static bool same_place(const struct ect_value *a, const struct ect_value *b)
 		a->dir == b->dir;
 }
 
+static bool same_name(const struct current *l, size_t i, const struct ect_value *v)
+{
+	return !strcmp(v->name, l->before ? l->before[i] : current_at(l, i)->name);
+}
+
+/* Another session may have the same places, and mean something else by them. */
+static int check_text(struct dev *d, const struct current *l)
+{
+	char *text;
+	size_t size;
+	int err = current_text(d, &text, &size);
+
+	if (!err && (size != l->text_size || (text && memcmp(text, l->text, size))))
+		err = -ESTALE;
+	free(text);
+	return err;
+}
+
 /* A session of the same size has begun since the last poll if the sends count from 0 again. */
 static int check_session(struct dev *d, struct current *l)
 {
@@ -90,10 +108,10 @@ static int check_session(struct dev *d, struct current *l)
 	if (ect_list_count(now) != l->n)
 		err = -ESTALE;
 	for (size_t i = 0; !err && (v = ect_list_get(now, i)); i++)
-		if (!same_place(v, current_at(l, i)))
+		if (!same_place(v, current_at(l, i)) || !same_name(l, i, v))
 			err = -ESTALE;
 	ect_list_free(now);
-	return err;
+	return err ? err : check_text(d, l);
 }
 
 int current_poll(struct dev *d, struct current *l)
@@ -126,6 +144,7 @@ void current_free(struct current *l)
 		free(l->units[i].text);
 	free(l->units);
 	free(l->before);
+	free(l->text);
 	ect_list_free(l->list);
 	*l = (struct current){ 0 };
 }

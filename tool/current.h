@@ -25,6 +25,8 @@ struct current_unit {
  * @domains: how many
  * @sends: of the session at the last poll
  * @before: names that the slaves give; NULL: none was replaced
+ * @text: what the application says of its values; NULL: nothing
+ * @text_size: of it in bytes
  */
 struct current {
 	struct ect_list *list;
@@ -35,6 +37,8 @@ struct current {
 	unsigned int domains;
 	u64 sends;
 	char (*before)[sizeof(((struct ect_value *)0)->name)];
+	char *text;
+	size_t text_size;
 };
 
 /* both print what is wrong, and return 0 or 1 */
@@ -76,6 +80,8 @@ static inline const char *current_unit_text(const struct current *l, const struc
 }
 
 /* current_names.c */
+/* what the application says of its values, to be freed; NULL: nothing. 0 or negative */
+int current_text(struct dev *d, char **text, size_t *size);
 int current_rename(struct dev *d, struct current *l);
 /* names that several values got are not taken; 0, or 1 after printing the error */
 int current_distinct(struct current *l);

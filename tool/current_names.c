@@ -94,6 +94,14 @@ int current_distinct(struct current *l)
 	return 0;
 }
 
+int current_text(struct dev *d, char **text, size_t *size)
+{
+	int err = ect_session_names(d->h, text, size);
+
+	/* an older module has none */
+	return err == -ENOTTY || err == -ENOENT ? 0 : err;
+}
+
 #ifdef EC_TOOL_NO_BUS
 int current_rename(struct dev *d, struct current *l)
 {
@@ -209,21 +217,16 @@ int current_rename(struct dev *d, struct current *l)
 {
 	struct ecb_bus *bus = NULL;
 	struct ecb_error e;
-	char *text;
-	size_t size;
-	int err = ect_session_names(d->h, &text, &size), ret = 0;
+	int err = current_text(d, &l->text, &l->text_size), ret = 0;
 
-	/* an older module has none */
-	if (err == -ENOTTY || err == -ENOENT || (!err && !text))
-		return 0;
 	if (err)
 		return dev_fail(d, err, "Master%u: cannot read the names of its application",
 				d->master);
-	if (!ecb_file_parse(&bus, "names of the application", text, size, &e) &&
+	if (l->text && !ecb_file_parse(&bus, "names of the application", l->text, l->text_size,
+				       &e) &&
 	    bus->master_count == 1)
 		ret = rename_all(d, l, bus->masters[0]);
 	ecb_bus_free(bus);
-	free(text);
 	return ret;
 }
 #endif

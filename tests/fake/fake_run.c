@@ -140,7 +140,10 @@ static int domain(struct ec_ioc_domain *d)
 
 static unsigned int reads;	/* of the data */
 
-/* FAKE_ANOTHER: another session of the same size has begun after so many reads */
+/*
+ * FAKE_ANOTHER: another session of the same size has begun after so many reads; with the names of
+ * FAKE_OTHER_NAMES and the same places, if that is set
+ */
 static bool another(void)
 {
 	const char *after = getenv("FAKE_ANOTHER");
@@ -160,7 +163,7 @@ static int fmmu(struct ec_ioc_domain_fmmu *x)
 	if (i >= LEN(fmmus))
 		return fake_fail(ENOENT, "there is no such FMMU");
 	*x = fmmus[i];
-	if (another() && i)
+	if (another() && i && !getenv("FAKE_OTHER_NAMES"))
 		x->offset = i == 1 ? 7 : 1;
 	x->fmmu = i;
 	return 0;
@@ -289,7 +292,8 @@ static int begin(unsigned long request, void *arg)
 
 static int names(struct ec_ioc_names *x)
 {
-	const char *path = getenv("FAKE_NAMES");
+	const char *other = another() ? getenv("FAKE_OTHER_NAMES") : NULL;
+	const char *path = other ? other : getenv("FAKE_NAMES");
 	FILE *f = path ? fopen(path, "r") : NULL;
 	__u32 room = x->size;
 
