@@ -29,8 +29,29 @@ int bus_of_machine(const struct tool *t, struct bus_wish *wish, struct ecb_bus *
 int bus_of_master(const struct tool *t, struct dev *d, struct bus_wish *wish,
 		  struct ecb_bus **bus);
 
+/**
+ * struct bus_paired - which slave of a file is which of a machine
+ * @file: bus file
+ * @machine: what is connected
+ * @of: slave of @file of each ring position, NULL: it has none
+ * @n: ring positions
+ * @named: of them with a slave of @file
+ */
+struct bus_paired {
+	struct ecb_bus *file;
+	struct ecb_bus *machine;
+	const struct ecb_slave **of;
+	size_t n;
+	size_t named;
+};
+
+/* bus_values.c: of a file that has a slave of the machine; 0, or 1 after printing the error */
+int bus_pair(const struct tool *t, struct dev *d, const char *path, struct bus_paired *x);
+/* also after a failure */
+void bus_pair_free(struct bus_paired *x);
+
 struct current;
-/* bus_values.c: names, types, units and scaling of @path; 0, or 1 after printing the error */
+/* names, types, units and scaling of @path; 0, or 1 after printing the error */
 int bus_values(const struct tool *t, struct dev *d, const char *path, struct current *l);
 
 /* cmd_bus.c: names of the two sides that are compared, and whether they have several masters */

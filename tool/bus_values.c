@@ -1,30 +1,53 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* Values of a session as a bus file calls them. */
+/* Slaves and values of a session as a bus file calls them. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "bus_machine.h"
 #include "current.h"
 
-/* slaves of the file by their ring position */
-struct named {
-	const struct ecb_master *machine;	/* slaves in the order of the ring */
-	const struct ecb_slave **files;
-	size_t named;
-};
-
 static void pair(void *ctx, const struct ecb_master *m, const struct ecb_slave *file,
 		 const struct ecb_slave *found)
 {
-	struct named *n = ctx;
+	struct bus_paired *x = ctx;
 
 	(void)m;
-	for (size_t i = 0; i < n->machine->slave_count; i++)
-		if (n->machine->slaves[i] == found) {
-			n->files[i] = file;
-			n->named++;
+	for (size_t i = 0; i < x->n; i++)
+		if (x->machine->masters[0]->slaves[i] == found) {
+			x->of[i] = file;
+			x->named++;
 			return;
 		}
+}
+
+void bus_pair_free(struct bus_paired *x)
+{
+	free(x->of);
+	ecb_bus_free(x->machine);
+	ecb_bus_free(x->file);
+	*x = (struct bus_paired){ 0 };
+}
+
+int bus_pair(const struct tool *t, struct dev *d, const char *path, struct bus_paired *x)
+{
+	struct bus_wish wish = { .serials = true };
+	struct ecb_bus *machine;
+	struct ecb_error e;
+
+	*x = (struct bus_paired){ 0 };
+	if (ecb_file_read(&x->file, path, &e))
+		return fail("%s", e.text);
+	if (bus_of_master(t, d, &wish, &machine))
+		return 1;
+	x->machine = machine;
+	x->n = machine->masters[0]->slave_count;
+	x->of = calloc(x->n + 1, sizeof(*x->of));
+	if (!x->of || ecb_pairs(x->file, machine, ECB_COMPARE_MACHINE, pair, x) < 0)
+		return fail("out of memory");
+	if (!x->named)
+		return fail("%s: none of its slaves is on the bus of master %u; 'ethercat bus check' compares them",
+			    path, d->master);
+	return 0;
 }
 
 static int by_name(const void *a, const void *b)
@@ -53,33 +76,17 @@ static int check_twice(const char *path, const struct current *l)
 
 int bus_values(const struct tool *t, struct dev *d, const char *path, struct current *l)
 {
-	struct bus_wish wish = { .serials = true };
-	struct ecb_bus *file, *machine;
-	struct ecb_error e;
-	struct named n = { 0 };
-	int ret = 0;
+	struct bus_paired x;
+	int ret = bus_pair(t, d, path, &x);
 
-	if (ecb_file_read(&file, path, &e))
-		return fail("%s", e.text);
-	if (bus_of_master(t, d, &wish, &machine))
-		return ecb_bus_free(file), 1;
-	n.machine = machine->masters[0];
-	n.files = calloc(n.machine->slave_count + 1, sizeof(*n.files));
-	if (!n.files || ecb_pairs(file, machine, ECB_COMPARE_MACHINE, pair, &n) < 0)
-		ret = fail("out of memory");
-	else if (!n.named)
-		ret = fail("%s: none of its slaves is on the bus of master %u; 'ethercat bus check' compares them",
-			   path, d->master);
 	for (size_t i = 0; i < l->n && !ret; i++) {
 		s32 at = current_at(l, i)->position;
 
-		if (at >= 0 && (size_t)at < n.machine->slave_count && n.files[at])
-			ret = current_rename_value(l, i, n.files[at]);
+		if (at >= 0 && (size_t)at < x.n && x.of[at])
+			ret = current_rename_value(l, i, x.of[at]);
 	}
 	if (!ret)
 		ret = check_twice(path, l);
-	free(n.files);
-	ecb_bus_free(machine);
-	ecb_bus_free(file);
+	bus_pair_free(&x);
 	return ret;
 }

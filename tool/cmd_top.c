@@ -6,8 +6,21 @@
 #include "facts.h"
 #include "out.h"
 #include "screen.h"
+#include "top_names.h"
 
 #define EVERY_S		1.0
+
+/**
+ * struct look - what the user wants to see
+ * @first: slave that is shown first
+ * @faults: only slaves with a fault
+ * @names: of slaves
+ */
+struct look {
+	size_t first;
+	bool faults;
+	struct top_names names;
+};
 
 /* text goes to the terminal, and to a pipe without what moves a cursor */
 static void line(bool screen, unsigned int columns, const char *text)
@@ -58,24 +71,37 @@ static void show_domains(const struct facts *f, bool screen, unsigned int column
 	}
 }
 
-/* the slaves from @first on, @room of them; those with a fault alone after the key e */
-static void show_slaves(const struct facts *f, bool screen, unsigned int columns, size_t first,
-			size_t room, bool faults)
+/* "axis1 (EL7201)", or as the EEPROM calls it */
+static void name_of(const struct look *l, const struct ect_slave *s, char *buf, size_t size)
+{
+	const char *name = top_name(&l->names, s);
+
+	if (!name)
+		slave_name(s, buf, size);
+	else if (s->order[0])
+		snprintf(buf, size, "%s (%s)", name, s->order);
+	else
+		snprintf(buf, size, "%s", name);
+}
+
+/* @room of the slaves */
+static void show_slaves(const struct facts *f, const struct look *l, bool screen,
+			unsigned int columns, size_t room)
 {
 	size_t skipped = 0, shown = 0;
 
 	line(screen, columns, "  pos  state         name");
 	for (size_t i = 0; i < f->slaves.n && shown < room; i++) {
 		const struct ect_slave *s = &f->slaves.v[i];
-		char state[16], name[ECT_STRING], text[512];
+		char state[16], name[2 * ECT_STRING], text[512];
 
-		if (faults && !s->error && !s->why[0])
+		if (l->faults && !s->error && !s->why[0])
 			continue;
-		if (skipped++ < first)
+		if (skipped++ < l->first)
 			continue;
 		shown++;
 		al_state_text(s->al_status, state, sizeof(state));
-		slave_name(s, name, sizeof(name));
+		name_of(l, s, name, sizeof(name));
 		snprintf(text, sizeof(text), "%5u  %-12s  %s%s%s", s->position, state, name,
 			 s->why[0] ? ": " : "", s->why);
 		line(screen, columns, text);
@@ -96,7 +122,7 @@ static void json(const struct facts *f)
 	out_end();
 }
 
-static void show(const struct facts *f, bool screen, size_t first, bool faults)
+static void show(const struct facts *f, const struct look *l, bool screen)
 {
 	unsigned int lines = 24, columns = 80;
 	size_t head = 5 + f->m.domain_count + f->m.device_count;
@@ -107,33 +133,48 @@ static void show(const struct facts *f, bool screen, size_t first, bool faults)
 		screen_begin();
 	show_head(f, screen, columns);
 	show_domains(f, screen, columns);
-	show_slaves(f, screen, columns, first,
-		    screen ? lines > head ? lines - head : 1 : f->slaves.n, faults);
+	show_slaves(f, l, screen, columns,
+		    screen ? lines > head ? lines - head : 1 : f->slaves.n);
 	if (!screen)
 		return;
-	screen_line(columns, "q: end  j, k: down, up  e: %s", faults ? "all" : "faults only");
+	screen_line(columns, "q: end  j, k: down, up  e: %s", l->faults ? "all" : "faults only");
 	screen_end();
 }
 
-static int top(const struct tool *t, struct dev *d)
+static void press(struct look *l, int key)
 {
-	bool screen = out_to_terminal() && !out_is_json(), faults = false;
+	if (key == 'j')
+		l->first++;
+	else if (key == 'k' && l->first)
+		l->first--;
+	else if (key == 'e')
+		l->faults = !l->faults;
+}
+
+static int look(const struct tool *t, struct dev *d, struct look *l, bool screen)
+{
+	struct facts f;
+	int ret = facts_read(d, &f) || top_names_read(t, d, &f.slaves, &l->names);
+
+	if (!ret && out_is_json())
+		json(&f);
+	else if (!ret)
+		show(&f, l, screen);
+	facts_free(&f);
+	return ret;
+}
+
+static int top(const struct tool *t, struct dev *d, struct look *l)
+{
+	bool screen = out_to_terminal() && !out_is_json();
 	double every = t->watch_s > 0 ? t->watch_s : EVERY_S;
-	size_t first = 0;
 	int ret = 0, key = 0;
 
 	screen_catch_end();
 	if (screen)
 		screen_grab();
 	while (!ret && key != 'q' && !screen_ended()) {
-		struct facts f;
-
-		ret = facts_read(d, &f);
-		if (!ret && out_is_json())
-			json(&f);
-		else if (!ret)
-			show(&f, screen, first, faults);
-		facts_free(&f);
+		ret = look(t, d, l, screen);
 		/* in a pipe once, unless a time was given */
 		if (ret || (!screen && !t->watch_s))
 			break;
@@ -142,12 +183,7 @@ static int top(const struct tool *t, struct dev *d)
 		if (fflush(stdout))
 			break;
 		key = screen_key(every);
-		if (key == 'j')
-			first++;
-		else if (key == 'k' && first)
-			first--;
-		else if (key == 'e')
-			faults = !faults;
+		press(l, key);
 	}
 	screen_release();
 	screen_forget_interruption();
@@ -156,13 +192,15 @@ static int top(const struct tool *t, struct dev *d)
 
 static int run(struct tool *t, int argc, char **argv)
 {
+	struct look l = { 0 };
 	struct dev d;
 	int ret;
 
 	(void)argc, (void)argv;
 	if (dev_open_single(&d, t, false))
 		return 1;
-	ret = top(t, &d);
+	ret = top(t, &d, &l);
+	top_names_free(&l.names);
 	dev_close(&d);
 	return ret;
 }
@@ -171,13 +209,14 @@ const struct cmd cmd_top = {
 	.name = "top",
 	.run = run,
 	.args = "",
-	.opts = "mW",
+	.opts = "mWi",
 	.summary = "Show slaves, working counters and the cycle again and again",
 	.help = "The owner of the master, links with their load, the cycle with its share of the wire and\n"
 		"its deviation, working counters, slaves with states and errors. Each second, or in the\n"
 		"time of --watch. Keys: q ends, j and k move in the slaves, e shows only those with a\n"
-		"fault. Not on a terminal: the same lines once, or with --watch again and again. It only\n"
-		"reads, and sends no frame.\n",
+		"fault. Not on a terminal: the same lines once, or with --watch again and again. Slaves\n"
+		"have the names that the application or 'ethercat run FILE' gives them, or of the bus\n"
+		"file of --file. It only reads, and sends no frame.\n",
 	.json = "each line is an object: master, slaves, slaves_responding, session, interval_ns (0: no\n"
 		"cycle), wire_ns, overruns, late_max_ns",
 	.flags = CMD_ONE_MASTER | CMD_LINES,
