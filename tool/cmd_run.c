@@ -289,9 +289,11 @@ static int run(struct tool *t, int argc, char **argv)
 
 	if (argc && t->include)
 		return usage_error("FILE and --include exclude each other: the file names what runs");
+	if (argc)
+		return run_file(t, argv[0]);
 	if (dev_open_single(&d, t, true))
 		return 1;
-	ret = argc ? run_file(t, &d, argv[0]) : run_master(t, &d);
+	ret = run_master(t, &d);
 	/* without ect_run_leave() the session ends here, and with the process */
 	dev_close(&d);
 	return ret;
@@ -319,9 +321,10 @@ const struct cmd cmd_run = {
 		"\n"
 		"With a bus file ('ethercat bus save') all slaves of the file run, as it says: PDOs,\n"
 		"startup commands, time limits, clocks, sync units, hot connect groups, cycle. Other\n"
-		"slaves are omitted and named. When slaves differ from the file nothing runs, and each\n"
-		"difference is named; with --force the other slaves run. A file that the group\n"
-		"or others may write, or that belongs to another user, is refused.\n"
+		"slaves are omitted and named. A file with one master is for that master, otherwise -m\n"
+		"chooses one. When slaves differ from the file nothing runs, and each difference is\n"
+		"named; with --force the other slaves run. A file that the group or others may write, or\n"
+		"that belongs to another user, is refused.\n"
 		"\n"
 		"With the right to it (CAP_SYS_NICE or RLIMIT_RTPRIO) the cycle has SCHED_FIFO 50,\n"
 		"otherwise SCHED_OTHER, which the command reports.\n",

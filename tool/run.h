@@ -17,7 +17,7 @@ void run_show(struct dev *d, size_t n);
 /* 0, or 1 after printing that the output cannot be written */
 int run_finish_output(void);
 
-/* run_file.c: by a bus file */
-int run_file(const struct tool *t, struct dev *d, const char *path);
+/* run_file.c: by a bus file, on the master of -m or of the file */
+int run_file(const struct tool *t, const char *path);
 
 #endif

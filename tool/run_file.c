@@ -3,10 +3,9 @@
 #include "run.h"
 
 #ifdef EC_TOOL_NO_BUS
-int run_file(const struct tool *t, struct dev *d, const char *path)
+int run_file(const struct tool *t, const char *path)
 {
 	(void)t;
-	(void)d;
 	(void)path;
 	return fail("this 'ethercat' was built without libyaml: install libyaml-dev and build it again");
 }
@@ -165,19 +164,27 @@ static int check_units(const struct job *j)
 	return 0;
 }
 
+/* the master of -m; without, that of the file if it has one alone */
+static int open_master(struct job *j)
+{
+	if (j->t->masters.given || j->bus->master_count != 1)
+		return dev_open_single(j->d, j->t, true);
+	if (!dev_open(j->d, j->bus->masters[0]->index, true))
+		return 0;
+	note("%s is for master %u; -m chooses another one", j->path, j->bus->masters[0]->index);
+	return 1;
+}
+
 static int prepare(struct job *j)
 {
-	struct bus_wish wish = { .pdos = true };
+	struct bus_wish wish = { .file = j->bus, .pdos = true };
 	struct ecb_error e;
 
-	if (read_file(j))
-		return 1;
 	j->want = master_of(j->bus, j->d->master);
 	if (!j->want)
 		return fail("%s has no master %u; choose one of the file with -m", j->path,
 			    j->d->master);
-	wish.file = j->bus;
-	if (bus_of_machine(j->t, &wish, &j->machine))
+	if (bus_of_master(j->t, j->d, &wish, &j->machine))
 		return 1;
 	j->found = master_of(j->machine, j->d->master);
 	if (!j->found)
@@ -249,7 +256,7 @@ static int check_again(const struct job *j)
 	struct ecb_bus *bus;
 	size_t i = 0;
 
-	if (bus_of_machine(j->t, &wish, &bus))
+	if (bus_of_master(j->t, j->d, &wish, &bus))
 		return 1;
 	now = master_of(bus, j->d->master);
 	while (now && i < now->slave_count && i < j->found->slave_count &&
@@ -316,23 +323,38 @@ static int run_it(const struct job *j)
 	return ret;
 }
 
-int run_file(const struct tool *t, struct dev *d, const char *path)
+static int run_open(struct job *j)
 {
-	struct job j = { .t = t, .d = d, .path = path };
 	int ret;
 
 	out_object(NULL);
-	out_u("master", d->master, NULL);
-	out_bool("dry_run", t->dry_run, NULL);
-	out_str("file", path, NULL);
-	ret = prepare(&j);
-	if (!ret && t->dry_run)
-		show_plan(&j);
-	if (ret || t->dry_run)
+	out_u("master", j->d->master, NULL);
+	out_bool("dry_run", j->t->dry_run, NULL);
+	out_str("file", j->path, NULL);
+	ret = prepare(j);
+	if (!ret && j->t->dry_run)
+		show_plan(j);
+	if (ret || j->t->dry_run)
 		out_end();
 	else
-		ret = run_it(&j);
-	ecb_bus_free(j.machine);
+		ret = run_it(j);
+	ecb_bus_free(j->machine);
+	return ret;
+}
+
+int run_file(const struct tool *t, const char *path)
+{
+	struct dev d;
+	struct job j = { .t = t, .d = &d, .path = path };
+	int ret;
+
+	if (read_file(&j))
+		return 1;
+	ret = open_master(&j);
+	if (!ret) {
+		ret = run_open(&j);
+		dev_close(&d);
+	}
 	ecb_bus_free(j.bus);
 	return ret;
 }

@@ -230,6 +230,7 @@ expected() {
 	./usr/local/lib/systemd/system/ethercat-run@.service
 	.$prefix/sbin/ethercatctl
 	.$prefix/share/ethercat/await.sh
+	.$prefix/share/ethercat/busrun.sh
 	.$prefix/share/ethercat/conf.sh
 	.$prefix/share/ethercat/devices.sh
 	.$prefix/share/ethercat/trusted.sh

@@ -25,11 +25,11 @@ units="$BATS_TEST_DIRNAME/../../operation"
 	echo "$output"
 	[ "$status" = 0 ]
 	[ -z "$output" ]
-	rm "$root/usr/bin/ethercat"
+	chmod -x "$root/usr/share/ethercat/busrun.sh"
 	run systemd-analyze verify --man=no --root="$root" --recursive-errors=no \
 		ethercat-run@line.service
-	install -m 755 /bin/true "$root/usr/bin/ethercat"
-	[[ $output == *"/usr/bin/ethercat is not executable"* ]]
+	chmod +x "$root/usr/share/ethercat/busrun.sh"
+	[[ $output == *"/usr/share/ethercat/busrun.sh is not executable"* ]]
 }
 
 # exposure UNIT: of systemd, 0 to 100
@@ -120,4 +120,21 @@ stub() {
 	[ "$status" = 1 ]
 	[ "$output" = "slave axis1 missing" ]
 	[ "$(wc -l <"$BATS_TEST_TMPDIR/calls")" -ge 3 ]
+}
+
+@test "the stop ends the bus of the master that the start has run" {
+	export RUNTIME_DIRECTORY=$BATS_TEST_TMPDIR
+	stub 'echo "Master1 runs: 3 slave(s) in OP, cycle 1 ms, SCHED_FIFO 50"'
+	run "$units/busrun.sh" start /etc/ethercat/line.yaml
+	[ "$output" = "Master1 runs: 3 slave(s) in OP, cycle 1 ms, SCHED_FIFO 50" ]
+	"$units/busrun.sh" stop
+	[ "$(xargs <"$BATS_TEST_TMPDIR/calls")" = "run /etc/ethercat/line.yaml stop -m 1" ]
+	# a start that fails has nothing to be ended
+	rm "$BATS_TEST_TMPDIR/master"
+	stub 'exit 1'
+	run "$units/busrun.sh" start /etc/ethercat/line.yaml
+	[ "$status" = 1 ]
+	run "$units/busrun.sh" stop
+	[ "$status" != 0 ]
+	[ "$(xargs <"$BATS_TEST_TMPDIR/calls")" = "run /etc/ethercat/line.yaml" ]
 }

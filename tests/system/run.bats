@@ -308,7 +308,8 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	no "No such file"
 	f=$BATS_TEST_TMPDIR/bus.yaml
 	sed -i 's/^  - sync_units.*/  - index: 3/; /sync_unit/d' "$f"
-	no "has no master 0"
+	no "is for master 3; -m chooses another one"
+	no "has no master 0" -m 0
 }
 
 @test "run FILE of yesterday, after one slave was exchanged for another type, names the difference" {

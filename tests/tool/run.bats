@@ -174,7 +174,7 @@ assert [json.loads(l)["value"] for l in sys.stdin] == [
 	[ "$status" -ne 124 ]
 }
 
-@test "watch, data and set take names, types, units and scaling from a bus file" {
+@test "--file gives watch, data and set the names, types, units and scaling of a bus file" {
 	export FAKE_BUS=run
 	cat >"$BATS_TEST_TMPDIR/bus.yaml" <<-'END'
 		ethercat: 1
@@ -294,6 +294,25 @@ is_narrow() {
 	FAKE_BUS=idle out top | grep -qx 'Cycle: none'
 }
 
+@test "top calls slaves as the application does, or as the bus file of --file" {
+	names_of_session
+	out top >"$BATS_TEST_TMPDIR/out"
+	grep -qx '    1  PREOP         lamps (EL2008)' "$BATS_TEST_TMPDIR/out"
+	grep -q '^    2  PREOP+ERROR   axis (EL7201): SM2' "$BATS_TEST_TMPDIR/out"
+	grep -qx '    0  PREOP         EK1100 Coupler' "$BATS_TEST_TMPDIR/out"
+	sed 's/name: lamps/name: valves/; s/0x1c213052/0x1c213053/' "$FAKE_NAMES" \
+		>"$BATS_TEST_TMPDIR/bus.yaml"
+	out top --file "$BATS_TEST_TMPDIR/bus.yaml" >"$BATS_TEST_TMPDIR/out"
+	grep -qx '    1  PREOP         valves (EL2008)' "$BATS_TEST_TMPDIR/out"
+	grep -q '^    2  PREOP+ERROR   EL7201 servo' "$BATS_TEST_TMPDIR/out"
+	# a text that names nothing
+	echo 'ethercat: 1' >"$FAKE_NAMES"
+	golden top top
+	sed -i 's/vendor: 2/vendor: 3/' "$BATS_TEST_TMPDIR/bus.yaml"
+	err top --file "$BATS_TEST_TMPDIR/bus.yaml" |
+		grep -q 'none of its slaves is on the bus of master 0'
+}
+
 @test "stop ends a bus that run has begun, and no other session" {
 	export FAKE_BUS=run
 	log_of stop >"$BATS_TEST_TMPDIR/said"
@@ -342,7 +361,7 @@ names_of_session() {
 	export FAKE_NAMES=$BATS_TEST_TMPDIR/names FAKE_BUS=run
 }
 
-@test "data, watch and set use names, units and scaling of the application's bus file" {
+@test "the names that an application has given its session are those of data, watch and set" {
 	names_of_session
 	out data --names >"$BATS_TEST_TMPDIR/out"
 	cat "$BATS_TEST_TMPDIR/out"
@@ -362,6 +381,21 @@ output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
 	err set axis.power on | grep -q "axis.power is scaled: 'on' is no number"
 	err set axis.power nan | grep -q 'is no number'
 	err set el7201.controlword 1 | grep -q 'no value el7201.controlword'
+}
+
+@test "watch ends when a session with the same places and other names has begun" {
+	names_of_session
+	export FAKE_ANOTHER=4
+	sed 's/name: power/name: torque/' "$FAKE_NAMES" >"$BATS_TEST_TMPDIR/other"
+	FAKE_OTHER_NAMES=$BATS_TEST_TMPDIR/other run timeout 20 "$HERE/build/fake/ethercat" watch \
+		--watch 0.1 axis.power
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ $output == *"Master0: the session has ended"* ]]
+	# the same one again is the same machine
+	FAKE_OTHER_NAMES=$FAKE_NAMES FAKE_CHANGES=8 run timeout 20 "$HERE/build/fake/ethercat" \
+		watch --watch 0.1 axis.position
+	[ "$(echo "$output" | grep -c 'axis.position = ')" = 9 ]
 }
 
 @test "a name that two values would have belongs to none" {
@@ -412,4 +446,18 @@ output 0: bit 8, 16 bits, 0x14, device 13, lease 5000' ]
 	chmod g+w "$f"
 	err run --dry "$f" | grep -q "others may write it (mode 0664)"
 	err run --dry "$f" --include el2008 | grep -q "exclude each other"
+}
+
+@test "run FILE is for the master that the file has, unless -m names another one" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml
+	export FAKE_BUS=two
+
+	ethercat bus save -m 1 "$f"
+	out run --dry-run "$f" | grep -q '^Master1: the slaves of'
+	out run --dry-run -m 1 "$f" | grep -q '^Master1: the slaves of'
+	err run --dry-run -m 0 "$f" | grep -q 'has no master 0; choose one of the file with -m'
+	FAKE_BUS=idle err run --dry-run "$f" | grep -q "$f is for master 1; -m chooses another one"
+	ethercat bus save -f "$f"
+	err run --dry-run "$f" | grep -q '2 masters found, the command needs one; select it with -m'
+	out run --dry-run -m 0 "$f" | grep -q '^Master0: the slaves of'
 }
