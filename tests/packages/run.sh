@@ -155,6 +155,7 @@ boots() {
 	in_root 'systemctl enable ethercat
 		gcc -o /srv/mirror /usr/share/doc/ethercat-doc/examples/mirror.c \
 			$(pkg-config --cflags --libs libethercat) -pthread' &&
+	cp tests/packages/run-unit.sh "$tmp/root/upper/srv" &&
 	sed -n '/^    \[Unit\]/,/^    Restart/s/^    //p' Documentation/install.rst \
 		>"$tmp/root/upper/srv/app.service" &&
 	tests/packages/enter.sh --mount "$root" "$tmp/root" sh -c \
@@ -172,6 +173,8 @@ boots() {
 		position() { ethercat slaves | grep -m 1 $1 | { read -r n rest; echo $n; }; }
 		unloaded() { [ ! -e /dev/EtherCAT0 ] && [ ! -e /sys/module/ec_master ]; }
 		refused() { if "$@"; then exit 1; fi; }
+		# the journal has it some time after the end of the program that wrote it
+		said() { wait_until "journalctl -u ethercat | grep \"$1\""; }
 		systemctl is-active ethercat
 		wait_until "slaves PREOP 22"
 		ethercat slaves | head -n 3
@@ -181,6 +184,7 @@ boots() {
 		timeout 2 ethercat watch "el1008.*" | grep -m 1 "el1008.channel_1.input = "
 		ethercat stop
 		wait_until "slaves PREOP 22"
+		sh -eux /srv/run-unit.sh
 		systemctl start ethercat-metrics.socket
 		python3 -c "import urllib.request as u
 print(u.urlopen(\"http://127.0.0.1:9488/metrics\", timeout=20).read().decode())" >/tmp/metrics
@@ -226,7 +230,7 @@ print(u.urlopen(\"http://127.0.0.1:9488/metrics\", timeout=20).read().decode())"
 		echo "MASTER0_DEVICE=lo" >/etc/ethercat.conf
 		refused systemctl restart ethercat
 		slaves PREOP 22
-		journalctl -u ethercat | grep "the masters run on; mend /etc/ethercat.conf"
+		said "the masters run on; mend /etc/ethercat.conf"
 		cp /tmp/conf /etc/ethercat.conf
 		systemctl start ethercat
 		rm /etc/ethercat.conf
@@ -237,7 +241,7 @@ print(u.urlopen(\"http://127.0.0.1:9488/metrics\", timeout=20).read().decode())"
 		refused systemctl restart ethercat
 		echo "MASTER0_DEVICE=eth9" >/etc/ethercat.conf
 		refused systemctl start ethercat
-		journalctl -u ethercat | grep "ethercat.conf:1: .*no such device after 10 s"
+		said "ethercat.conf:1: .*no such device after 10 s"
 		cp /tmp/conf /etc/ethercat.conf
 		ethercatctl start
 		refused unloaded
@@ -282,7 +286,8 @@ t "programs build against libethercat-dev and libethercat-tools-dev" program_bui
 t "a kernel module builds against the modules that are installed" module_builds
 t "the pages are HTML, with the codes and the reference of ecrt.h" pages
 t "systemd starts the simulated bus and an application in a guest, and stops them" boots
-in_root 'rm -rf /srv/mini /srv/mirror /srv/app.service /srv/tutorial /root/examples'
+in_root 'rm -rf /srv/mini /srv/mirror /srv/app.service /srv/tutorial /srv/run-unit.sh \
+	/root/examples'
 t "the headers of another kernel are installed" in_root 'dpkg -i /srv/second/*.deb'
 t "DKMS has built the modules for the new kernel" has_modules 0.1.0 2
 in_root 'echo "# mine" >>/etc/ethercat.conf; systemctl enable ethercat
