@@ -8,12 +8,12 @@
 # the files that the card matters to; a million cycles of it, also while its cable is pulled;
 # 600,000 cycles beside readers of events; 10,000,000 inputs of the reader of bus files; the
 # packages of Debian 12 and 13; README's two commands in a fresh root of Debian 13; a reboot and a
-# suspend with both kinds of device; Debian's Prometheus, which scrapes the metrics; all benchmarks,
-# the cycle also with the legacy interrupt of the card. The last line is "N passed, N failed";
-# results with their date are in Documentation/results.rst.
+# suspend with both kinds of device; Debian's Prometheus, which scrapes the metrics; Debian's numpy,
+# which opens recordings; all benchmarks, the cycle also with the legacy interrupt of the card. The
+# last line is "N passed, N failed"; results with their date are in Documentation/results.rst.
 #
 # usage: check-long.sh [ports|groups|without|bus-files|uml-debug|nic-MODEL|iommu-MODEL|cycles|
-#	flaps|events|packages|packages-13|check-13|reboot|prometheus|bench|bench-legacy|KERNEL...]
+#	flaps|events|packages|packages-13|check-13|reboot|prometheus|numpy|bench|bench-legacy|KERNEL...]
 
 set -u
 export LC_ALL=C
@@ -41,6 +41,7 @@ run() {
 	check-13) tests/packages/whole.sh trixie ;;
 	bench) tests/bench/run.sh ;;
 	prometheus) tests/tool/prometheus.sh ;;
+	numpy) tests/tool/numpy.sh ;;
 	bench-legacy) EC_INTERRUPT=legacy tests/bench/cycle.sh ;;
 	reboot) tests/reboot/run.sh {generic,native}{,+off,+kexec,+suspend} ;;
 	without) tests/class-a/try.sh ;;
@@ -56,7 +57,7 @@ run() {
 tests/install-deps.sh build vm capture uml json cross || exit 1
 for k in ${*:-ports groups without bus-files uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan \
 	6.1-kasan nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages \
-	packages-13 check-13 reboot prometheus bench bench-legacy}; do
+	packages-13 check-13 reboot prometheus numpy bench bench-legacy}; do
 	echo "=== $k"
 	began=$SECONDS
 	run "$k" >"$log" 2>&1
