@@ -18,7 +18,8 @@ die() { echo "$*"; echo "$passed passed, $((failed + 1)) failed"; exit 1; }
 fetch() {
 	rm -rf "$cache.new"
 	mkdir -p "$cache.new" && cd "$cache.new" &&
-		apt-get -qq download python3-numpy libblas3 liblapack3 libgfortran5 >/dev/null 2>&1 &&
+		apt-get -qq download python3-numpy libblas3 liblapack3 libgfortran5 \
+			>/dev/null 2>&1 &&
 		for f in *.deb; do dpkg -x "$f" . && rm "$f" || return; done &&
 		rm -rf "$cache" && mv "$cache.new" "$cache"
 }
