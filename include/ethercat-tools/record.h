@@ -61,7 +61,8 @@ int ect_record_begin(struct ect_handle *h, const struct ect_value *const *values
  * ect_record_waiting() is not 0.
  *
  * Context: The thread of the handle.
- * Return: 0; -EINTR a signal has ended the wait; -ENODATA the session has ended; or another
+ * Return: 0; -EINTR a signal has ended the wait; -ENODATA the session has ended;
+ * -ENOBUFS likewise, and its last records were dropped for newer recordings; or another
  * negative errno.
  */
 int ect_record_read(struct ect_recording *r, struct ect_record *to);

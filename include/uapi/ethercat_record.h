@@ -7,7 +7,8 @@
  * whole records, and poll() reports new ones, at most 20 ms late. Each reader has a position of its
  * own, and takes nothing from others. All readers of a master share one ring of @kept records, at
  * most EC_RECORD_RING bytes: the record behind a gap has the exact number of those that the reader
- * was too slow for. After the end of the session read() returns what is left, then -ENODATA.
+ * was too slow for. After the end of the session read() returns what is left, then -ENODATA; with
+ * rings of three ended sessions the oldest one is dropped for the next: -ENOBUFS.
  *
  * The reader names bytes of the image of all domains (@logical of struct ec_ioc_domain is where a
  * domain begins): @data are two masks of @size / 2 bytes each, first of inputs, then of outputs.

@@ -204,6 +204,9 @@ static int refill(struct ect_recording *r)
 		return -EINTR;
 	if (n < 0 && errno == ENODATA)
 		return ect_fail(r->h, -ENODATA, "the session has ended");
+	if (n < 0 && errno == ENOBUFS)
+		return ect_fail(r->h, -ENOBUFS,
+				"the session has ended, and what was not read was dropped for newer recordings");
 	if (n < 0)
 		return ect_failed(r->h);
 	r->at = 0;

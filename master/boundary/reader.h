@@ -47,7 +47,7 @@ struct ec_reader {
 	struct ec_readers *readers;
 	/** @list: in @readers */
 	struct list_head list;
-	/** @source: of the records, which stays as long as the file is in the list; of @kind */
+	/** @source: of the records; of @kind */
 	const void *source;
 	/** @lock: protects @at; one caller reads at a time */
 	struct mutex lock;

@@ -7,8 +7,8 @@
  * a master has one ring of %EC_RECORD_RING bytes for all readers of a session, the cycle copies its
  * image once for all of them, and there are at most %EC_RECORDERS readers, %EC_RECORDERS_READ_ONLY
  * without the right to write. Rings of ended sessions stay until their readers end; with
- * %RINGS_MAX of them no other one begins. All of this is memory of the process that caused it
- * (GFP_KERNEL_ACCOUNT).
+ * %RINGS_MAX of them the oldest one is freed for the next, and its readers get an error. All of
+ * this is memory of the process that caused it (GFP_KERNEL_ACCOUNT).
  */
 #include <linux/jiffies.h>
 #include <linux/mm.h>
@@ -30,6 +30,8 @@ struct ec_record_reader {
 	struct ec_reader_kind kind;
 	/** @read_only: it is one of these */
 	bool read_only;
+	/** @cut: its ring was freed before it had read all */
+	bool cut;
 	/** @n: entries in @runs */
 	u32 n;
 	/** @runs: what it wants */
@@ -83,24 +85,53 @@ void ec_record_readers_exit(struct ec_master *m)
 	cancel_delayed_work_sync(&m->record_readers.work);
 }
 
+/* The ring of a reader, in an RCU read section; NULL: it was freed. */
+static const struct ec_recorder *ring_of(const struct ec_reader *r)
+{
+	/* pairs with drop_oldest() */
+	return smp_load_acquire(&r->source);
+}
+
 /* The end of the session is behind the last record. */
 static u64 record_head(const struct ec_reader *r)
 {
-	const struct ec_recorder *ring = r->source;
+	const struct ec_recorder *ring;
+	u64 head = ~0ULL;
 
+	rcu_read_lock();
+	ring = ring_of(r);
 	/* pairs with ec_recorder_end() */
-	return smp_load_acquire(&ring->ended) ? ~0ULL : ec_recorder_head(ring);
+	if (ring && !smp_load_acquire(&ring->ended))
+		head = ec_recorder_head(ring);
+	rcu_read_unlock();
+	return head;
+}
+
+/* 1, 0: there is none so far; negative: there is none any more */
+static int record_get(struct ec_record_reader *x, u64 *at)
+{
+	const struct ec_recorder *ring = ring_of(&x->reader);
+	bool ended;
+
+	if (!ring)
+		return x->cut ? -ENOBUFS : -ENODATA;
+	/* pairs with ec_recorder_end(): no record is added after this */
+	ended = smp_load_acquire(&ring->ended);
+	if (ec_recorder_get(ring, at, x->runs, x->n, x->record))
+		return 1;
+	return ended ? -ENODATA : 0;
 }
 
 static int record_copy(struct ec_reader *r, u64 *at, void __user *to)
 {
 	struct ec_record_reader *x = record_reader(r);
-	const struct ec_recorder *ring = r->source;
-	/* pairs with ec_recorder_end(): no record is added after this */
-	bool ended = smp_load_acquire(&ring->ended);
+	int ret;
 
-	if (!ec_recorder_get(ring, at, x->runs, x->n, x->record))
-		return ended ? -ENODATA : 0;
+	rcu_read_lock();
+	ret = record_get(x, at);
+	rcu_read_unlock();
+	if (ret <= 0)
+		return ret;
 	return copy_to_user(to, x->record, x->record->size) ? -EFAULT : 1;
 }
 
@@ -125,6 +156,37 @@ static void ring_put(struct ec_record_readers *rs, struct ec_recorder *ring)
 	kvfree_rcu(ring, rcu);
 }
 
+static struct ec_recorder *oldest_ended(const struct ec_record_readers *rs)
+{
+	struct ec_recorder *ring, *oldest = NULL;
+	const struct ec_reader *r;
+
+	lockdep_assert_held(&rs->readers.lock);
+	list_for_each_entry(r, &rs->readers.list, list) {
+		ring = (struct ec_recorder *)r->source;
+		if (ring && READ_ONCE(ring->ended) && (!oldest || ring->first < oldest->first))
+			oldest = ring;
+	}
+	return oldest;
+}
+
+/* Readers of ended sessions that do not read, as stopped ones, keep no other one from recording. */
+static void drop_oldest(struct ec_record_readers *rs)
+{
+	struct ec_recorder *oldest = oldest_ended(rs);
+	struct ec_reader *r;
+
+	lockdep_assert_held(&rs->readers.lock);
+	list_for_each_entry(r, &rs->readers.list, list) {
+		if (!oldest || r->source != oldest)
+			continue;
+		record_reader(r)->cut = ec_read64(&r->at) < ec_recorder_head(oldest);
+		/* pairs with ring_of() */
+		smp_store_release(&r->source, NULL);
+		ring_put(rs, oldest);
+	}
+}
+
 static void record_reader_clear(struct ec_record_reader *x)
 {
 	kvfree(x->runs);
@@ -137,7 +199,8 @@ static void record_free(struct ec_reader *r)
 	struct ec_record_reader *x = record_reader(r);
 
 	rs->read_only -= x->read_only;
-	ring_put(rs, (struct ec_recorder *)r->source);
+	if (r->source)
+		ring_put(rs, (struct ec_recorder *)r->source);
 	record_reader_clear(x);
 }
 
@@ -221,8 +284,8 @@ static int ring_new(struct ec_record_readers *rs, const struct ec_recorder_form 
 	struct ec_cycle *c;
 	int ret;
 
-	if (rs->rings == RINGS_MAX)
-		return -EMFILE;
+	if (rs->rings >= RINGS_MAX)
+		drop_oldest(rs);
 	if (rs->ring)
 		number_after(rs, rs->ring);
 	r = ec_recorder_new(f, rs->next);
@@ -323,10 +386,6 @@ static int recorder_failed(struct ec_call *call, int ret)
 	case -ERANGE:
 		return ec_refuse(call, ret,
 				 "the process data end before the last byte that is wanted; another session may have begun: repeat the command");
-	case -EMFILE:
-		return ec_refuse(call, -EUSERS,
-				 "recordings of %u ended sessions are still open; end their programs",
-				 RINGS_MAX);
 	case -EUSERS:
 		return ec_refuse(call, ret,
 				 "at most %u programs record at a time, and %u without write permission; end one of them",

@@ -289,29 +289,35 @@ static void recorder_readers_are_limited(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_record_readers(b)->rings, 0u);
 }
 
-/* Readers of sessions that have ended keep no more than RINGS_MAX rings. */
+/* Readers of sessions that have ended keep no more than RINGS_MAX rings: the oldest one goes. */
 static void recorder_rings_of_ended_sessions_are_limited(struct kunit *test)
 {
 	struct bus *b = kcyc_bus(test);
 	struct ec_ioc_recorder arg;
-	struct ec_file *f[4];
-	struct kcyc *a;
+	struct ec_file *f[5];
+	u64 at = 0;
 	u32 i;
 
-	for (i = 0; i < 4; i++) {
-		a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+	for (i = 0; i < 5; i++) {
+		struct kcyc *a = kcyc_configure(b, (struct ec_ioc_cycle){ 0 });
+
 		KUNIT_ASSERT_EQ(test, kcyc_activate(a), 0);
 		f[i] = file_new(b, true);
-		KUNIT_EXPECT_EQ(test, want(f[i], 0, 4, &arg), i < 3 ? 0 : -EUSERS);
-		KUNIT_EXPECT_EQ(test, i == 3, !!strstr(f[i]->reason, "3 ended sessions"));
-		if (i == 3)
-			break;
+		KUNIT_EXPECT_EQ(test, want(f[i], 0, 4, &arg), 0);
+		KUNIT_EXPECT_EQ(test, bus_record_readers(b)->rings, min(i + 1, 3u));
+		kcyc_wait_cycles(a, 5);
 		cyc_release(a->c);
 		bus_idle(b);
+		/* the second one has read all */
+		if (i == 1)
+			KUNIT_EXPECT_GE(test, rest_of(test, f[i]), 5u);
 	}
-	ec_reader_end(f[0]);
-	KUNIT_EXPECT_EQ(test, want(f[3], 0, 4, &arg), 0);
-	for (i = 1; i < 4; i++)
+	KUNIT_EXPECT_EQ(test, f[0]->reader->kind->head(f[0]->reader), ~0ull);
+	KUNIT_EXPECT_EQ(test, f[0]->reader->kind->copy(f[0]->reader, &at, NULL), -ENOBUFS);
+	KUNIT_EXPECT_TRUE(test, has_ended(f[1]));
+	KUNIT_EXPECT_GE(test, rest_of(test, f[2]), 5u);
+	KUNIT_EXPECT_GE(test, rest_of(test, f[4]), 5u);
+	for (i = 0; i < 5; i++)
 		ec_reader_end(f[i]);
 	KUNIT_EXPECT_EQ(test, bus_record_readers(b)->rings, 0u);
 }
