@@ -3,7 +3,8 @@
  * Fake master: records of process data of the bus that runs (fake_run.c), a millisecond apart. The
  * position counts from -2, output 1 of slave 1 changes every 5 records. FAKE_RECORDS: how many
  * there are before the session ends (20); FAKE_RECORD_GAP: three are missing before this one;
- * FAKE_RECORD_REFUSED: too many programs record.
+ * FAKE_RECORD_REFUSED: too many programs record; FAKE_RECORD_DROPPED: the last ones were dropped
+ * for newer recordings.
  */
 #include <errno.h>
 #include <stdlib.h>
@@ -77,7 +78,7 @@ bool fake_recorder_read(void *buf, unsigned long size, long *bytes)
 	if (!recording)
 		return false;
 	if (at >= number("FAKE_RECORDS", 20)) {
-		errno = ENODATA;
+		errno = getenv("FAKE_RECORD_DROPPED") ? ENOBUFS : ENODATA;
 		*bytes = -1;
 		return true;
 	}
