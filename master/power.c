@@ -20,6 +20,7 @@
 #include "mailbox/foe.h"
 #include "monitor.h"
 #include "power.h"
+#include "session/detached.h"
 
 #define PREOP_MS	2000	/* for the slaves' workers */
 #define INIT_MS		500	/* for slaves that have not followed them */
@@ -314,13 +315,15 @@ void ec_power_down(const char *what)
 				LIMIT_MS);
 }
 
-/* A detached session has no owner; neither has one whose process has left its file to another. */
+/* A session without an application has no owner; neither has one whose process has left its file to another. */
 static void refuse(struct ec_master *m)
 {
 	char who[64];
 
 	if (ec_session_owner_text(&m->sessions, who, sizeof(who)))
 		ec_warn(m, "suspend refused: the master is in use by %s; stop it first\n", who);
+	else if (ec_detached_runs(&m->sessions))
+		ec_warn(m, "suspend refused: the bus runs without an application ('ethercat run'); end that with 'ethercat stop'\n");
 	else if (READ_ONCE(m->sessions.session))
 		ec_warn(m, "suspend refused: a detached session is active; end it with \"ethercat release\"\n");
 	else

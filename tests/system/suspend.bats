@@ -43,6 +43,32 @@ logged() { dmesg | grep -qF "$1"; }
 	wait_for 120 all_slaves_are PREOP 22
 }
 
+@test "a suspend is refused while a bus runs without an application, and a recording has no gap" {
+	local file=$BATS_TEST_TMPDIR/a.csv
+
+	ethercat run >"$BATS_TEST_TMPDIR/run"
+	cat "$BATS_TEST_TMPDIR/run"
+	n=$(ethercat slaves | grep -cw OP)
+	"$EC_BUILD/tool/ethercat" record 'el1008.*' -o "$file" --count 2000 \
+		2>"$BATS_TEST_TMPDIR/err" 3>&- &
+	app=$!
+	wait_for 60 test -s "$file"
+	run suspend
+	[ "$status" != 0 ]
+	[[ $output == *"Device or resource busy"* ]]
+	logged "EtherCAT 0: suspend refused: the bus runs without an application ('ethercat run'); end that with 'ethercat stop'"
+	wait $app
+	app=
+	grep -q '2000 record(s) of .*, 0 lost' "$BATS_TEST_TMPDIR/err"
+	grep -v '^[#t]' "$file" | awk -F, 'n++ && $3 != cycle + 1 { print; bad = 1 } { cycle = $3 }
+		END { exit bad || n != 2000 }'
+	all_slaves_are OP "$n"
+	# what it says helps
+	ethercat stop
+	suspend
+	wait_for 120 all_slaves_are PREOP 22
+}
+
 scan="EtherCAT 0: scan complete: 22 slave(s)"
 
 count() { cat "/sys/class/net/$1/statistics/$2_packets"; }
