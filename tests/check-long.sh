@@ -13,7 +13,8 @@
 # last line is "N passed, N failed"; results with their date are in Documentation/results.rst.
 #
 # usage: check-long.sh [ports|groups|without|bus-files|uml-debug|nic-MODEL|iommu-MODEL|cycles|
-#	flaps|events|packages|packages-13|check-13|reboot|prometheus|numpy|bench|bench-legacy|KERNEL...]
+#	flaps|events|packages|packages-13|check-13|reboot|prometheus|numpy|bench|bench-legacy|
+#	KERNEL...]
 
 set -u
 export LC_ALL=C
