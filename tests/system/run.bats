@@ -349,6 +349,76 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	chmod o+r /dev/EtherCAT0
 }
 
+@test "run FILE refuses a bus that has changed since it was compared with the file" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml sim=/sys/kernel/debug/ec_sim/sim0
+
+	ldd "$EC_BUILD/tool/ethercat" >/dev/null 2>&1 || skip "the program has no libraries"
+	cc -D_GNU_SOURCE -shared -fPIC -Wall -Wextra -Werror -o "$BATS_TEST_TMPDIR/before.so" \
+		"$BATS_TEST_DIRNAME/before_request.c"
+	ethercat bus save --whole "$f"
+	# one slave less, whose absence the master has seen
+	cat >"$BATS_TEST_TMPDIR/cut" <<-END
+		echo 'cut i.0' >$sim
+		until [ "\$("$EC_BUILD/tool/ethercat" slaves | wc -l)" = 2 ]; do sleep 0.1; done
+	END
+	run env LD_PRELOAD="$BATS_TEST_TMPDIR/before.so" BEFORE_REQUEST="sh $BATS_TEST_TMPDIR/cut" \
+		"$EC_BUILD/tool/ethercat" run "$f"
+	echo "$output"
+	[ "$status" = 1 ]
+	[[ "$output" == *"Master0: its slaves have changed meanwhile; repeat the command"* ]]
+	json '.masters[0].session == "none"' master
+	all_slaves_are PREOP 2
+	echo 'heal i.0' >$sim
+	wait_for 60 all_slaves_are PREOP 4
+	ethercat run "$f"
+	all_slaves_are OP 4
+}
+
+@test "a bus file finds identical slaves by serial number, for names and for what runs" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml
+
+	stop
+	printf '%s\n' 'segment seed=7' 'slave c EK1100' 'slave a EL2008 serial=11' \
+		'slave b EL2008 serial=12' >"$BATS_TEST_TMPDIR/twins"
+	start "$BATS_TEST_TMPDIR/twins" 3
+	cat >"$f" <<-'END'
+	ethercat: 1
+	masters:
+	  - slaves:
+	      - {name: coupler, vendor: 2, product: 0x044c2c52}
+	      - name: left
+	        vendor: 2
+	        product: 0x07d83052
+	        serial: 12
+	        pdos:
+	          - {index: 0x1600, sm: 0, entries: [{object: "0x7000:01", bits: 1, name: lamp}]}
+	      - name: right
+	        vendor: 2
+	        product: 0x07d83052
+	        serial: 11
+	        pdos:
+	          - {index: 0x1600, sm: 0, entries: [{object: "0x7000:01", bits: 1, name: lamp}]}
+	END
+	ethercat run
+	ethercat data --names --file "$f"
+	ethercat set --file "$f" --hold left.lamp 1
+	[ "$(value el2008.channel_1.output) $(value el2008_2.channel_1.output)" = "0 1" ]
+	ethercat top --file "$f" | grep -qE '^ *2 .* left \(EL2008\)$'
+	ethercat stop
+	wait_for 60 all_slaves_are PREOP 3
+	ethercat run "$f"
+	ethercat top | grep -qE '^ *1 .* right \(EL2008\)$'
+	ethercat stop
+	# not by their order when one of them is another one
+	sed -i 's/serial: 12/serial: 13/' "$f"
+	run ethercat run "$f"
+	echo "$output"
+	[ "$status" = 1 ]
+	stop
+	start "$BATS_FILE_TMPDIR/segment" 4
+	chmod o+r /dev/EtherCAT0
+}
+
 @test "run FILE: two at once, and killed before all is in OP" {
 	local f=$BATS_TEST_TMPDIR/bus.yaml
 
