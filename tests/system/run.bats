@@ -374,7 +374,7 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	all_slaves_are OP 4
 }
 
-@test "a bus file finds identical slaves by serial number, for names and for what runs" {
+@test "a bus file finds identical slaves by serial number, for names and for a run" {
 	local f=$BATS_TEST_TMPDIR/bus.yaml
 
 	stop

@@ -86,7 +86,7 @@ assert (a["el7201.position"][3], len(a)) == (1, 20), a'
 	[ "$(columns b.csv | tail -n 1)" = 103,0,2,1 ]
 }
 
-@test "record fails when the end of a session was dropped, and leaves what it has" {
+@test "record fails when the end of a session was dropped, and leaves a valid file" {
 	FAKE_RECORD_DROPPED=1 refused 1 'the session has ended, and what was not read was dropped' \
 		record el7201.position -o a.csv
 	[[ $output == *"Master0: 20 record(s) of 1 value(s) in 0.019 s, 0 lost"* ]]
