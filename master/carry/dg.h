@@ -107,7 +107,7 @@ static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 sid
 	dg->side_back[side] = d->adp - shift - dg->adp;
 	dg->back += dg->side_back[side];
 	if (ec_cmd_reads(d->cmd) && !dg->keep) {
-		if (dg->err || (wkc && !dg->wkc))
+		if (!dg->wkc)
 			memcpy(dg->data, d->data, d->len);
 		else if (wkc && ec_dg_is_broadcast(dg))
 			for (i = 0; i < d->len; i++)
@@ -116,6 +116,14 @@ static inline void ec_dg_take(struct ec_dg *dg, const struct ec_dgram *d, u8 sid
 	dg->side_wkc[side] = wkc;
 	dg->wkc += wkc;
 	dg->irq |= d->irq;
+	dg->err = 0;
+}
+
+/* No slave has passed it. */
+static inline void ec_dg_take_blank(struct ec_dg *dg, u8 side)
+{
+	dg->side_wkc[side] = 0;
+	dg->side_back[side] = 0;
 	dg->err = 0;
 }
 

@@ -258,12 +258,13 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 static bool take_results(const struct ec_slot *slot, struct ec_post *post)
 {
 	bool known = true;
+	unsigned long copies = slot->back & ~slot->blank;
 	struct ec_frame_iter it[EC_MAX_LINKS];
 	struct ec_dgram d;
 	unsigned long left;
 	unsigned int i;
 
-	for (left = slot->back; left; left &= left - 1) {
+	for (left = copies; left; left &= left - 1) {
 		u8 *copy = slot->copy[__ffs(left)];
 
 		it[__ffs(left)] = (struct ec_frame_iter){
@@ -274,7 +275,9 @@ static bool take_results(const struct ec_slot *slot, struct ec_post *post)
 	for (i = 0; i < post->n; i++) {
 		if (post->dg[i].err != -EINPROGRESS)
 			continue;
-		for (left = slot->back; left; left &= left - 1)
+		for (left = slot->blank; left; left &= left - 1)
+			ec_dg_take_blank(&post->dg[i], __ffs(left));
+		for (left = copies; left; left &= left - 1)
 			/* compared with what was sent when the frame was matched */
 			if (ec_frame_iter_next(&it[__ffs(left)], &d) == 1)
 				ec_dg_take(&post->dg[i], &d, __ffs(left), post->shift);

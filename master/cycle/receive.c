@@ -294,13 +294,13 @@ static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
 	return (f->missed || (back && !(slot->sides & ~back & ~c->mute))) && ec_slot_settle(slot);
 }
 
-/* The copies of both ends of a ring: one reply, and where they came back. */
+/* The copies of both ends of a ring: one reply. */
 static noinline void join_copies(struct ec_cycle *c, struct ec_slot *slot)
 {
 	c->mute = slot->sides & ~slot->back;
-	c->from_backup = !slot->crossed && slot->back & BIT(EC_BACKUP);
+	c->from_backup = slot->back & ~slot->blank & BIT(EC_BACKUP);
 	ec_ring_note(c->links, slot);
-	if (c->mute)
+	if (c->mute || slot->blank)
 		return;
 	ec_merge_frame(slot->copy[EC_MAIN], slot->copy[EC_BACKUP], ec_slot_body(slot),
 		       slot->eth_len - EC_ETH_HDR);

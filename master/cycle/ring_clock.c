@@ -82,7 +82,7 @@ bool ec_ring_clock_take(struct ec_ring_clock *r, const struct ec_dc *dc,
 		return false;
 	if (f->gives) {
 		*time = get_unaligned_le64(data) - r->shift;
-		/* without a reply of the clock it has come back as it was sent */
+		/* without a reply of the clock it is the time that was sent */
 		return READ_ONCE(dc->behind.ref) && *time != f->time;
 	}
 	if (!f->reads || r->samples == EC_RING_SAMPLES)

@@ -36,7 +36,7 @@ struct ec_ring_way ec_ring_find_way(const struct ec_links *l, u8 cmd, u16 adp)
 }
 
 /**
- * ec_ring_note() - look whether a copy has come back where that is expected
+ * ec_ring_note() - has a copy returned by the link that is expected?
  * @l: links, several
  * @slot: frame of the cycle with at least one copy
  *
@@ -57,7 +57,7 @@ void ec_ring_note(struct ec_links *l, const struct ec_slot *slot)
 /**
  * ec_ring_set() - the state of the ring, as copies of a frame have shown it
  * @l: links, several
- * @closed: a copy came back by the other link
+ * @closed: a copy has returned by the other link
  * @front: slaves that the copy of the main link has passed
  *
  * Context: The monitor thread.

@@ -139,13 +139,19 @@ bool ec_slot_settle(struct ec_slot *slot)
 	return slot->back;
 }
 
-/* The reply is the copy of the first link that has one. With the last copy the slot is DONE. */
+/*
+ * The reply is the copy of the first link that has one, or what was sent. With the last copy the slot
+ * is DONE.
+ */
 static bool is_complete(struct ec_slot *slot)
 {
 	bool complete = slot->back == slot->sides;
+	u8 copies = slot->back & ~slot->blank;
 
-	if (slot->back)
-		slot->reply = slot->copy[__ffs(slot->back)];
+	if (copies)
+		slot->reply = slot->copy[__ffs(copies)];
+	else if (slot->back)
+		slot->reply = ec_slot_body(slot);
 	ec_slot_release(slot, complete ? EC_SLOT_DONE : EC_SLOT_SENT);
 	return complete;
 }
@@ -178,6 +184,25 @@ bool ec_slot_disarm(struct ec_slot *slot, u8 sides)
 	return false;
 }
 
+/* Has no slave processed or counted a datagram? That of one end of a closed ring. */
+static bool is_blank(struct ec_slot *slot, const u8 *data)
+{
+	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR;
+	size_t size;
+	u16 len;
+
+	do {
+		len = get_unaligned_le16(sent + 6);
+		size = EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
+		if (get_unaligned_le16(data + size - EC_DGRAM_WKC) ||
+		    get_unaligned_le16(data + 2) != get_unaligned_le16(sent + 2))
+			return false;
+		data += size;
+		sent += size;
+	} while (len & EC_DGRAM_MORE);
+	return true;
+}
+
 /**
  * ec_slot_take() - take the copy of a link, and leave the state FILL
  * @slot: slot that awaits it
@@ -189,8 +214,11 @@ bool ec_slot_disarm(struct ec_slot *slot, u8 sides)
  */
 bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
 {
-	memcpy(slot->copy[side] + EC_FRAME_HDR, data,
-	       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
+	if (slot->sides != BIT(side) && is_blank(slot, data))
+		slot->blank |= BIT(side);
+	else
+		memcpy(slot->copy[side] + EC_FRAME_HDR, data,
+		       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
 	slot->back |= BIT(side);
 	return is_complete(slot);
 }

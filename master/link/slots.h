@@ -10,8 +10,8 @@
  * and may be used again after 20 ms.
  *
  * A mask says on which links a frame is sent. Its slot is DONE when the copy of each link is
- * received, or when no more copies are expected. In a closed ring the copy of one link comes back
- * by the other one, and only one of the two has been processed by the slaves.
+ * received, or when no more copies are expected. In a closed ring the copy of one link returns by
+ * the other one, and only one of the two has been processed by the slaves.
  */
 #ifndef EC_SLOTS_H
 #define EC_SLOTS_H

@@ -16,7 +16,7 @@ static u64 merge_bits(u64 a, u64 b, u64 sent)
 
 /*
  * Bits that slaves of either side have changed; each bit belongs to a slave of one side. One that
- * was reached by both copies, as a cable came back, has changed both in the same way.
+ * both copies have reached, as a break has just healed, has changed both in the same way.
  */
 static void merge_changed(u8 *a, const u8 *b, const u8 *sent, size_t len)
 {

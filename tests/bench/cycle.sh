@@ -402,7 +402,7 @@ record_cost() {
 
 # The same cycle with one native device, and with one at each end of a ring, closed and open.
 ring_cost() {
-	local n state limit one work
+	local n state limit one two work work2
 	local -A most=([closed]=140 [open]=160)
 
 	echo "# a ring with two native devices, of what one device costs"
@@ -418,11 +418,13 @@ ring_cost() {
 				--period-us 4100 || return
 			cost ring
 			reliable "ring, $state"
-			echo "# all work: $((v[application_work] + v[card_work] + v[master_work] + v[rest_work])), with one device $work"
+			work2=$((v[application_work] + v[card_work] + v[master_work] + v[rest_work]))
+			echo "# all work: $work2, with one device $work"
 			limit=$((one * ${most[$state]} / 100))
-			row "${v[total_mean]}" $limit "instructions of the calls of a cycle, ring $state, two native devices: $n drive(s)"
-			gate "$n drive(s), ring $state: ${v[total_mean]} instructions of the calls, $(ratio "${v[total_mean]}" $one) of those with one device; at most ${most[$state]} %" \
-				"${v[total_mean]} > one && ${v[total_mean]} <= limit"
+			two=${v[total_mean]}
+			row "$two" $limit "instructions of the calls, ring $state: $n drive(s)"
+			gate "$n drive(s), ring $state: $two instructions, $(ratio $two $one) of one device" \
+				"two > one && two <= limit"
 		done
 	done
 }

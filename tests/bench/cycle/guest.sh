@@ -64,6 +64,12 @@ generic|native|ring)
 esac
 # its interrupts appear when it is up
 [ "$device" = virtual ] || echo "msix $(grep -c 'PCI-MSI.*eth0-rx' /proc/interrupts)"
+if [ "$device" = ring ]; then
+	until [ "$("$build/tool/ethercat" master | grep -c 'Link: UP')" = 2 ]; do sleep 0.1; done
+	# the slaves of both ends are found
+	sleep 1
+	"$build/tool/ethercat" slaves --wait >/dev/null || exit 1
+fi
 # the link of a NIC takes a moment
 for _ in {1..100}; do
 	[ -z "$("$build/tool/ethercat" slaves)" ] || break
