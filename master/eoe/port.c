@@ -196,7 +196,9 @@ static void rx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 	struct ec_eoe_port *p = container_of(u, struct ec_eoe_port, rx);
 
 	raw_spin_lock(&p->lock);
-	if (u->err) {
+	if (u->err == -EBADMSG) {
+		port_add(p, &p->counts.rx_errors, 1);
+	} else if (u->err) {
 		port_fail(p, u->err);
 	} else if (u->got_type == EC_MBOX_ERR) {
 		/* it costs a frame: the slave drops the others of its fragments */
@@ -212,8 +214,7 @@ static void rx_done(struct ec_mbox *mb, struct ec_mbox_user *u)
 		port_kick(p);
 	}
 	raw_spin_unlock(&p->lock);
-	if (!u->err)
-		ec_desk_again(mb, u);
+	ec_desk_again(mb, u);
 }
 
 static void port_count(struct ec_eoe_port *p, u64 *count)

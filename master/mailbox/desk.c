@@ -78,6 +78,12 @@ static void mark_heard(struct ec_mbox *mb)
 			u->heard = true;
 }
 
+/* Does it send or read frames of the network? They have no answer, but perhaps an error reply. */
+static bool is_of_frames(const struct ec_mbox_user *u)
+{
+	return u->type == EC_MBOX_EOE && !u->answer;
+}
+
 /* messages to the slave -----------------------------------------------------*/
 
 /* BOOT is for files: a fragment would disturb the transfer. */
@@ -115,7 +121,7 @@ static void desk_next(struct ec_box *box)
 	if (!u)
 		return;
 	mb->desk.sending = u;
-	mb->desk.frame_sent = u->type == EC_MBOX_EOE && !u->answer;
+	mb->desk.frame_sent = is_of_frames(u);
 	if (u->discard) {
 		ec_box_discard(box);
 		return;
@@ -174,7 +180,7 @@ static bool desk_streams(struct ec_box *box)
 
 	lockdep_assert_held(&box->lock);
 	for_each_user(mb, u)
-		if ((u->type != EC_MBOX_EOE || u->answer) &&
+		if (!is_of_frames(u) &&
 		    (u->phase == EC_MBOX_USER_WAITING || u->phase == EC_MBOX_USER_SENDING))
 			return false;
 	return true;
@@ -185,12 +191,6 @@ static bool may_have(const struct ec_mbox *mb, const struct ec_mbox_user *u)
 {
 	return u->phase == EC_MBOX_USER_WAITING ||
 	       (u == mb->desk.sending && ec_box_is_doubtful(&mb->box));
-}
-
-/* Does it read frames? It has their errors as well: the slave takes messages in their order. */
-static bool is_reader(const struct ec_mbox_user *u)
-{
-	return u->type == EC_MBOX_EOE && !u->answer;
 }
 
 /* Of EoE, frames of the network go to the user that reads them, never to one with a request. */
@@ -217,7 +217,7 @@ static struct ec_mbox_user *desk_find(struct ec_mbox *mb, u8 type, u16 len)
 		/* it only sends */
 		if (!u->rx)
 			continue;
-		if (type == EC_MBOX_ERR ? is_reader(u) != mb->desk.frame_sent :
+		if (type == EC_MBOX_ERR ? is_of_frames(u) != mb->desk.frame_sent :
 		    u->type != type || !is_kind(mb, u, len))
 			continue;
 		if (!may_have(mb, u) && !(u->phase == EC_MBOX_USER_DONE && u->answer))
@@ -280,9 +280,22 @@ static void desk_dispatch(struct ec_mbox *mb, const struct ec_mbox_hdr *h)
 		deliver(mb, u, h);
 }
 
+/* The user that reads frames; NULL: none, or it has to take its previous message first. */
+static struct ec_mbox_user *find_reader(struct ec_mbox *mb)
+{
+	struct ec_mbox_user *u;
+
+	lockdep_assert_held(&mb->box.lock);
+	for_each_user(mb, u)
+		if (u->rx && is_of_frames(u) && may_have(mb, u))
+			return u;
+	return NULL;
+}
+
+/* Of no known type: that of a request is its answer, else it is counted as a frame. */
 static void refuse_malformed(struct ec_mbox *mb)
 {
-	struct ec_mbox_user *u = desk_find(mb, EC_MBOX_ERR, 0);
+	struct ec_mbox_user *u = desk_find(mb, EC_MBOX_ERR, 0) ?: find_reader(mb);
 
 	if (!u || u->phase == EC_MBOX_USER_DONE)
 		return;

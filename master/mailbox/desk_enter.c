@@ -45,15 +45,16 @@ void ec_desk_enter(struct ec_mbox *mb, struct ec_mbox_user *u)
 /**
  * ec_desk_again() - a user that has its result has another message, or waits for the next one
  * @mb: mailbox of the slave
- * @u: DONE, its members up to @once set again; after an error it has to leave instead
+ * @u: DONE, its members up to @once set again; after another error than -EBADMSG, which concerns
+ *	one message alone, it has to leave instead
  *
  * Context: Only @u->done. RT-safe: bounded, no sleep, no allocation.
- * Return: false after an error.
+ * Return: false: it has to leave.
  */
 bool ec_desk_again(struct ec_mbox *mb, struct ec_mbox_user *u)
 {
 	lockdep_assert_held(&mb->box.lock);
-	if (u->err)
+	if (u->err && u->err != -EBADMSG)
 		return false;
 	list_del(&u->list);
 	u->lost = false;

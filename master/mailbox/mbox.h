@@ -131,7 +131,10 @@ struct ec_desk {
 	bool handed_over;
 	/** @answered: no message of an earlier exchange can follow any more */
 	bool answered;
-	/** @frame_sent: the last message to the slave was a fragment of EoE, which has no answer */
+	/**
+	 * @frame_sent: the last message to the slave is a fragment of EoE: an error reply, which
+	 * names no message, is for the user that reads frames, not for a request that waits
+	 */
 	bool frame_sent;
 	/** @ahead: messages without answer written since SM1 was accessed last */
 	u8 ahead;

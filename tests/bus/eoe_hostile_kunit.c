@@ -132,6 +132,55 @@ static void hostile_refusal_costs_one_frame(struct kunit *test)
 	eoe_down(w);
 }
 
+/* A message that is no mailbox message costs itself, no other frame, and not the carrier. */
+static void hostile_malformed_costs_one_message(struct kunit *test)
+{
+	struct bus *b = hostile_up(test, SEGMENT, 2, "eoe0a5");
+	u8 mac[ETH_ALEN];
+	u32 i, changes;
+	u64 before;
+
+	KUNIT_ASSERT_TRUE(test, eoe_ask_address(w, mac));
+	changes = atomic_read(&w->nd->carrier_down_count);
+	before = counts().rx_errors;
+	for (i = 1; i <= 5; i++) {
+		bus_fault(b, EC_SIM_FAULT_MAILBOX, WEB, 0, EC_SIM_MAILBOX_LENGTH, 0);
+		KUNIT_EXPECT_EQ(test, eoe_ping(w, mac, 100), 0ull);
+		KUNIT_EXPECT_EQ(test, counts().rx_errors, before + i);
+		bus_fault(b, EC_SIM_FAULT_MAILBOX, WEB, 0, EC_SIM_MAILBOX_GOOD, 0);
+		KUNIT_EXPECT_NE(test, eoe_ping(w, mac, 1400), 0ull);
+	}
+	/* one that is no answer to a frame either: nothing was sent */
+	fault(b, "flood");
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, WEB, 0, EC_SIM_MAILBOX_LENGTH, 0);
+	KUNIT_EXPECT_NE(test, uploads(b, 0, 1, 4), ~0ull);
+	msleep(100);
+	fault(b, "good");
+	bus_fault(b, EC_SIM_FAULT_MAILBOX, WEB, 0, EC_SIM_MAILBOX_GOOD, 0);
+	msleep(100);
+	KUNIT_EXPECT_GT(test, counts().rx_errors, before + 5);
+	KUNIT_EXPECT_NE(test, eoe_ping(w, mac, 1400), 0ull);
+	KUNIT_EXPECT_EQ(test, atomic_read(&w->nd->carrier_down_count), changes);
+	eoe_down(w);
+}
+
+/* A slave whose application hangs takes no message: its device has no carrier until it does. */
+static void hostile_hung_slave_has_no_carrier(struct kunit *test)
+{
+	struct bus *b = hostile_up(test, SEGMENT, 2, "eoe0a5");
+	u8 mac[ETH_ALEN];
+
+	KUNIT_ASSERT_TRUE(test, eoe_ask_address(w, mac));
+	bus_command(b, "fault mute web");
+	eoe_send_ping(w, mac, 100);
+	eoe_send_ping(w, mac, 100);
+	KUNIT_EXPECT_TRUE(test, eoe_await_carrier(w->nd, false));
+	bus_command(b, "fault unmute web");
+	KUNIT_EXPECT_TRUE(test, eoe_await_carrier(w->nd, true));
+	KUNIT_EXPECT_TRUE(test, works_again(test, mac));
+	eoe_down(w);
+}
+
 /* Requests to a slave that floods, and to another one, get through; so do frames to it. */
 static void hostile_flood_leaves_room(struct kunit *test)
 {
@@ -371,6 +420,8 @@ static void hostile_loss_of_many_mixes_no_device(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE(hostile_boot_gets_no_frame),
 	KUNIT_CASE(hostile_refusal_costs_one_frame),
+	KUNIT_CASE(hostile_malformed_costs_one_message),
+	KUNIT_CASE(hostile_hung_slave_has_no_carrier),
 	KUNIT_CASE(hostile_flood_leaves_room),
 	KUNIT_CASE(hostile_ethercat_in_udp_is_dropped),
 	KUNIT_CASE(hostile_frames_disturb_no_request),
