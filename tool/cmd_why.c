@@ -176,6 +176,9 @@ static void checked(const struct report *r)
 	if (!c->counters)
 		out_text("Not checked: error counters of the ports; reading them needs write access to %s.\n",
 			 ect_path(r->d->h));
+	if (c->unasked)
+		out_text("Not checked: errors of drives (SoE) of %u slave%s; asking them needs write access to %s.\n",
+			 c->unasked, S(c->unasked), ect_path(r->d->h));
 	if (c->silent)
 		out_text("Not checked: error counters of %u slave%s without reply.\n", c->silent,
 			 S(c->silent));

@@ -557,6 +557,8 @@ bool ec_app_idn_is_list(const struct ec_app_idn *i);
 u16 ec_app_idn_room(const struct ec_app_idn *i);
 u8 *ec_app_idn_value(const struct ec_app *app, u8 drive, const struct ec_app_idn *which);
 void ec_app_idn_put_text(struct ec_wbuf *w, const char *text);
+void ec_app_idn_set_text(const struct ec_app *app, u8 drive, const struct ec_app_idn *i,
+			 const char *text);
 void ec_app_idn_put_number(struct ec_wbuf *w, const struct ec_app_idn *i, u64 v);
 void ec_app_idn_put_value(struct ec_wbuf *w, const struct ec_app *app, u8 drive,
 			  const struct ec_app_idn *i);
@@ -570,6 +572,7 @@ u64 ec_app_soe_due(const struct ec_app *app);
 void ec_app_soe_poll(struct ec_app *app, u64 now);
 int ec_app_soe_next(struct ec_app *app, u8 *tx, size_t cap);
 int ec_app_soe_unasked(struct ec_app *app, u8 *tx, size_t cap);
+void ec_app_soe_error(struct ec_app *app, u8 drive, u16 error);
 void ec_app_soe_send(struct ec_app *app, const struct ec_app_soe_message *m, u64 now);
 int ec_app_soe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);
 int ec_app_voe(struct ec_app *app, const u8 *rx, size_t len, u8 *tx, size_t cap);

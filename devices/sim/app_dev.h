@@ -12,6 +12,8 @@
 #define EC_APP_VOE		4	/* VoE messages waiting */
 #define EC_APP_SOE_MAP		8	/* IDNs of a telegram of an axis, besides the word */
 #define EC_APP_SOE_LIST		2000	/* bytes of the largest list of a drive */
+#define EC_APP_SOE_NO_ERROR	"no error"
+#define EC_APP_SOE_NUMBER	0xF0000000u	/* diagnostic number: and the class 1 diagnostic */
 #define EC_APP_SOE_BUF		2100	/* largest SoE request or answer, all elements */
 #define EC_APP_SOE_UNASKED	4	/* SoE messages without a request, waiting */
 #define EC_APP_SOE_DATA		32	/* bytes of one of them */

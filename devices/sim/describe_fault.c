@@ -42,6 +42,7 @@ static const struct verb {
 	{ "jump", SLAVE, EC_SIM_FAULT_JUMP, 0 },
 	{ "old", SLAVE, EC_SIM_FAULT_OLD, 0 },
 	{ "error", SLAVE, EC_SIM_FAULT_AL_ERROR, 0 },
+	{ "drive", SLAVE, EC_SIM_FAULT_DRIVE, 0 },
 	{ "eeprom", SLAVE, EC_SIM_FAULT_EEPROM, 0 },
 	{ "input", CHANNEL, EC_SIM_FAULT_INPUT, 0 },
 	{ "lose", FRAME, EC_SIM_FAULT_LOSE, 0 },
@@ -386,6 +387,20 @@ static int damage(struct ec_desc *d, struct ec_sim_fault *f)
 	return 0;
 }
 
+/* the error of a drive */
+static int drive(struct ec_desc *d, struct ec_sim_fault *f)
+{
+	s64 n = 0;
+
+	if (ec_desc_number(d, "drive", 0, EC_SOE_DRIVES - 1, &n) ||
+	    option(d, f, "error", 0, 0xFFFF))
+		return -EINVAL;
+	if (n >= d->node[f->slave].app->soe.drives)
+		return ec_desc_fail(d, "the slave has no such drive; add soe=N to it", NULL, "");
+	f->arg2 = (u32)n;
+	return 0;
+}
+
 /* what a verb wants to know beside its target */
 static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault *f)
 {
@@ -412,6 +427,8 @@ static int details(struct ec_desc *d, const struct verb *v, struct ec_sim_fault 
 		return option(d, f, "add", 0, 255);
 	case EC_SIM_FAULT_AL_ERROR:
 		return option(d, f, "code", 1, 0xFFFF);
+	case EC_SIM_FAULT_DRIVE:
+		return drive(d, f);
 	case EC_SIM_FAULT_EEPROM:
 	case EC_SIM_FAULT_INPUT:
 		return value(d, f);

@@ -35,6 +35,7 @@ static const char * const fault_names[EC_SIM_FAULT_TYPES] = {
 	[EC_SIM_FAULT_HOST] = "host",
 	[EC_SIM_FAULT_DAMAGE] = "damage",
 	[EC_SIM_FAULT_EOE] = "eoe",
+	[EC_SIM_FAULT_DRIVE] = "drive",
 };
 
 /**
@@ -311,6 +312,7 @@ static void strike(struct ec_sim *sim, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_AL_ERROR:
 	case EC_SIM_FAULT_INPUT:
 	case EC_SIM_FAULT_EMERGENCY:
+	case EC_SIM_FAULT_DRIVE:
 		tell_app(esc, f, now);
 		break;
 	case EC_SIM_FAULT_EOE:

@@ -16,6 +16,7 @@
 #define ON		0xe000	/* control word: on, enabled, moving */
 #define READY		0x4000	/* status word */
 #define RUNS		0xc000
+#define FAILED		0x2000
 #define NS_PER_S	1000000000
 
 /* @last_ns: time of the positions; @part: of an increment, of each axis, in 1e-9 */
@@ -87,8 +88,9 @@ static u16 sercos_map(struct ec_app *app)
 static void move(struct ec_app *app, struct sercos *s, u8 axis, u64 ns)
 {
 	u8 *position = value(app, axis, 51);
+	bool failed = get_unaligned_le16(value(app, axis, EC_SOE_IDN_ERROR));
 	bool on = (get_unaligned_le16(value(app, axis, CONTROL)) & ON) == ON &&
-		  ec_app_state(app) == EC_AL_OP;
+		  ec_app_state(app) == EC_AL_OP && !failed;
 	s32 velocity = 0;
 	s64 whole;
 
@@ -99,7 +101,7 @@ static void move(struct ec_app *app, struct sercos *s, u8 axis, u64 ns)
 	s->part[axis] -= whole * NS_PER_S;
 	put_unaligned_le32(get_unaligned_le32(position) + (u32)whole, position);
 	put_unaligned_le32((u32)velocity, value(app, axis, 40));
-	put_unaligned_le16(on ? RUNS : READY, value(app, axis, STATUS));
+	put_unaligned_le16(failed ? FAILED : on ? RUNS : READY, value(app, axis, STATUS));
 }
 
 static void sercos_run(struct ec_app *app, u64 now)

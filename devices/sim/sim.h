@@ -74,6 +74,8 @@ struct ec_sim_ops {
  *                       forwarded errors; no slave executes them, and they do not come back
  * @EC_SIM_FAULT_EOE: Ethernet frames of the slave are wrong, @arg is an enum
  *                    ec_sim_eoe_fault; where it concerns single frames: each @arg2-th one
+ * @EC_SIM_FAULT_DRIVE: drive @arg2 of @slave has the class 1 diagnostic @arg (S-0-0011), 0: no
+ *                      error
  * @EC_SIM_FAULT_TYPES: number of types
  */
 enum ec_sim_fault_type {
@@ -108,6 +110,7 @@ enum ec_sim_fault_type {
 	EC_SIM_FAULT_HOST,
 	EC_SIM_FAULT_DAMAGE,
 	EC_SIM_FAULT_EOE,
+	EC_SIM_FAULT_DRIVE,
 	EC_SIM_FAULT_TYPES
 };
 

@@ -162,6 +162,9 @@ static void fault(struct ec_esc *esc, const struct ec_sim_fault *f, u64 now)
 	case EC_SIM_FAULT_EOE:
 		ec_app_eoe_fault(app, now);
 		break;
+	case EC_SIM_FAULT_DRIVE:
+		ec_app_soe_error(app, (u8)f->arg2, (u16)f->arg);
+		break;
 	case EC_SIM_FAULT_EMERGENCY:
 		ec_app_emergency(app, (u16)f->arg, (u8)f->arg2, data, now);
 		break;

@@ -9,6 +9,7 @@
 #define HOMING		148	/* the command that takes time */
 #define HOMING_NS	50000000
 #define FAILS		0x80AB	/* the one that fails */
+#define RESET		99	/* the one that ends an error */
 
 /**
  * ec_app_soe_restart() - nothing is in progress: power-on, INIT to PREOP
@@ -72,6 +73,25 @@ void ec_app_soe_poll(struct ec_app *app, u64 now)
 	}
 }
 
+/**
+ * ec_app_soe_error() - a drive has an error
+ * @app: slave
+ * @drive: of it; nothing happens where there is no such drive
+ * @error: class 1 diagnostic, 0: it has none
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_soe_error(struct ec_app *app, u8 drive, u16 error)
+{
+	if (drive >= app->soe.drives)
+		return;
+	put_unaligned_le16(error, ec_app_idn_value(app, drive, ec_app_idn(EC_SOE_IDN_ERROR)));
+	put_unaligned_le32(error ? EC_APP_SOE_NUMBER | error : 0,
+			   ec_app_idn_value(app, drive, ec_app_idn(EC_SOE_IDN_ERROR_NUMBER)));
+	ec_app_idn_set_text(app, drive, ec_app_idn(EC_SOE_IDN_ERROR_TEXT),
+			    error ? "simulated error" : EC_APP_SOE_NO_ERROR);
+}
+
 static bool is_command(const struct ec_app_idn *i)
 {
 	return i->attribute & EC_SOE_ATTR_COMMAND;
@@ -95,6 +115,8 @@ static void command_begin(struct ec_app *app, u8 drive, const struct ec_app_idn 
 {
 	u16 value = get_unaligned_le16(ec_app_idn_value(app, drive, i));
 
+	if (i->idn == RESET && value == (EC_SOE_COMMAND_SET | EC_SOE_COMMAND_ENABLE))
+		ec_app_soe_error(app, drive, 0);
 	if (i->idn != HOMING)
 		return;
 	app->soe.home[drive] = value == 3 ? app->mbox.now + HOMING_NS : EC_ESC_NEVER;

@@ -10,6 +10,8 @@ static const struct ec_app_idn idns[] = {
 	{ 1, EC_SOE_ATTR_LEN2 | RO_RUNNING, "NC cycle time (TNcyc)", "us", 2000, 0, 0, 0, NULL },
 	{ 2, EC_SOE_ATTR_LEN2 | RO_RUNNING, "Communication cycle time (tScyc)", "us",
 	  2000, 0, 0, 0, NULL },
+	{ 11, EC_SOE_ATTR_LEN2 | EC_SOE_ATTR_RO, "Class 1 diagnostic (C1D)", NULL, 0, 0, 0, 0,
+	  NULL },
 	{ 15, EC_SOE_ATTR_LEN2 | RO_RUNNING, "Telegram type", NULL, 7, 0, 7, 0, NULL },
 	{ 16, EC_SOE_ATTR_LIST2 | RO_RUNNING, "Configuration list of AT", NULL,
 	  0, 0, 0, 2 * EC_APP_SOE_MAP, NULL },
@@ -28,13 +30,14 @@ static const struct ec_app_idn idns[] = {
 	  0, 0, 0, 0, NULL },
 	{ 91, EC_SOE_ATTR_LEN4, "Bipolar velocity limit value", "rpm", 3000, 10, 6000, 0, NULL },
 	{ 95, EC_SOE_ATTR_LIST1 | EC_SOE_ATTR_RO, "Diagnostic message", NULL,
-	  0, 0, 0, 32, "no error" },
+	  0, 0, 0, 32, EC_APP_SOE_NO_ERROR },
 	{ 99, COMMAND, "Reset class 1 diagnostic", NULL, 0, 0, 0, 0, NULL },
 	{ 134, EC_SOE_ATTR_LEN2, "Master control word", NULL, 0, 0, 0, 0, NULL },
 	{ 135, EC_SOE_ATTR_LEN2 | EC_SOE_ATTR_RO, "Drive status word", NULL, 0, 0, 0, 0, NULL },
 	{ 148, COMMAND, "Drive-controlled homing procedure command", NULL, 0, 0, 0, 0, NULL },
 	{ 187, LIST, "IDN list of configurable data in the AT", NULL, 0, 0, 0, 0, NULL },
 	{ 188, LIST, "IDN list of configurable data in the MDT", NULL, 0, 0, 0, 0, NULL },
+	{ 390, EC_SOE_ATTR_LEN4 | EC_SOE_ATTR_RO, "Diagnostic number", NULL, 0, 0, 0, 0, NULL },
 	{ 0x8096, EC_SOE_ATTR_LEN2, "Test word", NULL, 0x1234, 0, 0, 0, NULL },
 	{ 0x80A0, EC_SOE_ATTR_LIST1, "Test text", NULL, 0, 0, 0, 200, "hello" },
 	{ 0x80A1, EC_SOE_ATTR_LEN8, "Test quad word", NULL,
@@ -175,6 +178,23 @@ void ec_app_idn_put_number(struct ec_wbuf *w, const struct ec_app_idn *i, u64 v)
 }
 
 /**
+ * ec_app_idn_set_text() - change a value that is a text
+ * @app: slave
+ * @drive: one that it has
+ * @i: IDN whose value is a text
+ * @text: at most as long as it allows
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_app_idn_set_text(const struct ec_app *app, u8 drive, const struct ec_app_idn *i,
+			 const char *text)
+{
+	struct ec_wbuf w = ec_wbuf(ec_app_idn_value(app, drive, i), ec_app_idn_room(i));
+
+	put_list(&w, text, (u16)strlen(text), i->room);
+}
+
+/**
  * ec_app_soe_reset() - values as at power-on
  * @app: slave
  *
@@ -187,10 +207,9 @@ void ec_app_soe_reset(struct ec_app *app)
 			const struct ec_app_idn *i = &idns[k];
 			struct ec_wbuf w = ec_wbuf(ec_app_idn_value(app, d, i),
 						   ec_app_idn_room(i));
-			const char *text = i->text ? i->text : "";
 
 			if (ec_app_idn_is_list(i))
-				put_list(&w, text, (u16)strlen(text), i->room);
+				ec_app_idn_set_text(app, d, i, i->text ? i->text : "");
 			else
 				ec_app_idn_put_number(&w, i, i->value);
 		}

@@ -54,6 +54,7 @@ struct ect_checked {
 	uint32_t domains;
 	uint32_t counters;	/* error counters of the ports: the user may read registers */
 	uint32_t silent;	/* slaves whose error counters could not be read */
+	uint32_t unasked;	/* slaves whose drives (SoE) were not asked: the user may not */
 };
 
 struct ect_why;
@@ -64,9 +65,9 @@ struct ect_why;
  * @w: result, to be freed with ect_why_free()
  *
  * Goes from the symptoms to the causes: device, link, cycle, missing and different slaves, PDOs,
- * SDOs, AL status codes, clocks, working counters, EEPROMs, error counters, emergencies. Reads
- * what the master knows; only the error counters of the ports are read from the slaves, if the
- * user may. May wait half a second to see whether a counter still grows.
+ * SDOs, AL status codes, clocks, working counters, EEPROMs, error counters, emergencies, errors of
+ * drives (SoE). Reads what the master knows; only the error counters of the ports are read from
+ * the slaves, and drives are asked for their errors, if the user may. May wait half a second to see whether a counter still grows.
  *
  * Context: The thread of the handle.
  * Return: 0, also when there are faults; or a negative errno.
@@ -79,7 +80,7 @@ int ect_why(struct ect_handle *h, struct ect_why **w);
  * @w: result, to be freed with ect_why_free()
  *
  * Error counters are as the master has read them last; a slave whose counters were not read yet
- * counts as @silent in struct ect_checked.
+ * counts as @silent in struct ect_checked. No drive is asked: slaves with SoE count as @unasked.
  *
  * Context: The thread of the handle; no traffic.
  * Return: As ect_why().

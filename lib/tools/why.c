@@ -123,6 +123,18 @@ bool why_in_op(const struct ect_explained *c)
 	return c->config.in_op;
 }
 
+/* the master, open for writing, to be freed; NULL: the user may not do that */
+struct ect_handle *why_open(struct why *w)
+{
+	struct ect_handle *h = ect_new();
+
+	w->failed |= !h;
+	if (!h || !ect_open_path(h, w->h->path, ECT_OPEN_WRITE))
+		return h;
+	ect_free(h);
+	return NULL;
+}
+
 bool why_has(const struct why *w, const char *cause)
 {
 	for (size_t i = 0; i < w->findings->n; i++)
@@ -159,6 +171,7 @@ static bool apply_rules(struct why *w)
 	why_clocks(w);
 	why_counters(w);
 	why_emergencies(w);
+	why_drives(w);
 	why_lost_frames(w);
 	return false;
 }
@@ -173,6 +186,7 @@ static struct ect_why *result(struct why *w, bool unreachable)
 		.struct_size = sizeof(r->checked), .unreachable = unreachable,
 		.session = w->m.session, .slaves = (u32)w->bus->n, .configs = (u32)w->configs->n,
 		.domains = w->m.domain_count, .counters = w->counters, .silent = w->silent,
+		.unasked = w->unasked,
 	};
 	for (size_t i = 0; i < w->configs->n; i++)
 		r->checked.in_op += why_in_op(why_config(w, i));

@@ -22,6 +22,7 @@
  * @quiet: error counters are those that the master has read
  * @counters: the user may read the error counters of the ports
  * @silent: slaves whose error counters could not be read
+ * @unasked: slaves whose drives were not asked for their errors
  * @late: there are late frames, so working counters show nothing about slaves
  * @failed: no memory for a finding
  * @lost: finding that a rule writes to instead
@@ -37,6 +38,7 @@ struct why {
 	bool quiet;
 	bool counters;
 	u32 silent;
+	u32 unasked;
 	bool late;
 	bool failed;
 	struct ect_finding lost;
@@ -71,6 +73,7 @@ void why_set_remedy(struct ect_finding *f, const char *fmt, ...)
 void why_explain(struct why *w, struct ect_explained *c);
 bool why_in_op(const struct ect_explained *c);
 const char *why_slave_name(const struct why *w, unsigned int position, char *buf, size_t size);
+struct ect_handle *why_open(struct why *w);
 /* does a finding have this cause? */
 bool why_has(const struct why *w, const char *cause);
 
@@ -112,6 +115,7 @@ void why_units(struct why *w);
 void why_clocks(struct why *w);
 void why_counters(struct why *w);
 void why_emergencies(struct why *w);
+void why_drives(struct why *w);
 void why_late_frames(struct why *w);
 void why_lost_frames(struct why *w);
 

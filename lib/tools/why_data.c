@@ -144,10 +144,9 @@ static void known_counters(struct why *w, struct ect_errors *all)
 
 static void read_counters(struct why *w, struct ect_errors *all)
 {
-	struct ect_handle *h = ect_new();
+	struct ect_handle *h = why_open(w);
 
-	w->failed |= !h;
-	w->counters = h && !ect_open_path(h, w->h->path, ECT_OPEN_WRITE);
+	w->counters = h;
 	/* one that does not reply for long has its own finding */
 	for (size_t i = 0; w->counters && i < w->bus->n; i++)
 		w->silent += !!ect_get_errors(h, why_slave(w, i)->device, &all[i]);

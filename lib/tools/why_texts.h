@@ -173,6 +173,8 @@
 	  "%s") \
 	X(EMERGENCY, "emergency", WARNING, "error_register", "", \
 	  "the last CoE emergency stands, since %s: code 0x%04x (%s), error register 0x%02x") \
+	X(DRIVE_ERROR, "drive_error", WARNING, "drive class_1_diagnostic", "", \
+	  "drive %u is in error: class 1 diagnostic (S-0-0011) 0x%04x (%s)%s%s") \
 	/* working counters */ \
 	X(WC_FMMU, "working_counter", FAULT, "working_counter expected", \
 	  "take the slave to INIT and back, which switches its FMMUs off: 'ethercat states INIT', then PREOP; look for what has written to it", \
@@ -217,6 +219,7 @@
 	X(LOST_ANY, "see whether the ports of slaves count errors: 'ethercat crc'; if not, check the network card %s and its driver: 'ethercat rtcheck'") \
 	X(ALIAS_MEANT, "correct the alias in the application to %u, if %s is meant") \
 	X(EMERGENCY, "see this code in the manual of the slave, remove its cause, and reset the error in the slave; all its messages: 'ethercat emergencies -p %u'") \
+	X(DRIVE_ERROR, "see this error in the manual of the drive, remove its cause, then reset it: 'ethercat soe_command -p%u %u S-0-0099'; the axis is without power until then, and may move afterwards") \
 	X(REQUESTED, "the tool or an error has requested this state: 'ethercat states OP -p %d', or restart the application") \
 	X(BOOT, "wait for the end of the firmware update, then 'ethercat states PREOP -p %u'") \
 	X(AGAIN, "%s; the master tries again by itself, at once with 'ethercat states %s -p %d'") \

@@ -32,6 +32,11 @@ enum ec_soe_opcode {
 
 #define EC_SOE_LIST_HDR		4	/* of lists and texts: length, largest length, bytes */
 
+/* IDNs of a drive in error */
+#define EC_SOE_IDN_ERROR	11	/* class 1 diagnostic: one bit for each kind, 0: no error */
+#define EC_SOE_IDN_ERROR_TEXT	95	/* diagnostic message */
+#define EC_SOE_IDN_ERROR_NUMBER	390	/* diagnostic number, which not each drive has */
+
 /* attribute of an IDN */
 #define EC_SOE_ATTR_LEN		0x00070000u	/* 1: 2 bytes, 2: 4, 3: 8, from 4 on: lists */
 #define EC_SOE_ATTR_LIST	0x00040000u

@@ -14,6 +14,7 @@
 #define AT		0x0010
 #define ON		0xe000
 #define RUNS		0xc000
+#define FAILED		0x2000
 
 static const char text[] =
 	"segment seed=8 response=200us transition=200us\nslave axes sercos serial=7\n"
@@ -126,6 +127,47 @@ static void sercos_axes_move_after_startup_idns(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get_unaligned_le16(cyc_pd(c, 0, 3) + AXIS_BYTES), RUNS);
 }
 
+static u32 read_idn(struct cyc *c, u32 axis, u16 idn, u8 *v, size_t cap)
+{
+	size_t got = 0;
+	u16 error;
+
+	KUNIT_EXPECT_EQ(c->b->test, ec_soe_read(&bus_slave(c->b, 0)->mbox, axis, idn, v, cap, &got,
+						&error, NULL), 0);
+	return got;
+}
+
+/* An axis in error stands and says what it has, in its status word and by IDNs, until its reset. */
+static void sercos_axis_in_error_stops_until_reset(struct kunit *test)
+{
+	struct cyc *c = sercos(test, 0);
+	u8 v[40] = { 0 };
+	u16 error;
+
+	cyc_activate(c);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 5000), ~0ull);
+	command(c, 0, ON, 10000);
+	command(c, 1, ON, 10000);
+	bus_command(c->b, "fault drive axes drive=1 error=0x80");
+	cyc_run(c, 20);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(cyc_pd(c, 0, 3)), RUNS);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(cyc_pd(c, 0, 3) + AXIS_BYTES), FAILED);
+	KUNIT_EXPECT_EQ(test, read_idn(c, 0, EC_SOE_IDN_ERROR, v, 2), 2u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(v), 0);
+	KUNIT_EXPECT_EQ(test, read_idn(c, 1, EC_SOE_IDN_ERROR, v, 2), 2u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(v), 0x80);
+	KUNIT_EXPECT_EQ(test, read_idn(c, 1, EC_SOE_IDN_ERROR_NUMBER, v, 4), 4u);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le32(v), 0xf0000080);
+	KUNIT_EXPECT_EQ(test, read_idn(c, 1, EC_SOE_IDN_ERROR_TEXT, v, sizeof(v)), 19u);
+	KUNIT_EXPECT_EQ(test, memcmp(v + EC_SOE_LIST_HDR, "simulated error", 15), 0);
+	put_unaligned_le16(EC_SOE_COMMAND_SET | EC_SOE_COMMAND_ENABLE, v);
+	KUNIT_EXPECT_EQ(test, ec_soe_write(&bus_slave(c->b, 0)->mbox, 1, 99, v, 2, &error, NULL),
+			0);
+	cyc_run(c, 20);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(cyc_pd(c, 0, 3) + AXIS_BYTES), RUNS);
+	KUNIT_EXPECT_EQ(test, read_idn(c, 1, EC_SOE_IDN_ERROR_TEXT, v, sizeof(v)), 12u);
+}
+
 /* Without a list the drive expects less process data, and the reason is an AL status code. */
 static void sercos_missing_list_keeps_drive_in_preop(struct kunit *test)
 {
@@ -140,6 +182,7 @@ static void sercos_missing_list_keeps_drive_in_preop(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(sercos_axes_move_after_startup_idns),
+	KUNIT_CASE(sercos_axis_in_error_stops_until_reset),
 	KUNIT_CASE(sercos_missing_list_keeps_drive_in_preop),
 	{}
 };

@@ -306,11 +306,14 @@ static int soe_read(struct ec_ioc_soe *x)
 		__u8 size;
 		const char *data;
 	} idns[] = {
+		{ 11, 2, "\0\0" },	/* no error, see fake_why.c */
 		{ 15, 2, "\7\0" },
 		{ 16, 6, "\xff\0\x20\0\x33\0" },	/* the length is wrong */
 		{ 17, 12, "\x08\0\x08\0\x0f\0\x1e\0\x94\0\x96\x80" },
 		{ 25, 4, "\0\0\x20\0" },
 		{ 30, 11, "\7\0\x10\0SIM 1.0" },
+		{ 95, 12, "\x08\0\x20\0no error" },
+		{ 390, 4, "\0\0\0\0" },
 		{ 0x8096, 2, "\x34\x12" },
 	};
 

@@ -78,6 +78,8 @@ void fake_why_slave(struct fake_slave *s)
 		strcpy(s->warning, "alias 5 is not unique; configurations use slave 1, the first one");
 		s->cause.kind = EC_CAUSE_ALIAS_TWICE;
 	}
+	if (s->position == 2 && wrong("drive"))
+		s->mbox_protocols |= 1 << 4;
 	if (s->position == 2 && wrong("process_data"))
 		strcpy(s->warning, "process data of SM2 may belong to other objects");
 	if (s->position == 2 && wrong("clock_off"))
@@ -254,6 +256,23 @@ static void emergency(struct ec_ioc_emergencies *x)
 	last->code = 0x7305;
 }
 
+/* its second drive */
+static void drive(struct ec_ioc_soe *x)
+{
+	__u8 *data = (__u8 *)(uintptr_t)x->data;
+
+	if (!wrong("drive_error") || x->drive != 1)
+		return;
+	if (x->idn == 11)
+		memcpy(data, "\x80\x80", 2);
+	else if (x->idn == 390 && wrong("old_drive"))
+		x->size = 0;
+	else if (x->idn == 390)
+		memcpy(data, "\x19\x20\x0f\xf0", 4);
+	else if (x->idn == 95)
+		memcpy(data, "\xff\0\x20\0F219\33 hot", 12);	/* the length is wrong */
+}
+
 /* Changes the reply to a command that was done. */
 void fake_why(unsigned long request, void *arg)
 {
@@ -280,6 +299,9 @@ void fake_why(unsigned long request, void *arg)
 		break;
 	case EC_IOC_EMERGENCIES:
 		emergency(arg);
+		break;
+	case EC_IOC_SOE_READ:
+		drive(arg);
 		break;
 	case EC_IOC_REG_READ:
 		counters(arg);

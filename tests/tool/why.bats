@@ -96,6 +96,27 @@ is() {
 	done
 }
 
+# drive WHY EXPRESSION: of the last finding f
+drive() {
+	FAKE_WHY="drive drive_error $1" out why --json |
+		json "(lambda f: $2)(d['masters'][0]['findings'][-1])"
+}
+
+@test "why names drives (SoE) in error, with number and text, if it may ask them" {
+	unset FAKE_READONLY
+	[ "$(causes drive)" = link_errors ]
+	[ "$(causes "drive drive_error")" = "link_errors drive_error" ]
+	drive "" '(f["slave"], f["level"], f["code"]) == (2, "warning", 0xf00f2019)'
+	drive "" '"drive 1 is in error: class 1 diagnostic (S-0-0011) 0x8080 (overcurrent, manufacturer), number 0xf00f2019: \"F219" in f["text"]'
+	drive "" '"\x1b" not in f["text"]'
+	drive "" '"ethercat soe_command -p2 1 S-0-0099" in f["remedy"]'
+	# one without a number
+	drive old_drive '(f["code"], "0x8080 (overcurrent, manufacturer): \"" in f["text"]) == (0x8080, True)'
+	FAKE_WHY="drive drive_error" FAKE_READONLY=1 run ethercat why
+	[ "$status" -eq 0 ]
+	[[ $output == *"Not checked: errors of drives (SoE) of 1 slave; asking them needs write access to "* ]]
+}
+
 @test "why gives place, code and the configurations that are affected" {
 	is cable '(f["slave"], f["port"], f["affected"]) == (1, 1, ["0:2"])'
 	is sdo '(f["slave"], f["config"], f["code"]) == (2, "0:2", 0x06020000)'
