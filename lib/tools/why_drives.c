@@ -49,8 +49,7 @@ static const char *read_text(struct ect_handle *h, u64 device, unsigned int driv
 	buf[0] = '\0';
 	if (n <= EC_SOE_LIST_HDR)
 		return buf;
-	n = min(n - EC_SOE_LIST_HDR, (long)get_unaligned_le16(data));
-	n = min(n, (long)TEXT_MAX);
+	n = min(n - EC_SOE_LIST_HDR, min((long)get_unaligned_le16(data), (long)TEXT_MAX));
 	snprintf(buf, TEXT_MAX + 8, ": \"%.*s\"", (int)n, (const char *)data + EC_SOE_LIST_HDR);
 	string_clean(buf, TEXT_MAX + 8);
 	return buf;

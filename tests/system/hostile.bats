@@ -73,7 +73,8 @@ hostile() {
 	echo 'drive bad error=0x80' >"$sim"
 	run ethercat why
 	[ "$status" = 0 ]
-	[[ $output == *'Warning: drive 0 is in error: class 1 diagnostic (S-0-0011) 0x0080 (overcurrent), number 0xf0000080: "simulated error"'*'Place: slave 1 '* ]]
+	[[ $output == *'Warning: drive 0 is in error: class 1 diagnostic (S-0-0011) 0x0080 '* ]]
+	[[ $output == *'(overcurrent), number 0xf0000080: "simulated error"'*'Place: slave 1 '* ]]
 	ethercat soe_command -p1 S-0-0099
 	run ethercat why
 	[[ $output != *"is in error"* ]]

@@ -107,14 +107,16 @@ drive() {
 	[ "$(causes drive)" = link_errors ]
 	[ "$(causes "drive drive_error")" = "link_errors drive_error" ]
 	drive "" '(f["slave"], f["level"], f["code"]) == (2, "warning", 0xf00f2019)'
-	drive "" '"drive 1 is in error: class 1 diagnostic (S-0-0011) 0x8080 (overcurrent, manufacturer), number 0xf00f2019: \"F219" in f["text"]'
+	drive "" '"drive 1 is in error: class 1 diagnostic (S-0-0011) 0x8080 (" in f["text"]'
+	drive "" '"(overcurrent, manufacturer), number 0xf00f2019: \"F219" in f["text"]'
 	drive "" '"\x1b" not in f["text"]'
 	drive "" '"ethercat soe_command -p2 1 S-0-0099" in f["remedy"]'
 	# one without a number
-	drive old_drive '(f["code"], "0x8080 (overcurrent, manufacturer): \"" in f["text"]) == (0x8080, True)'
+	drive old_drive 'f["code"] == 0x8080'
+	drive old_drive '"0x8080 (overcurrent, manufacturer): \"" in f["text"]'
 	FAKE_WHY="drive drive_error" FAKE_READONLY=1 run ethercat why
 	[ "$status" -eq 0 ]
-	[[ $output == *"Not checked: errors of drives (SoE) of 1 slave; asking them needs write access to "* ]]
+	[[ $output == *"Not checked: errors of drives (SoE) of 1 slave; asking them needs write "* ]]
 }
 
 @test "why gives place, code and the configurations that are affected" {
