@@ -81,7 +81,7 @@ static void sim_app_soe_values_are_read_and_written(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, get(x, 0, 30), 0u);
 	KUNIT_EXPECT_MEMEQ(test, x->buf, "\x07\0\x10\0SIM 1.0", 11);
 	KUNIT_EXPECT_EQ(test, get(x, 0, 17), 0u);
-	KUNIT_EXPECT_MEMEQ(test, x->buf, "\x36\0\x36\0\1\0\2\0\x0f\0", 10);
+	KUNIT_EXPECT_MEMEQ(test, x->buf, "\x3a\0\x3a\0\1\0\2\0\x0b\0", 10);
 	memcpy(x->buf, "\3\0\0\0abc", 7);
 	KUNIT_EXPECT_EQ(test, soe(x, true, 0, EC_SOE_VALUE, 0x80A0, 7), 0u);
 	KUNIT_EXPECT_EQ(test, get(x, 0, 0x80A0), 0u);
