@@ -65,7 +65,7 @@ tool:
 examples: lib
 	$(MAKE) -C examples
 
-# the example that is a kernel module, built as a module of an application
+# the examples that are kernel modules, built as modules of an application
 MINIDIR ?= $(BUILD)/mini
 
 # kbuild does not notice that symbols of other modules have changed
@@ -73,7 +73,7 @@ mini: modules
 	@mkdir -p $(MINIDIR)
 	@[ ! $(MODDIR)/Module.symvers -nt $(MINIDIR)/Module.symvers ] || \
 		rm -f $(MINIDIR)/Module.symvers
-	@for f in Kbuild ec_mini.c; do \
+	@for f in Kbuild ec_mini.c ec_named.c; do \
 		cmp -s examples/mini/$$f $(MINIDIR)/$$f || cp examples/mini/$$f $(MINIDIR)/$$f; \
 	done
 	+$(MAKE) -C $(KDIR) M=$(MINIDIR) $(KFLAGS) ECRT=$(CURDIR)/include \

@@ -138,6 +138,10 @@
 #define EC_HAVE_UNITS
 /* ecrt_master_read_eeprom(), ecrt_master_write_eeprom(), ecrt_master_write_alias() */
 #define EC_HAVE_EEPROM
+#ifdef __KERNEL__
+/* ecrt_master_load_compiled(), ecrt_master_value(): a compiled bus file; in the kernel */
+#define EC_HAVE_COMPILED_BUS
+#endif
 #ifndef __KERNEL__
 /* ecrt_open_events(): what has happened on the bus; in userspace */
 #define EC_HAVE_EVENTS
@@ -923,6 +927,109 @@ EC_PUBLIC_API int ecrt_master_set_send_interval(ec_master_t *master,
 EC_PUBLIC_API int ecrt_master_send(ec_master_t *master);
 
 #ifdef __KERNEL__
+/**
+ * ecrt_master_load_compiled() - configure a master by a compiled bus file
+ * @master: a requested master, not active, without configurations and domains
+ * @image: what 'ethercat bus compile' has written, for example from request_firmware();
+ *	not needed any more after the call
+ * @size: bytes
+ *
+ * Extension (%EC_HAVE_COMPILED_BUS). Makes the calls of this interface that ecrt_master_load() of
+ * libethercat-bus makes in a process: configurations, PDOs, startup commands, time limits, clocks,
+ * sync units, hot connect groups, domains and the interval of the cycle. Slaves without alias are
+ * those at the ring positions of the file; the master checks the identity of each. Then register
+ * values by ecrt_master_value(), and activate the master, with ecrt_master_set_cycle() before if
+ * the kernel runs the cycle.
+ *
+ * The whole of @image is checked before the first call; if it is not valid nothing is configured,
+ * and the log has the byte and the reason. When a call fails, as the log says, a part is
+ * configured: release the master. Kernel only.
+ *
+ * Context: Process. May sleep.
+ * Return: 0; %-EBADMSG not a compiled bus, cut off or changed; %-EPROTONOSUPPORT of another
+ * version; %-EFBIG; %-EINVAL not valid, or an argument is NULL; %-EBUSY active, or loaded already;
+ * %-EPERM not requested; %-ENOMEM; or as the call that failed.
+ */
+EC_PUBLIC_API int ecrt_master_load_compiled(ec_master_t *master, const void *image, size_t size);
+
+/**
+ * struct ec_loaded_t - what ecrt_master_load_compiled() has loaded
+ * @cycle_ns: cycle of the file, for ecrt_master_set_cycle(); 0: none
+ * @slaves: configurations
+ * @clocks: of them with SYNC signals
+ * @values: values
+ */
+typedef struct {
+	uint64_t cycle_ns;
+	unsigned int slaves;
+	unsigned int clocks;
+	unsigned int values;
+} ec_loaded_t;
+
+/**
+ * ecrt_master_loaded() - get what was loaded
+ * @master: master after ecrt_master_load_compiled()
+ * @loaded: result
+ *
+ * Extension (%EC_HAVE_COMPILED_BUS). Kernel only; libethercat-bus has a function of this name for
+ * processes.
+ *
+ * Context: Process.
+ * Return: 0; %-ENOENT nothing is loaded; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_loaded(const ec_master_t *master, ec_loaded_t *loaded);
+
+/**
+ * struct ec_value_t - a value in the process data: its unit has raw * scale_num / scale_den +
+ *	offset_num / offset_den
+ * @domain: it is in the data of this domain
+ * @slave: its slave
+ * @byte: first byte in the data
+ * @bit: first bit in @byte, 0 to 7
+ * @bits: size
+ * @type: 0 unsigned, 1 bool, 2 to 5 signed of 8 to 64 bits, 6 to 9 unsigned of 8 to 64 bits,
+ *	10 and 11 floating point of 32 and 64 bits
+ * @output: 1: the application writes it
+ * @object: index << 8 | subindex
+ * @scale_num: not 0
+ * @scale_den: not 0
+ * @offset_num: any
+ * @offset_den: not 0
+ * @unit: UTF-8, "": none; valid as long as @domain
+ */
+typedef struct {
+	ec_domain_t *domain;
+	ec_slave_config_t *slave;
+	uint32_t byte;
+	uint8_t bit;
+	uint8_t bits;
+	uint8_t type;
+	uint8_t output;
+	uint32_t object;
+	int64_t scale_num;
+	uint64_t scale_den;
+	int64_t offset_num;
+	uint64_t offset_den;
+	const char *unit;
+} ec_value_t;
+
+/**
+ * ecrt_master_value() - find a value by its name
+ * @master: master after ecrt_master_load_compiled()
+ * @name: name as "axis1.position"
+ * @value: result
+ *
+ * Extension (%EC_HAVE_COMPILED_BUS). The names are those of the bus file; values that it does not
+ * name are called by their object, as "io1.x6000_01". Results are valid until
+ * ecrt_master_deactivate() or ecrt_release_master(). Kernel only; libethercat-bus has a function
+ * of this name for processes.
+ *
+ * Context: Process. A search in a sorted list: look up before the cycle.
+ * Return: 0; %-ENOENT no such value, or nothing is loaded; %-EINVAL an argument is NULL.
+ */
+EC_PUBLIC_API int ecrt_master_value(const ec_master_t *master, const char *name,
+		ec_value_t *value);
+
 /**
  * ecrt_master_callbacks() - set the hooks that exchange acyclic frames between two cycles
  * @master: a requested master, not active

@@ -16,9 +16,8 @@ static int run(struct tool *t, int argc, char **argv)
 #include <string.h>
 #include <sys/stat.h>
 
-#include "bus_machine.h"
+#include "bus_int.h"
 #include "out.h"
-#include "save.h"
 
 #define DEPTH_MAX	40	/* columns: branches behind that are not shifted any more */
 
@@ -41,14 +40,20 @@ static size_t slaves_of(const struct ecb_bus *bus)
 	return n;
 }
 
-static int save_to(const struct tool *t, const char *path, const struct ecb_bus *bus)
+int bus_save_begin(const struct tool *t, struct save *s, const char *path)
 {
-	struct save s;
 	struct stat st;
 
 	if (!t->force && !stat(path, &st) && S_ISREG(st.st_mode) && st.st_size)
 		return fail("%s exists; -f overwrites it", path);
-	if (save_begin(&s, path))
+	return save_begin(s, path);
+}
+
+static int save_to(const struct tool *t, const char *path, const struct ecb_bus *bus)
+{
+	struct save s;
+
+	if (bus_save_begin(t, &s, path))
 		return 1;
 	fprintf(s.f, "# EtherCAT bus; made by 'ethercat bus save'\n");
 	ecb_file_write(bus, s.f);
@@ -359,6 +364,22 @@ static int show(struct tool *t, int argc, char **argv)
 	return ret;
 }
 
+static int compile(struct tool *t, int argc, char **argv)
+{
+	struct ecb_bus *bus;
+	int ret;
+
+	(void)argc;
+	if (!t->output_file)
+		return usage_error("bus compile needs --output-file"), 2;
+	ret = read_file(argv[0], &bus);
+	if (ret)
+		return ret;
+	ret = bus_compile(t, argv[0], bus);
+	ecb_bus_free(bus);
+	return ret;
+}
+
 static int write_schema(const struct ecb_bus *bus, FILE *to)
 {
 	(void)bus;
@@ -380,7 +401,7 @@ static const struct {
 	int max_args;
 } verbs[] = {
 	{ "save", save, 0, 1 }, { "check", check, 1, 1 }, { "diff", diff, 2, 2 },
-	{ "show", show, 1, 1 }, { "schema", schema, 0, 0 },
+	{ "show", show, 1, 1 }, { "compile", compile, 1, 1 }, { "schema", schema, 0, 0 },
 };
 
 static int run(struct tool *t, int argc, char **argv)
@@ -393,15 +414,16 @@ static int run(struct tool *t, int argc, char **argv)
 						   verbs[i].max_args), 2;
 			return verbs[i].run(t, argc - 1, argv + 1);
 		}
-	return usage_error("'%s': use save, check, diff, show or schema", argv[0]), 2;
+	return usage_error("'%s': use save, check, diff, show, compile or schema", argv[0]), 2;
 }
 #endif
 
 const struct cmd cmd_bus = {
 	.name = "bus",
 	.run = run,
-	.args = "save [<FILE>] | check <FILE> | diff <FILE> <FILE> | show <FILE> | schema",
-	.opts = "mfZ",
+	.args = "save [<FILE>] | check <FILE> | diff <FILE> <FILE> | show <FILE> | "
+		"compile <FILE> | schema",
+	.opts = "mofZ",
 	.summary = "Write the bus to a file, compare it with a file, show a file",
 	.help = "A bus file is YAML: masters, slaves and what they need, names of values.\n"
 		"\n"
@@ -417,10 +439,12 @@ const struct cmd cmd_bus = {
 		"by identity in the order of the bus: one slave more is one difference.\n"
 		"\n"
 		"'diff' compares two files. 'show' shows the slaves of a file as a tree, with the\n"
-		"names of its values. 'schema' prints the JSON Schema of bus files for editors.\n"
+		"names of its values. 'compile' writes what an application in the kernel configures\n"
+		"its master by, with ecrt_master_load_compiled(), to --output-file; no bus is asked.\n"
+		"'schema' prints the JSON Schema of bus files for editors.\n"
 		"\n"
 		"Exit code of 'check' and 'diff': 0 equal, 1 differences, 2 not all compared.\n",
-	.json = "save: file, slaves, or text; schema: text; check, diff: differences[]: kind (missing,\n"
+	.json = "save: file, slaves, or text; compile: file, size; schema: text; check, diff: differences[]: kind (missing,\n"
 		"extra, exchanged, moved, value, pending), master, line, slave, key, expected, found, remedy;\n"
 		"show: masters[]: index, cycle_ns, slaves[]: name, type, vendor, product, alias,\n"
 		"parent, port, modules[]: slot, ident, name; values[]: name, index, subindex, bits, unit",

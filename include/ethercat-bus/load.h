@@ -67,6 +67,23 @@ int ecrt_master_load(ec_master_t *master, const char *path, struct ecb_error *er
 int ecrt_master_load_bus(ec_master_t *master, const struct ecb_load *load,
 			 struct ecb_error *error);
 
+/**
+ * ecb_compile() - write what an application in the kernel configures its master by
+ * @load: the bus; no flags, @found NULL
+ * @image: result; free() it
+ * @size: its bytes
+ * @error: result of a failure: place in the file, what is wrong, what to do
+ *
+ * ecrt_master_load_compiled() of the kernel makes the calls of ecrt.h that ecrt_master_load_bus()
+ * makes. No machine is asked: slaves without alias have the ring position that the order of the
+ * file gives, without members of groups. The same bus becomes the same bytes.
+ *
+ * Context: Any. The thread of the bus.
+ * Return: 0; -EINVAL; -ENOMEM.
+ */
+int ecb_compile(const struct ecb_load *load, uint8_t **image, size_t *size,
+		struct ecb_error *error);
+
 /** struct ecb_loaded - what was loaded */
 struct ecb_loaded {
 	uint32_t struct_size;

@@ -2,6 +2,7 @@
 /* What the functions for applications in the kernel share. */
 #include <linux/slab.h>
 #include "../../lib/ecrt/ecrt_int.h"
+#include "api_values.h"
 
 /*
  * Work that a cyclic call cannot do itself: it makes the bus access cyclic again after a cycle
@@ -57,6 +58,7 @@ void ec_api_destroy(struct ec_master *m)
 	ec_api_between_stop(m);
 	cancel_work_sync(&m->api->work);
 	ec_app_requests_free(m);
+	ec_loaded_free(m);
 	kfree(m->api);
 	m->api = NULL;
 }

@@ -26,6 +26,7 @@
 #include "../session/session.h"
 
 struct ec_app_request;
+struct ec_loaded;
 struct task_struct;
 
 /** struct ec_api - the application in the kernel that may have reserved a master */
@@ -46,6 +47,8 @@ struct ec_api {
 	atomic_t busy;
 	/** @requests: list of its requests */
 	struct ec_app_request *requests;
+	/** @loaded: values of a compiled bus file, or NULL */
+	struct ec_loaded *loaded;
 	/** @work: work of a cyclic call that has to sleep */
 	struct work_struct work;
 	/** @atomic: a cyclic call was made outside of a thread, though the device needs one */

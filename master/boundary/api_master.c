@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Request, activate and release a master; for applications in the kernel. */
 #include <linux/delay.h>
+#include "api_values.h"
 #include "cdev.h"
 #include "../../lib/ecrt/ecrt_int.h"
 #include "../session/reserve.h"
@@ -59,6 +60,7 @@ void ecrt_release_master(ec_master_t *master)
 	forget(master);
 	ec_session_end(&master->sessions, &master->api->file);
 	ec_app_requests_free(master);
+	ec_loaded_free(master);
 	master->api->reserved = false;
 	module_put(THIS_MODULE);
 }
@@ -220,6 +222,7 @@ int ecrt_master_deactivate(ec_master_t *master)
 	forget(master);
 	ret = ec_command(master, EC_IOC_DEACTIVATE, NULL);
 	ec_app_requests_free(master);
+	ec_loaded_free(master);
 	return ret;
 }
 EXPORT_SYMBOL_GPL(ecrt_master_deactivate);

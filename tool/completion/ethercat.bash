@@ -95,7 +95,7 @@ _ethercat()
 			units)	w="take" ;;
 			bus)
 				case $prev in
-				bus) w="save check diff show schema" ;;
+				bus) w="save check diff show compile schema" ;;
 				*) _ethercat_files
 				   return ;;
 				esac ;;

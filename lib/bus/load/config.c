@@ -38,7 +38,7 @@ ec_direction_t load_direction(const struct load *l, const struct plan *p, unsign
 	}
 	if (!mixed)
 		return dir;
-	if (!p->there || ecrt_master_get_slave(l->m, (uint16_t)p->position, &info) ||
+	if (!p->there || l->offline || ecrt_master_get_slave(l->m, (uint16_t)p->position, &info) ||
 	    sm >= info.sync_count ||
 	    ecrt_master_get_sync_manager(l->m, (uint16_t)p->position, (uint8_t)sm, &s))
 		return EC_DIR_INVALID;
@@ -102,7 +102,8 @@ static int empty_others(struct layout *x, const struct load *l, const struct pla
 
 	for (unsigned int i = 0; i < x->n_syncs; i++)
 		listed |= 1U << x->syncs[i].index;
-	if (!p->there)
+	/* offline the calls do that */
+	if (!p->there || l->offline)
 		return 0;
 	ret = ecrt_master_get_slave(l->m, (uint16_t)p->position, &info);
 	for (unsigned int sm = 0; sm < info.sync_count && !ret; sm++) {
@@ -137,14 +138,14 @@ static int configure_pdos(struct load *l, struct plan *p)
 	if (!ret)
 		ret = empty_others(&x, l, p);
 	if (!ret)
-		ret = ecrt_slave_config_pdos(p->sc, x.n_syncs, x.syncs);
+		ret = l->calls->pdos(p->sc, x.n_syncs, x.syncs);
 	free(x.pdos);
 	free(x.entries);
 	return ret ? load_failed(l, p->s->line, ret, "slave '%s': cannot configure its PDOs",
 				 p->s->name) : 0;
 }
 
-static int startup(struct plan *p, const struct ecb_command *c)
+static int startup(const struct load *l, struct plan *p, const struct ecb_command *c)
 {
 	uint8_t number[8];
 	const struct ecb_bytes bytes = ecb_command_data(c, number);
@@ -155,11 +156,11 @@ static int startup(struct plan *p, const struct ecb_command *c)
 	/* SDOs of the step to SAFEOP are written before the PDOs, which they may change */
 	if (c->at == ECB_AT_SAFEOP && c->sdo != ECB_NONE32)
 		return c->complete ?
-			ecrt_slave_config_complete_sdo(p->sc, ECB_INDEX(c->sdo), data, size) :
-			ecrt_slave_config_sdo(p->sc, ECB_INDEX(c->sdo), ECB_SUBINDEX(c->sdo), data,
+			l->calls->complete_sdo(p->sc, ECB_INDEX(c->sdo), data, size) :
+			l->calls->sdo(p->sc, ECB_INDEX(c->sdo), ECB_SUBINDEX(c->sdo), data,
 					      size);
 	if (c->at == ECB_AT_SAFEOP && c->idn != ECB_NONE32)
-		return ecrt_slave_config_idn(p->sc, c->drive, (uint16_t)c->idn, EC_AL_STATE_PREOP,
+		return l->calls->idn(p->sc, c->drive, (uint16_t)c->idn, EC_AL_STATE_PREOP,
 					     data, size);
 	if (c->sdo != ECB_NONE32) {
 		command.kind = EC_COMMAND_SDO;
@@ -174,7 +175,7 @@ static int startup(struct plan *p, const struct ecb_command *c)
 		command.kind = EC_COMMAND_REG;
 		command.index = (uint16_t)c->reg;
 	}
-	return ecrt_slave_config_command(p->sc, steps[c->at], &command);
+	return l->calls->command(p->sc, steps[c->at], &command);
 }
 
 static uint32_t ident_of(const struct ecb_slave *s, unsigned int slot)
@@ -196,18 +197,18 @@ static unsigned int last_slot(const struct ecb_slave *s)
 }
 
 /* The configured modules, written before all else, each time that the slave is configured. */
-static int write_modules(struct plan *p)
+static int write_modules(const struct load *l, struct plan *p)
 {
 	int ret = 0;
 
 	for (unsigned int slot = 1; slot <= last_slot(p->s) && !ret; slot++)
-		ret = ecrt_slave_config_sdo32(p->sc, 0xf030, (uint8_t)slot,
+		ret = l->calls->sdo32(p->sc, 0xf030, (uint8_t)slot,
 					      ident_of(p->s, slot));
 	return ret;
 }
 
 /* With another module in a slot the slave stays in PREOP, and the reason names it. */
-static int expect_modules(struct plan *p)
+static int expect_modules(const struct load *l, struct plan *p)
 {
 	uint8_t ident[4];
 	ec_command_t c = {
@@ -218,25 +219,25 @@ static int expect_modules(struct plan *p)
 	for (unsigned int slot = 1; slot <= last_slot(p->s) && !ret; slot++) {
 		EC_WRITE_U32(ident, ident_of(p->s, slot));
 		c.subindex = (uint8_t)slot;
-		ret = ecrt_slave_config_command(p->sc, EC_STEP_PS, &c);
+		ret = l->calls->command(p->sc, EC_STEP_PS, &c);
 	}
 	return ret;
 }
 
-static int limits(struct plan *p, const struct ecb_timeouts *t)
+static int limits(const struct load *l, struct plan *p, const struct ecb_timeouts *t)
 {
 	int ret = 0;
 
 	if (t->init_preop)
-		ret = ecrt_slave_config_state_timeout(p->sc, EC_AL_STATE_INIT, EC_AL_STATE_PREOP,
+		ret = l->calls->state_timeout(p->sc, EC_AL_STATE_INIT, EC_AL_STATE_PREOP,
 						      load_ms(t->init_preop));
 	if (t->preop_safeop && !ret)
-		ret = ecrt_slave_config_state_timeout(p->sc, EC_AL_STATE_PREOP, EC_AL_STATE_SAFEOP,
+		ret = l->calls->state_timeout(p->sc, EC_AL_STATE_PREOP, EC_AL_STATE_SAFEOP,
 						      load_ms(t->preop_safeop));
 	if (t->safeop_op && !ret)
-		ret = ecrt_slave_config_state_timeout(p->sc, EC_AL_STATE_SAFEOP, EC_AL_STATE_OP,
+		ret = l->calls->state_timeout(p->sc, EC_AL_STATE_SAFEOP, EC_AL_STATE_OP,
 						      load_ms(t->safeop_op));
-	return t->mailbox && !ret ? ecrt_slave_config_sdo_timeout(p->sc, load_ms(t->mailbox)) :
+	return t->mailbox && !ret ? l->calls->sdo_timeout(p->sc, load_ms(t->mailbox)) :
 		ret;
 }
 
@@ -247,31 +248,31 @@ int load_configure(struct load *l, struct plan *p)
 	int ret = 0;
 
 	if (s->revision && s->revision_rule == ECB_REVISION_EQUAL)
-		ret = ecrt_slave_config_flag(p->sc, "ExpectedRevision", (int32_t)s->revision);
+		ret = l->calls->flag(p->sc, "ExpectedRevision", (int32_t)s->revision);
 	if (s->serial && p->group >= 0 && !ret)
-		ret = ecrt_slave_config_flag(p->sc, "ExpectedSerial", (int32_t)s->serial);
+		ret = l->calls->flag(p->sc, "ExpectedSerial", (int32_t)s->serial);
 	if (ret)
 		return load_failed(l, s->line, ret, "slave '%s': cannot configure it", s->name);
 	if (s->write_modules)
-		ret = write_modules(p);
+		ret = write_modules(l, p);
 	if (!ret)
-		ret = expect_modules(p);
+		ret = expect_modules(l, p);
 	if (ret)
 		return load_failed(l, s->line, ret, "slave '%s': cannot configure its modules",
 				   s->name);
 	for (size_t i = 0; i < s->startup_count; i++) {
-		ret = startup(p, s->startup[i]);
+		ret = startup(l, p, s->startup[i]);
 		if (ret)
 			return load_failed(l, s->startup[i]->line, ret,
 					   "slave '%s': cannot add a startup command", s->name);
 	}
 	if (s->timeouts)
-		ret = limits(p, s->timeouts);
+		ret = limits(l, p, s->timeouts);
 	if (ret)
 		return load_failed(l, s->timeouts->line, ret, "slave '%s': cannot set its time limits",
 				   s->name);
 	if (k)
-		ret = ecrt_slave_config_dc(p->sc, k->assign_activate, (uint32_t)k->sync0,
+		ret = l->calls->dc(p->sc, k->assign_activate, (uint32_t)k->sync0,
 					   (int32_t)k->sync0_shift, (uint32_t)k->sync1, 0);
 	if (ret)
 		return load_failed(l, k->line, ret, "slave '%s': cannot configure its clock",

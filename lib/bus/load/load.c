@@ -21,12 +21,35 @@ int load_failed(struct load *l, uint32_t line, int err, const char *fmt, ...)
 	va_start(ap, fmt);
 	vsnprintf(what, sizeof(what), fmt, ap);
 	va_end(ap);
-	if (ecrt_master_reason(l->m, why, sizeof(why)))
+	if (l->offline || ecrt_master_reason(l->m, why, sizeof(why)))
 		why[0] = 0;
 	ecb_report(l->e, l->file, line, 0, "%s (%s)%s%s", what, strerror(-err), why[0] ? ": " : "",
 		   why);
 	return err;
 }
+
+static const struct load_calls load_ecrt = {
+	.create_domain = ecrt_master_create_domain,
+	.unit = ecrt_master_unit,
+	.set_unit = ecrt_domain_set_unit,
+	.slave = ecrt_master_slave_config,
+	.group = ecrt_master_group,
+	.member = ecrt_master_group_config,
+	.flag = ecrt_slave_config_flag,
+	.sdo = ecrt_slave_config_sdo,
+	.complete_sdo = ecrt_slave_config_complete_sdo,
+	.sdo32 = ecrt_slave_config_sdo32,
+	.idn = ecrt_slave_config_idn,
+	.command = ecrt_slave_config_command,
+	.state_timeout = ecrt_slave_config_state_timeout,
+	.sdo_timeout = ecrt_slave_config_sdo_timeout,
+	.dc = ecrt_slave_config_dc,
+	.pdos = ecrt_slave_config_pdos,
+	.reg = ecrt_slave_config_reg_pdo_entry_pos,
+	.reference_clock = ecrt_master_select_reference_clock,
+	.interval = ecrt_master_set_send_interval,
+	.names = ecrt_master_set_names,
+};
 
 /* what a call that returns a handle has left in errno */
 static int error_of_handle(void)
@@ -51,7 +74,7 @@ static int create_domain(struct load *l, size_t i)
 	ec_unit_config_t c = { 0 };
 	int unit, ret;
 
-	l->domains[i] = ecrt_master_create_domain(l->m);
+	l->domains[i] = l->calls->create_domain(l->m);
 	if (!l->domains[i])
 		return load_failed(l, u ? u->line : 0, error_of_handle(), "cannot create a domain");
 	if (!u)
@@ -64,8 +87,8 @@ static int create_domain(struct load *l, size_t i)
 	c.repeats = u->repeats;
 	c.flags = (u->needs_authority ? EC_UNIT_AUTHORITY : 0) |
 		(u->lease_holds ? EC_UNIT_LEASE_HOLD : 0) | (u->offered ? EC_UNIT_OFFERED : 0);
-	unit = ecrt_master_unit(l->m, &c);
-	ret = unit < 0 ? unit : ecrt_domain_set_unit(l->domains[i], unit);
+	unit = l->calls->unit(l->m, &c);
+	ret = unit < 0 ? unit : l->calls->set_unit(l->domains[i], unit);
 	return ret ? load_failed(l, u->line, ret, "cannot create sync unit '%s'", u->name) : 0;
 }
 
@@ -90,8 +113,8 @@ static int configure_single(struct load *l, struct plan *p)
 	if (p->sc)
 		return 0;
 	p->config = l->n_configs++;
-	p->sc = ecrt_master_slave_config(l->m, alias, alias ? 0 : (uint16_t)p->ring, p->s->vendor,
-					 p->s->product);
+	p->sc = l->calls->slave(l->m, alias, alias ? 0 : (uint16_t)p->ring, p->s->vendor,
+				p->s->product);
 	return p->sc ? 0 : load_failed(l, p->s->line, error_of_handle(),
 				       "slave '%s': cannot configure it", p->s->name);
 }
@@ -129,7 +152,7 @@ static int configure_group(struct load *l, size_t index)
 	if (ret)
 		return ret;
 	info.at = at ? at->sc : NULL;
-	group = ecrt_master_group(l->m, &info);
+	group = l->calls->group(l->m, &info);
 	if (group < 0)
 		return load_failed(l, g->line, group, "cannot create hot connect group '%s'",
 				   g->name);
@@ -139,8 +162,8 @@ static int configure_group(struct load *l, size_t index)
 		if (p->group != (long)index)
 			continue;
 		p->config = l->n_configs++;
-		p->sc = ecrt_master_group_config(l->m, (unsigned int)group, member++, p->s->vendor,
-						 p->s->product);
+		p->sc = l->calls->member(l->m, (unsigned int)group, member++, p->s->vendor,
+					 p->s->product);
 		if (!p->sc)
 			return load_failed(l, p->s->line, error_of_handle(),
 					   "slave '%s': cannot configure it", p->s->name);
@@ -203,13 +226,13 @@ static int register_sm(struct load *l, const struct plan *p, unsigned int sm)
 		if (pdo->sm != sm)
 			continue;
 		if (pdo->entry_count && bit == UINT64_MAX) {
-			at = ecrt_slave_config_reg_pdo_entry_pos(p->sc, (uint8_t)sm, pos, 0,
-								 l->domains[unit], &first);
+			at = l->calls->reg(p->sc, (uint8_t)sm, pos, 0, l->domains[unit], &first);
 			if (at < 0)
 				return load_failed(l, p->s->line, at,
 						   "slave '%s': cannot register PDO 0x%04x",
 						   p->s->name, pdo->index);
 			bit = 8 * (uint64_t)at + first;
+			l->to->regs++;
 		}
 		pos++;
 		ret = add_values(l, p, pdo, &v, &bit);
@@ -225,9 +248,18 @@ static int allow_repeats(struct load *l, const struct plan *p)
 
 	if (i == l->want->sync_unit_count || l->want->sync_units[i]->repeats < 2)
 		return 0;
-	ret = ecrt_slave_config_flag(p->sc, "FrameRepeatSupport", 1);
+	ret = l->calls->flag(p->sc, "FrameRepeatSupport", 1);
 	return ret ? load_failed(l, p->s->line, ret, "slave '%s': cannot configure it",
 				 p->s->name) : 0;
+}
+
+/* entries that only the slave knows */
+static bool has_unknown(const struct plan *p)
+{
+	for (size_t i = 0; i < p->n_pdos; i++)
+		if (!p->pdos[i]->entry_count)
+			return true;
+	return !p->n_pdos;
 }
 
 static int register_values(struct load *l)
@@ -242,6 +274,8 @@ static int register_values(struct load *l)
 		ret = allow_repeats(l, p);
 		for (unsigned int sm = 0; sm < EC_MAX_SYNC_MANAGERS && !ret; sm++)
 			ret = register_sm(l, p, sm);
+		if (!ret && l->calls->rest && has_unknown(p))
+			ret = l->calls->rest(p->sc, l->domains[unit_of(l, p->s)]);
 	}
 	return ret;
 }
@@ -252,16 +286,15 @@ static int set_up_master(struct load *l)
 	int ret = 0;
 
 	if (m->reference_clock)
-		ret = ecrt_master_select_reference_clock(l->m,
-							 plan_by_name(l, m->reference_clock)->sc);
+		ret = l->calls->reference_clock(l->m, plan_by_name(l, m->reference_clock)->sc);
 	if (ret)
 		return load_failed(l, m->line, ret, "cannot select the reference clock");
 	if (m->cycle)
-		ret = ecrt_master_set_send_interval(l->m, (size_t)((m->cycle + 999) / 1000));
+		ret = l->calls->interval(l->m, (size_t)((m->cycle + 999) / 1000));
 	return ret ? load_failed(l, m->line, ret, "cannot set the cycle") : 0;
 }
 
-static int finish(struct load *l)
+static int describe(struct load *l)
 {
 	uint32_t slaves = 0, clocks = 0;
 	int ret = loaded_sort(l->to);
@@ -274,14 +307,20 @@ static int finish(struct load *l)
 		clocks += !l->plans[i].omitted && l->plans[i].s->clock;
 	}
 	loaded_describe(l->to, slaves, clocks, l->want->cycle);
-	ret = ecrt_master_set_data(l->m, l->to, loaded_free);
+	return 0;
+}
+
+static int keep(struct load *l)
+{
+	int ret = ecrt_master_set_data(l->m, l->to, loaded_free);
+
 	if (ret)
 		return load_no_memory(l);
 	l->to = NULL;
 	return 0;
 }
 
-static int apply(struct load *l)
+int load_apply(struct load *l)
 {
 	int ret = create_domains(l);
 
@@ -293,7 +332,7 @@ static int apply(struct load *l)
 		ret = set_up_master(l);
 	if (!ret)
 		ret = load_publish_names(l);
-	return ret ? ret : finish(l);
+	return ret ? ret : describe(l);
 }
 
 /* by its index, or the only one */
@@ -308,7 +347,18 @@ static int choose_master(struct load *l)
 				 l->how->index);
 }
 
-static void free_all(struct load *l)
+int load_begin(struct load *l)
+{
+	int ret = choose_master(l);
+
+	if (ret)
+		return ret;
+	l->plans = calloc(l->want->slave_count + 1, sizeof(*l->plans));
+	l->to = loaded_new();
+	return l->plans && l->to ? 0 : load_no_memory(l);
+}
+
+void load_end(struct load *l)
 {
 	for (size_t i = 0; l->plans && i < l->want->slave_count; i++)
 		free(l->plans[i].pdos);
@@ -322,7 +372,7 @@ ECB_API int ecrt_master_load_bus(ec_master_t *master, const struct ecb_load *loa
 				 struct ecb_error *error)
 {
 	struct ecb_load how = { 0 };
-	struct load l = { .m = master, .how = &how, .e = error };
+	struct load l = { .m = master, .calls = &load_ecrt, .how = &how, .e = error };
 	int ret;
 
 	if (!error || !load || load->struct_size < offsetof(struct ecb_load, found))
@@ -335,22 +385,20 @@ ECB_API int ecrt_master_load_bus(ec_master_t *master, const struct ecb_load *loa
 		return BAD(&l, 0, "needs a bus, known flags, and a master, or slaves to check");
 	if (ecrt_master_data(master, loaded_free))
 		return BAD(&l, 0, "a bus is loaded already; release or deactivate the master first");
-	ret = choose_master(&l);
-	if (ret)
-		return ret;
-	l.plans = calloc(l.want->slave_count + 1, sizeof(*l.plans));
-	l.to = loaded_new();
 	l.found = how.found;
-	ret = l.plans && l.to ? 0 : load_no_memory(&l);
+	ret = load_begin(&l);
 	if (!ret && !l.found)
 		ret = load_read_machine(&l);
 	if (!ret)
 		ret = load_place(&l);
 	if (!ret)
 		ret = load_check(&l);
-	if (!ret && !(how.flags & ECB_LOAD_CHECK))
-		ret = apply(&l);
-	free_all(&l);
+	if (!ret && !(how.flags & ECB_LOAD_CHECK)) {
+		ret = load_apply(&l);
+		if (!ret)
+			ret = keep(&l);
+	}
+	load_end(&l);
 	return ret;
 }
 

@@ -51,6 +51,19 @@ static void find_group(struct load *l, struct plan *p)
 			p->group = (long)i;
 }
 
+/* an identification, which an application does not see */
+static bool hides(const struct plan *p)
+{
+	return p->s->identification && p->group < 0;
+}
+
+static int refuse_hidden(struct load *l, const struct plan *p)
+{
+	return BAD(l, p->s->line,
+		   "slave '%s': an application does not see the identification of slaves; use an alias, or a hot connect group with this identification",
+		   p->s->name);
+}
+
 /* The head of a group is found by what is known of the group. */
 static int prepare(struct search *s)
 {
@@ -70,10 +83,8 @@ static int prepare(struct search *s)
 
 		p->s = l->want->slaves[i];
 		find_group(l, p);
-		if (p->s->identification && p->group < 0 && !l->how->found)
-			return BAD(l, p->s->line,
-				   "slave '%s': an application does not see the identification of slaves; use an alias, or a hot connect group with this identification",
-				   p->s->name);
+		if (!l->how->found && hides(p))
+			return refuse_hidden(l, p);
 		*c = *p->s;
 		s->slaves[i] = c;
 		if (p->group < 0 || seen[p->group]++)
@@ -108,6 +119,13 @@ static int compare(struct search *s)
 			 " (%ld more differences; 'ethercat bus check' shows all)",
 			 s->differences - 1);
 	return -ENODEV;
+}
+
+static int refuse_behind(struct load *l, const struct plan *p)
+{
+	return BAD(l, p->s->line,
+		   "slave '%s' is connected behind a hot connect group; put it into that group, or connect it elsewhere",
+		   p->s->name);
 }
 
 /* Is found slave @k the head of a group, whatever it is? */
@@ -149,9 +167,7 @@ static int find_positions(struct load *l, const struct match *m)
 			p->ring = k - before;
 		}
 		if (p && p->there && p->group < 0 && in[k])
-			ret = BAD(l, p->s->line,
-				  "slave '%s' is connected behind a hot connect group; put it into that group, or connect it elsewhere",
-				  p->s->name);
+			ret = refuse_behind(l, p);
 		before += in[k];
 	}
 	free(in);
@@ -250,5 +266,58 @@ int load_place(struct load *l)
 	for (size_t i = 0; i < l->want->slave_count && !ret; i++)
 		if (!l->plans[i].omitted)
 			ret = choose_pdos(l, &l->plans[i]);
+	return ret;
+}
+
+/* @from has no entries of a PDO: those of the slave are known when the master is configured */
+static int check_entries(struct load *l, const struct ecb_slave *from, size_t i)
+{
+	const struct ecb_pdo *pdo = from->pdos[i];
+
+	return pdo->entry_count || is_last(from, i) ? 0 :
+		BAD(l, pdo->line,
+		    "PDO 0x%04x of '%s' has no entries here, and other PDOs of SM%u follow; give its entries",
+		    pdo->index, from->name, pdo->sm);
+}
+
+static int place_slave(struct load *l, size_t i, size_t ring)
+{
+	struct plan *p = &l->plans[i];
+	const struct ecb_slave *s = p->s;
+	const struct plan *up = s->parent ? plan_of(l, s->parent) : NULL;
+	int ret = 0;
+
+	if (hides(p))
+		return refuse_hidden(l, p);
+	if (up && up->group >= 0 && p->group < 0)
+		return refuse_behind(l, p);
+	p->there = s;
+	p->position = i;
+	p->ring = ring;
+	p->pdos = calloc(s->pdo_count + 1, sizeof(*p->pdos));
+	if (!p->pdos)
+		return load_no_memory(l);
+	p->n_pdos = s->pdo_count;
+	for (size_t k = 0; k < s->pdo_count && !ret; k++) {
+		p->pdos[k] = s->pdos[k];
+		ret = check_entries(l, s, k);
+	}
+	return ret;
+}
+
+int load_place_offline(struct load *l)
+{
+	size_t ring = 0;
+	int ret = 0;
+
+	for (size_t i = 0; i < l->want->slave_count; i++) {
+		l->plans[i].s = l->want->slaves[i];
+		find_group(l, &l->plans[i]);
+	}
+	for (size_t i = 0; i < l->want->slave_count && !ret; i++) {
+		ret = place_slave(l, i, ring);
+		/* members of groups do not count */
+		ring += l->plans[i].group < 0;
+	}
 	return ret;
 }

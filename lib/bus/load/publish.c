@@ -58,7 +58,7 @@ int load_publish_names(struct load *l)
 		load_no_memory(l);
 	/* with more of them tools show the names that slaves give */
 	else if (size <= NAMES_MAX)
-		ret = ecrt_master_set_names(l->m, text, size);
+		ret = l->calls->names(l->m, text, size);
 	/* nor with an older module, or without memory for them: they are for tools only */
 	if (ret == -ENOTTY || ret == -EDQUOT)
 		ret = 0;

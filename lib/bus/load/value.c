@@ -7,20 +7,6 @@
 
 #include "load.h"
 
-struct named {
-	char *name;
-	char *unit;
-	struct ecb_value v;
-};
-
-/** struct loaded - what ecrt_master_data() keeps: values in the order of their names */
-struct loaded {
-	struct ecb_loaded what;
-	struct named *values;
-	size_t n;
-	size_t room;
-};
-
 struct loaded *loaded_new(void)
 {
 	struct loaded *to = calloc(1, sizeof(*to));
@@ -69,6 +55,7 @@ int loaded_add(struct loaded *to, const char *slave, const struct ecb_entry *e,
 	}
 	n = &to->values[to->n];
 	n->v = *v;
+	n->reg = to->regs - 1;
 	n->name = strdup(name);
 	n->unit = strdup(e->unit ? e->unit : "");
 	to->n++;	/* loaded_free() frees what is here */
