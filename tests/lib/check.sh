@@ -272,7 +272,13 @@ bus_file() {
 bus_load() {
 	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" -o "$o/bus-load" bus_load.c \
 		"$top"/lib/{data,real}.c "$top"/lib/bus/*.c "$top"/lib/bus/load/*.c \
-		"$top/lib/tools/text.c" -lyaml -lm && "$o/bus-load"
+		"$top/lib/tools/text.c" "$top/master/wire/compiled.c" -lyaml -lm && "$o/bus-load"
+}
+
+bus_compile() {
+	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" -o "$o/bus-compile" bus_compile.c \
+		"$top"/lib/bus/*.c "$top"/lib/bus/load/*.c "$top/lib/tools/text.c" \
+		"$top/master/wire/compiled.c" "$o/lib/libethercat.a" -lyaml -lm && "$o/bus-compile"
 }
 
 demo_builds() {
@@ -352,6 +358,7 @@ t "libethercat-bus needs libc, libyaml and libethercat only" needs_only bus \
 t "names of slaves and values" bus_names
 t "bus files" bus_file
 t "bus files become configurations, by ecrt.h" bus_load
+t "bus files are compiled for the kernel" bus_compile
 for std in c99 c17; do
 	t "ethercat-bus.h compiles as $std" other_header_compiles bus $CC $std c
 done

@@ -10,7 +10,7 @@ setup_file() {
 		>"$BATS_FILE_TMPDIR/segment"
 	start "$BATS_FILE_TMPDIR/segment" 2
 }
-teardown_file() { rmmod ec_mini 2>/dev/null; stop; }
+teardown_file() { rmmod ec_mini ec_named 2>/dev/null; stop; }
 setup() {
 	dmesg -C
 	wait_for 60 all_slaves_are PREOP 2
@@ -18,7 +18,7 @@ setup() {
 	wait_for 60 all_slaves_are OP 2
 }
 teardown() {
-	rmmod ec_mini 2>/dev/null || true
+	rmmod ec_mini ec_named 2>/dev/null || true
 	[ -z "$(dmesg | grep -E 'BUG:|WARNING:|Oops|lockup')" ]
 }
 
@@ -123,4 +123,43 @@ copied() {
 	dmesg | grep -qF "no master 3; main_devices= names 1"
 	[ "$(awk '$1 == "ec_master" { print $3 }' /proc/modules)" = 1 ]
 	json '.masters[0].active == false' master
+}
+
+# what the master has of the configuration, without what changes while it runs
+configured() {
+	ethercat config -v
+	ethercat domains -v | sed 's/, WC .*//; s/Working counter.*//'
+	ethercat units
+}
+
+named() { insmod "$EC_BUILD/mini/ec_named.ko" bus=bus.bin "$@"; }
+
+# the log has so many different values of the input
+logged() { [ "$(dmesg | grep -o "ec_named: $1 = .*" | sort -u | wc -l)" -ge "$2" ]; }
+
+@test "ec_named gets its bus from a compiled file, as a process from the file, and finds values by name" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml app
+
+	rmmod ec_mini
+	stop
+	printf '%s\n' "slave coupler EK1100" "slave lamps EL2008" "slave ai EL3062 alias=5" \
+		"slave motor drive in=8 out=8" "slave ao EL4002" \
+		"ramp ai.1 amplitude=100 period=500ms" >"$BATS_TEST_TMPDIR/segment"
+	start "$BATS_TEST_TMPDIR/segment" 5
+	ethercat bus save --whole "$f"
+	cat "$f"
+	ethercat bus compile "$f" -o "$BATS_TEST_TMPDIR/bus.bin"
+	echo "$BATS_TEST_TMPDIR" >/sys/module/firmware_class/parameters/path
+	"$EC_BUILD/examples/bus_values" "$f" el3062.value el4002.output 60 >"$BATS_TEST_TMPDIR/app" 2>&1 3>&- &
+	app=$!
+	wait_for 60 all_slaves_are OP 5 || { cat "$BATS_TEST_TMPDIR/app"; return 1; }
+	configured >"$BATS_TEST_TMPDIR/process"
+	cat "$BATS_TEST_TMPDIR/process"
+	kill "$app"
+	wait "$app" || true
+	wait_for 60 all_slaves_are PREOP 5
+	named input=el3062.value
+	wait_for 60 all_slaves_are OP 5
+	diff "$BATS_TEST_TMPDIR/process" <(configured)
+	wait_for 60 logged el3062.value 3
 }
