@@ -7,7 +7,7 @@
 #include "out.h"
 #include "select.h"
 
-static int write_image(const struct tool *t, const uint8_t *image, size_t size)
+static int save_compiled(const struct tool *t, const uint8_t *image, size_t size)
 {
 	const char *path = t->output_file;
 	struct save s;
@@ -39,7 +39,7 @@ int bus_compile(const struct tool *t, const char *path, const struct ecb_bus *bu
 				   bus->master_count), 2;
 	if (ecb_compile(&load, &image, &size, &e))
 		return fail("%s", e.text), 2;
-	ret = write_image(t, image, size);
+	ret = save_compiled(t, image, size);
 	free(image);
 	return ret;
 }

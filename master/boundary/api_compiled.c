@@ -12,41 +12,39 @@ struct place {
 	u64 bit;
 };
 
-/**
- * struct build - one call of ecrt_master_load_compiled()
- * @m: master
- * @c: file
- * @domains: domains so far; there is memory for those of all records, as in the next arrays
- * @n_domains: how many
- * @slaves: slave configurations
- * @placed: of each a bit for each SyncManager that is registered
- * @n_slaves: how many
- * @units: numbers of sync units
- * @n_units: how many
- * @groups: numbers of groups
- * @n_groups: how many
- * @places: registrations
- * @n_places: how many
- * @to: result
- */
+/** struct build - one call of ecrt_master_load_compiled() */
 struct build {
+	/** @m: master */
 	ec_master_t *m;
+	/** @c: file; each array below has memory for all of its records */
 	struct ec_compiled c;
+	/** @domains: domains so far */
 	ec_domain_t **domains;
+	/** @n_domains: how many */
 	u32 n_domains;
+	/** @slaves: slave configurations so far */
 	ec_slave_config_t **slaves;
+	/** @placed: of each a bit for each SyncManager that is registered */
 	u16 *placed;
+	/** @n_slaves: how many */
 	u32 n_slaves;
+	/** @units: numbers of sync units so far */
 	int *units;
+	/** @n_units: how many */
 	u32 n_units;
+	/** @groups: numbers of hot connect groups so far */
 	int *groups;
+	/** @n_groups: how many */
 	u32 n_groups;
+	/** @places: registrations so far */
 	struct place *places;
+	/** @n_places: how many */
 	u32 n_places;
+	/** @to: result */
 	struct ec_loaded *to;
 };
 
-static int make_domain(struct build *b)
+static int add_domain(struct build *b)
 {
 	ec_domain_t *d = ecrt_master_create_domain(b->m);
 
@@ -56,7 +54,7 @@ static int make_domain(struct build *b)
 	return 0;
 }
 
-static int make_unit(struct build *b, const struct ec_compiled_record *r)
+static int add_unit(struct build *b, const struct ec_compiled_record *r)
 {
 	const ec_unit_config_t unit = {
 		.name = r->name, .policy = (ec_unit_policy_t)r->policy, .limit = r->limit,
@@ -70,7 +68,7 @@ static int make_unit(struct build *b, const struct ec_compiled_record *r)
 	return 0;
 }
 
-static int make_slave(struct build *b, ec_slave_config_t *sc)
+static int add_slave(struct build *b, ec_slave_config_t *sc)
 {
 	if (!sc)
 		return -EINVAL;
@@ -78,7 +76,7 @@ static int make_slave(struct build *b, ec_slave_config_t *sc)
 	return 0;
 }
 
-static int make_group(struct build *b, const struct ec_compiled_record *r)
+static int add_group(struct build *b, const struct ec_compiled_record *r)
 {
 	const ec_group_info_t group = {
 		.name = r->name, .by = (ec_group_by_t)r->kind, .value = r->number, .port = r->to,
@@ -135,7 +133,7 @@ struct present {
 	u16 pdo;
 };
 
-static void look(ec_slave_config_t *sc, struct present *to)
+static void look_at_sms(ec_slave_config_t *sc, struct present *to)
 {
 	const struct ec_config *c = ec_api_config(sc);
 	struct ec_sessions *ss = &ec_sc_master(sc)->sessions;
@@ -164,7 +162,7 @@ static int map_pdos(ec_slave_config_t *sc, const struct ec_compiled_record *r)
 	unsigned int sm, listed = 0;
 	int ret = 0;
 
-	look(sc, before);
+	look_at_sms(sc, before);
 	while (!ret && ec_rbuf_left(&at)) {
 		struct ec_compiled_sm s = ec_compiled_sm(&at);
 
@@ -208,7 +206,7 @@ static int add_rest(struct build *b, const struct ec_compiled_record *r)
 	int ret = 0;
 	u64 bit;
 
-	look(b->slaves[r->slave], has);
+	look_at_sms(b->slaves[r->slave], has);
 	for (sm = 0; !ret && sm < EC_MAX_SM; sm++)
 		if (has[sm].entries && !(b->placed[r->slave] & BIT(sm)))
 			ret = register_sm(b, r->slave, sm, has[sm].pdo, b->domains[r->domain],
@@ -287,18 +285,18 @@ static int call(struct build *b, const struct ec_compiled_record *r)
 {
 	switch (r->op) {
 	case EC_COMPILED_DOMAIN:
-		return make_domain(b);
+		return add_domain(b);
 	case EC_COMPILED_UNIT:
-		return make_unit(b, r);
+		return add_unit(b, r);
 	case EC_COMPILED_DOMAIN_UNIT:
 		return ecrt_domain_set_unit(b->domains[r->domain], b->units[r->unit]);
 	case EC_COMPILED_SLAVE:
-		return make_slave(b, ecrt_master_slave_config(b->m, r->alias, r->position,
+		return add_slave(b, ecrt_master_slave_config(b->m, r->alias, r->position,
 							      r->vendor, r->product));
 	case EC_COMPILED_GROUP:
-		return make_group(b, r);
+		return add_group(b, r);
 	case EC_COMPILED_MEMBER:
-		return make_slave(b, ecrt_master_group_config(b->m, b->groups[r->group],
+		return add_slave(b, ecrt_master_group_config(b->m, b->groups[r->group],
 							      r->position, r->vendor,
 							      r->product));
 	case EC_COMPILED_CYCLE:

@@ -23,7 +23,7 @@ struct ec_loaded *ec_loaded_new(const struct ec_compiled *c)
 	return l;
 }
 
-/* @text of a valid file: there is room for all of them */
+/* @texts is as large as all texts of the file */
 static const char *keep(struct ec_loaded *l, const char *text)
 {
 	char *to = l->texts + l->used;

@@ -8,29 +8,25 @@
 
 struct ec_master;
 
-/**
- * struct ec_loaded_value - a value
- * @name: in @texts of struct ec_loaded
- * @v: where and what it is; @v.unit likewise
- */
+/** struct ec_loaded_value - a value */
 struct ec_loaded_value {
+	/** @name: in ec_loaded.texts */
 	const char *name;
+	/** @v: where and what it is; its unit is there as well */
 	ec_value_t v;
 };
 
-/**
- * struct ec_loaded - what was loaded
- * @what: for the application
- * @texts: names and units
- * @used: bytes of them
- * @n: values so far
- * @values: in the order of their names
- */
+/** struct ec_loaded - what was loaded */
 struct ec_loaded {
+	/** @what: for the application */
 	ec_loaded_t what;
+	/** @texts: names and units */
 	char *texts;
+	/** @used: bytes of them */
 	size_t used;
+	/** @n: values so far */
 	u32 n;
+	/** @values: in the order of their names */
 	struct ec_loaded_value values[];
 };
 

@@ -433,7 +433,7 @@ static int check_references(struct ec_compiled *c, const struct ec_compiled_reco
 	return ret;
 }
 
-static void count(struct ec_compiled *c, const struct ec_compiled_record *r)
+static void count_record(struct ec_compiled *c, const struct ec_compiled_record *r)
 {
 	c->n_domains += r->op == EC_COMPILED_DOMAIN;
 	c->n_units += r->op == EC_COMPILED_UNIT;
@@ -474,7 +474,7 @@ static int check_records(struct ec_compiled *c)
 					       r.name, last);
 			last = r.name;
 		}
-		count(c, &r);
+		count_record(c, &r);
 	}
 	if (ec_rbuf_left(&b))
 		return invalid(c, -EINVAL, (size_t)(b.p - c->data), "%zu bytes behind %u records",

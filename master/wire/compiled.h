@@ -5,9 +5,9 @@
  *
  * Little-endian. Header: 8 bytes EC_COMPILED_MAGIC, u16 version, u16 0, u32 bytes of the whole,
  * u32 CRC-32 of all that follows, u32 number of records. A record: u16 operation, u16 0, u32 bytes
- * of its body, body, zeros up to a multiple of 4. A text has u16 bytes with its terminator. Domains,
- * units, groups, slaves and places are numbered from 0 in the order of their records; a record
- * names earlier ones only.
+ * of its body, body, zeros up to a multiple of 4. A text has u16 bytes with its terminator.
+ * Domains, units, groups, slaves and places are numbered from 0 in the order of their records; a
+ * record names earlier ones only.
  */
 #ifndef EC_WIRE_COMPILED_H
 #define EC_WIRE_COMPILED_H
@@ -26,34 +26,55 @@
 
 /* operations; the numbers of arguments are those of ecrt.h */
 enum ec_compiled_op {
-	EC_COMPILED_DOMAIN = 1,		/* makes a domain */
-	EC_COMPILED_UNIT,		/* makes a sync unit: text name, u32 policy, limit, */
-					/* lease_cycles, repeats, flags */
-	EC_COMPILED_DOMAIN_UNIT,	/* u32 domain, unit */
-	EC_COMPILED_SLAVE,		/* makes a slave: u16 alias, position, u32 vendor, product */
-	EC_COMPILED_GROUP,		/* makes a group: text name, u8 by, port, u16 value, */
-					/* u32 slave or NONE, flags */
-	EC_COMPILED_MEMBER,		/* makes a slave: u32 group, u16 member, 0, u32 vendor, */
-					/* product */
-	EC_COMPILED_FLAG,		/* u32 slave, text key, s32 value */
-	EC_COMPILED_SDO,		/* u32 slave, u16 index, u8 subindex, complete, data */
-	EC_COMPILED_IDN,		/* u32 slave, u16 IDN, u8 drive, state, data */
-	EC_COMPILED_COMMAND,		/* u32 slave, u8 step, kind, u16 index, u8 subindex, */
-					/* complete, 1: is written or 2: is expected, 0, data */
-	EC_COMPILED_TIMEOUT,		/* u32 slave, u8 from, to, u16 0, u32 ms */
-	EC_COMPILED_REPLY,		/* u32 slave, ms: time limit of the mailbox */
-	EC_COMPILED_DC,			/* u32 slave, u16 assign, 0, u32 sync0, s32 shift, u32 sync1 */
-	EC_COMPILED_PDOS,		/* u32 slave, SyncManagers: u8 index, direction, u16 PDOs: */
-					/* u16 index, entries: u16 index, u8 subindex, bits; */
-					/* other SyncManagers get none */
-	EC_COMPILED_PLACE,		/* makes a place: u32 slave, domain, u8 SM, 0, u16 PDO */
-	EC_COMPILED_REST,		/* u32 slave, domain: the SyncManagers without place */
-	EC_COMPILED_CLOCK,		/* u32 slave: the reference clock */
-	EC_COMPILED_CYCLE,		/* u64 ns: interval */
-	EC_COMPILED_NAMES,		/* text for tools, to the end of the record */
-	EC_COMPILED_VALUE,		/* text name, unit, u32 place, bit in it, object, u8 bits, */
-					/* type, output, 0, s64 scale, u64 divisor, s64 offset, */
-					/* u64 divisor; in the order of the names */
+	/* makes a domain */
+	EC_COMPILED_DOMAIN = 1,
+	/* makes a sync unit: text name, u32 policy, limit, lease_cycles, repeats, flags */
+	EC_COMPILED_UNIT,
+	/* u32 domain, unit */
+	EC_COMPILED_DOMAIN_UNIT,
+	/* makes a slave: u16 alias, position, u32 vendor, product */
+	EC_COMPILED_SLAVE,
+	/* makes a group: text name, u8 by, port, u16 value, u32 slave or NONE, flags */
+	EC_COMPILED_GROUP,
+	/* makes a slave: u32 group, u16 member, 0, u32 vendor, product */
+	EC_COMPILED_MEMBER,
+	/* u32 slave, text key, s32 value */
+	EC_COMPILED_FLAG,
+	/* u32 slave, u16 index, u8 subindex, complete, data */
+	EC_COMPILED_SDO,
+	/* u32 slave, u16 IDN, u8 drive, state, data */
+	EC_COMPILED_IDN,
+	/*
+	 * u32 slave, u8 step, kind, u16 index, u8 subindex, complete, 1: is written or 2: is
+	 * expected, 0, data
+	 */
+	EC_COMPILED_COMMAND,
+	/* u32 slave, u8 from, to, u16 0, u32 ms */
+	EC_COMPILED_TIMEOUT,
+	/* u32 slave, ms: time limit of the mailbox */
+	EC_COMPILED_REPLY,
+	/* u32 slave, u16 assign, 0, u32 sync0, s32 shift, u32 sync1 */
+	EC_COMPILED_DC,
+	/*
+	 * u32 slave, SyncManagers: u8 index, direction, u16 PDOs: u16 index, entries: u16 index,
+	 * u8 subindex, bits; other SyncManagers get none
+	 */
+	EC_COMPILED_PDOS,
+	/* makes a place: u32 slave, domain, u8 SM, 0, u16 PDO */
+	EC_COMPILED_PLACE,
+	/* u32 slave, domain: the SyncManagers without place */
+	EC_COMPILED_REST,
+	/* u32 slave: the reference clock */
+	EC_COMPILED_CLOCK,
+	/* u64 ns: interval */
+	EC_COMPILED_CYCLE,
+	/* text for tools, to the end of the record */
+	EC_COMPILED_NAMES,
+	/*
+	 * text name, unit, u32 place, bit in it, object, u8 bits, type, output, 0, s64 scale,
+	 * u64 divisor, s64 offset, u64 divisor; in the order of the names
+	 */
+	EC_COMPILED_VALUE,
 	EC_COMPILED_OPS
 };
 
@@ -87,20 +108,16 @@ struct ec_compiled {
 	char why[EC_COMPILED_REASON];
 };
 
-/** struct ec_compiled_number - a rational number, as the kernel has no floating point */
+/* a rational number, as the kernel has no floating point */
 struct ec_compiled_number {
 	s64 num;
 	u64 den;
 };
 
-/**
- * struct ec_compiled_record - one call
- * @op: enum ec_compiled_op; it has the members of the operation, others are 0
- * @at: byte where the record begins
- */
+/* one call; members that its operation does not have are 0 */
 struct ec_compiled_record {
-	u16 op;
-	size_t at;
+	u16 op;			/* enum ec_compiled_op */
+	size_t at;		/* byte where the record begins */
 	const char *name;	/* of unit, group, value; key of a flag */
 	const char *unit_text;	/* of a value */
 	const u8 *data;		/* of @size bytes: data, SyncManagers, or text */
@@ -141,20 +158,20 @@ struct ec_compiled_record {
 	struct ec_compiled_number offset;
 };
 
-/** struct ec_compiled_sm - a SyncManager of EC_COMPILED_PDOS */
+/* a SyncManager of EC_COMPILED_PDOS */
 struct ec_compiled_sm {
 	u8 index;
 	u8 dir;
 	u16 n_pdos;
 };
 
-/** struct ec_compiled_pdo - a PDO of it */
+/* a PDO of it */
 struct ec_compiled_pdo {
 	u16 index;
 	u16 n_entries;
 };
 
-/** struct ec_compiled_entry - an entry of it */
+/* an entry of it */
 struct ec_compiled_entry {
 	u16 index;
 	u8 subindex;

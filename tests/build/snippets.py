@@ -38,6 +38,7 @@ extern ec_slave_config_t *config;
 extern struct sched_param param;
 """
 MODULE = """#include <linux/delay.h>
+#include <linux/firmware.h>
 #include <linux/kthread.h>
 #include <linux/module.h>
 #include <linux/mutex.h>

@@ -78,9 +78,10 @@ static void say(FILE *to, const struct ec_compiled_record *r)
 			(long long)r->offset.num, (unsigned long long)r->offset.den, r->unit_text);
 		break;
 	default:
-		fprintf(to, "%s %u %s index 0x%04x:%02x %u,%u,%u,%u %d %u %u %u", ec_compiled_op_name(r->op),
-			r->slave, r->name ? r->name : "", r->index, r->subindex, r->complete,
-			r->kind, r->step, r->to, r->value, r->sync0, r->sync1, r->ms);
+		fprintf(to, "%s %u %s index 0x%04x:%02x %u,%u,%u,%u %d %u %u %u",
+			ec_compiled_op_name(r->op), r->slave, r->name ? r->name : "", r->index,
+			r->subindex, r->complete, r->kind, r->step, r->to, r->value, r->sync0,
+			r->sync1, r->ms);
 		say_data(to, r);
 	}
 	fprintf(to, "\n");

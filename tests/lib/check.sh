@@ -276,7 +276,8 @@ bus_load() {
 }
 
 bus_compile() {
-	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" -o "$o/bus-compile" bus_compile.c \
+	$CC -std=gnu11 -Wall -Wextra -Werror $san -D_GNU_SOURCE -I"$top/include" \
+		-o "$o/bus-compile" bus_compile.c \
 		"$top"/lib/bus/*.c "$top"/lib/bus/load/*.c "$top/lib/tools/text.c" \
 		"$top/master/wire/compiled.c" "$o/lib/libethercat.a" -lyaml -lm && "$o/bus-compile"
 }

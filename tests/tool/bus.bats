@@ -142,6 +142,45 @@ differs() {	# differs SED EXPECTED
 		"bus.yaml:52: slave 'el7201' pdos 0x1a00 entries 1 name differs: expected position, found actual" ]
 }
 
+@test "bus compile writes the same bytes each time, and keeps an existing file unless -f is given" {
+	local bin=$BATS_TEST_TMPDIR/bus.bin
+
+	run ethercat bus compile "$f"
+	[ "$status" -eq 2 ]
+	[[ ${lines[0]} == *"bus compile needs --output-file"* ]]
+	[ "$(ethercat bus compile "$f" -o "$bin")" = "$bin: $(stat -c %s "$bin") byte(s)" ]
+	[ "$(head -c 7 "$bin")" = ECATBUS ]
+	run ethercat bus compile "$f" -o "$bin"
+	[ "$status" -eq 1 ]
+	[[ $output == *"bus.bin exists; -f overwrites it" ]]
+	ethercat bus compile -j "$f" -o "$bin.2" | json "d['size'] == $(stat -c %s "$bin")"
+	cmp "$bin" "$bin.2"
+	run ethercat bus compile "$f" -o /dev/full
+	[ "$status" -eq 1 ]
+	# the bus is not asked
+	[ "$(log_of bus compile "$f" -f -o "$bin")" = "" ]
+	sed -i 's/alias: 1001/identification: 3/' "$f"
+	run ethercat bus compile "$f" -f -o "$bin"
+	[ "$status" -eq 2 ]
+	[[ $output == *"bus.yaml:10: slave 'el2008': an application does not see the identification of slaves"* ]]
+	cmp "$bin" "$bin.2"
+}
+
+@test "bus compile takes the selected master of a file with several" {
+	local bin=$BATS_TEST_TMPDIR/bus.bin
+
+	printf '%s\n' 'ethercat: 1' 'masters:' '- {index: 0, slaves: [{vendor: 2, product: 3}]}' \
+		'- {index: 4, slaves: [{name: other, vendor: 2, product: 3}]}' >"$BATS_TEST_TMPDIR/two"
+	run ethercat bus compile "$BATS_TEST_TMPDIR/two" -o "$bin"
+	[ "$status" -eq 2 ]
+	[[ ${lines[0]} == *"two: 2 masters; select one with --master" ]]
+	ethercat bus compile -m4 "$BATS_TEST_TMPDIR/two" -o "$bin"
+	grep -q 'name: other' "$bin"
+	run ethercat bus compile -m2 "$BATS_TEST_TMPDIR/two" -f -o "$bin"
+	[ "$status" -eq 2 ]
+	[[ $output == *"no master 2 in the file"* ]]
+}
+
 @test "bus exits with 2 when its output is lost, equal or not" {
 	sed 's/alias: 1001/alias: 1002/' "$f" >"$BATS_TEST_TMPDIR/b"
 	for b in "$f" "$BATS_TEST_TMPDIR/b"; do

@@ -87,7 +87,7 @@ static int write_values(struct load *l, struct record *r)
 }
 
 /* what the kernel would refuse */
-static int check(struct load *l, const struct record *r)
+static int check_image(struct load *l, const struct record *r)
 {
 	struct ec_compiled c;
 
@@ -114,7 +114,7 @@ static int compile(struct load *l, struct record *r)
 	if (ret == -EFBIG)
 		return BAD(l, 0, "the compiled bus has %zu bytes, limit %u", r->size,
 			   EC_COMPILED_MAX);
-	return ret ? load_no_memory(l) : check(l, r);
+	return ret ? load_no_memory(l) : check_image(l, r);
 }
 
 ECB_API int ecb_compile(const struct ecb_load *load, uint8_t **image, size_t *size,

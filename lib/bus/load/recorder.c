@@ -163,7 +163,7 @@ static struct record *about(ec_slave_config_t *sc, uint16_t op)
 
 /* --- the calls ----------------------------------------------------------------- */
 
-static ec_domain_t *create_domain(ec_master_t *m)
+static ec_domain_t *rec_create_domain(ec_master_t *m)
 {
 	struct record *r = (struct record *)m;
 
@@ -172,7 +172,7 @@ static ec_domain_t *create_domain(ec_master_t *m)
 	return make_handle(r, &r->n_domains);
 }
 
-static int unit(ec_master_t *m, const ec_unit_config_t *c)
+static int rec_unit(ec_master_t *m, const ec_unit_config_t *c)
 {
 	struct record *r = (struct record *)m;
 	int ret;
@@ -188,7 +188,7 @@ static int unit(ec_master_t *m, const ec_unit_config_t *c)
 	return ret ? ret : (int)r->n_units++;
 }
 
-static int set_unit(ec_domain_t *d, int number)
+static int rec_set_unit(ec_domain_t *d, int number)
 {
 	struct record *r = record_of(d);
 
@@ -198,7 +198,7 @@ static int set_unit(ec_domain_t *d, int number)
 	return record_end(r);
 }
 
-static ec_slave_config_t *slave(ec_master_t *m, uint16_t alias, uint16_t position,
+static ec_slave_config_t *rec_slave(ec_master_t *m, uint16_t alias, uint16_t position,
 				uint32_t vendor, uint32_t product)
 {
 	struct record *r = (struct record *)m;
@@ -212,7 +212,7 @@ static ec_slave_config_t *slave(ec_master_t *m, uint16_t alias, uint16_t positio
 	return make_handle(r, &r->n_slaves);
 }
 
-static int group(ec_master_t *m, const ec_group_info_t *g)
+static int rec_group(ec_master_t *m, const ec_group_info_t *g)
 {
 	struct record *r = (struct record *)m;
 	int ret;
@@ -228,7 +228,7 @@ static int group(ec_master_t *m, const ec_group_info_t *g)
 	return ret ? ret : (int)r->n_groups++;
 }
 
-static ec_slave_config_t *member(ec_master_t *m, unsigned int number, uint16_t position,
+static ec_slave_config_t *rec_member(ec_master_t *m, unsigned int number, uint16_t position,
 				 uint32_t vendor, uint32_t product)
 {
 	struct record *r = (struct record *)m;
@@ -243,7 +243,7 @@ static ec_slave_config_t *member(ec_master_t *m, unsigned int number, uint16_t p
 	return make_handle(r, &r->n_slaves);
 }
 
-static int flag(ec_slave_config_t *sc, const char *key, int32_t value)
+static int rec_flag(ec_slave_config_t *sc, const char *key, int32_t value)
 {
 	struct record *r = about(sc, EC_COMPILED_FLAG);
 
@@ -252,7 +252,7 @@ static int flag(ec_slave_config_t *sc, const char *key, int32_t value)
 	return record_end(r);
 }
 
-static int any_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, bool complete,
+static int rec_any_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, bool complete,
 		   const uint8_t *data, size_t size)
 {
 	struct record *r = about(sc, EC_COMPILED_SDO);
@@ -264,26 +264,26 @@ static int any_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, bool
 	return record_end(r);
 }
 
-static int sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, const uint8_t *data,
+static int rec_sdo(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, const uint8_t *data,
 	       size_t size)
 {
-	return any_sdo(sc, index, subindex, false, data, size);
+	return rec_any_sdo(sc, index, subindex, false, data, size);
 }
 
-static int complete_sdo(ec_slave_config_t *sc, uint16_t index, const uint8_t *data, size_t size)
+static int rec_complete_sdo(ec_slave_config_t *sc, uint16_t index, const uint8_t *data, size_t size)
 {
-	return any_sdo(sc, index, 0, true, data, size);
+	return rec_any_sdo(sc, index, 0, true, data, size);
 }
 
-static int sdo32(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, uint32_t value)
+static int rec_sdo32(ec_slave_config_t *sc, uint16_t index, uint8_t subindex, uint32_t value)
 {
 	uint8_t le[4];
 
 	put_unaligned_le32(value, le);
-	return any_sdo(sc, index, subindex, false, le, sizeof(le));
+	return rec_any_sdo(sc, index, subindex, false, le, sizeof(le));
 }
 
-static int idn(ec_slave_config_t *sc, uint8_t drive, uint16_t number, ec_al_state_t state,
+static int rec_idn(ec_slave_config_t *sc, uint8_t drive, uint16_t number, ec_al_state_t state,
 	       const uint8_t *data, size_t size)
 {
 	struct record *r = about(sc, EC_COMPILED_IDN);
@@ -295,7 +295,7 @@ static int idn(ec_slave_config_t *sc, uint8_t drive, uint16_t number, ec_al_stat
 	return record_end(r);
 }
 
-static int command(ec_slave_config_t *sc, ec_step_t step, const ec_command_t *c)
+static int rec_command(ec_slave_config_t *sc, ec_step_t step, const ec_command_t *c)
 {
 	struct record *r = about(sc, EC_COMPILED_COMMAND);
 
@@ -310,7 +310,7 @@ static int command(ec_slave_config_t *sc, ec_step_t step, const ec_command_t *c)
 	return record_end(r);
 }
 
-static int state_timeout(ec_slave_config_t *sc, ec_al_state_t from, ec_al_state_t to,
+static int rec_state_timeout(ec_slave_config_t *sc, ec_al_state_t from, ec_al_state_t to,
 			 unsigned int ms)
 {
 	struct record *r = about(sc, EC_COMPILED_TIMEOUT);
@@ -322,7 +322,7 @@ static int state_timeout(ec_slave_config_t *sc, ec_al_state_t from, ec_al_state_
 	return record_end(r);
 }
 
-static int sdo_timeout(ec_slave_config_t *sc, unsigned int ms)
+static int rec_sdo_timeout(ec_slave_config_t *sc, unsigned int ms)
 {
 	struct record *r = about(sc, EC_COMPILED_REPLY);
 
@@ -331,7 +331,7 @@ static int sdo_timeout(ec_slave_config_t *sc, unsigned int ms)
 }
 
 /* a bus file has no shift of SYNC1 */
-static int dc(ec_slave_config_t *sc, uint16_t assign, uint32_t sync0, int32_t shift0,
+static int rec_dc(ec_slave_config_t *sc, uint16_t assign, uint32_t sync0, int32_t shift0,
 	      uint32_t sync1, int32_t shift1)
 {
 	struct record *r = about(sc, EC_COMPILED_DC);
@@ -345,7 +345,7 @@ static int dc(ec_slave_config_t *sc, uint16_t assign, uint32_t sync0, int32_t sh
 	return record_end(r);
 }
 
-static void pdo(struct record *r, const ec_pdo_info_t *p)
+static void rec_pdo(struct record *r, const ec_pdo_info_t *p)
 {
 	record_u16(r, p->index);
 	record_u16(r, (uint16_t)p->n_entries);
@@ -356,7 +356,7 @@ static void pdo(struct record *r, const ec_pdo_info_t *p)
 	}
 }
 
-static int pdos(ec_slave_config_t *sc, unsigned int n, const ec_sync_info_t syncs[])
+static int rec_pdos(ec_slave_config_t *sc, unsigned int n, const ec_sync_info_t syncs[])
 {
 	struct record *r = about(sc, EC_COMPILED_PDOS);
 
@@ -367,13 +367,13 @@ static int pdos(ec_slave_config_t *sc, unsigned int n, const ec_sync_info_t sync
 		record_u8(r, (uint8_t)s->dir);
 		record_u16(r, (uint16_t)s->n_pdos);
 		for (unsigned int k = 0; k < s->n_pdos; k++)
-			pdo(r, &s->pdos[k]);
+			rec_pdo(r, &s->pdos[k]);
 	}
 	return record_end(r);
 }
 
 /* @entry is the first one; offsets of values count from it on */
-static int reg(ec_slave_config_t *sc, uint8_t sm, unsigned int pos, unsigned int entry,
+static int rec_reg(ec_slave_config_t *sc, uint8_t sm, unsigned int pos, unsigned int entry,
 	       ec_domain_t *d, unsigned int *bit)
 {
 	struct record *r = about(sc, EC_COMPILED_PLACE);
@@ -390,7 +390,7 @@ static int reg(ec_slave_config_t *sc, uint8_t sm, unsigned int pos, unsigned int
 	return ret;
 }
 
-static int rest(ec_slave_config_t *sc, ec_domain_t *d)
+static int rec_rest(ec_slave_config_t *sc, ec_domain_t *d)
 {
 	struct record *r = about(sc, EC_COMPILED_REST);
 
@@ -398,21 +398,21 @@ static int rest(ec_slave_config_t *sc, ec_domain_t *d)
 	return record_end(r);
 }
 
-static int reference_clock(ec_master_t *m, ec_slave_config_t *sc)
+static int rec_reference_clock(ec_master_t *m, ec_slave_config_t *sc)
 {
 	(void)m;
 	return record_end(about(sc, EC_COMPILED_CLOCK));
 }
 
 /* compile.c writes the cycle in ns */
-static int interval(ec_master_t *m, size_t us)
+static int rec_interval(ec_master_t *m, size_t us)
 {
 	(void)m;
 	(void)us;
 	return 0;
 }
 
-static int names(ec_master_t *m, const char *text, size_t size)
+static int rec_names(ec_master_t *m, const char *text, size_t size)
 {
 	struct record *r = (struct record *)m;
 
@@ -422,25 +422,25 @@ static int names(ec_master_t *m, const char *text, size_t size)
 }
 
 const struct load_calls load_record = {
-	.create_domain = create_domain,
-	.unit = unit,
-	.set_unit = set_unit,
-	.slave = slave,
-	.group = group,
-	.member = member,
-	.flag = flag,
-	.sdo = sdo,
-	.complete_sdo = complete_sdo,
-	.sdo32 = sdo32,
-	.idn = idn,
-	.command = command,
-	.state_timeout = state_timeout,
-	.sdo_timeout = sdo_timeout,
-	.dc = dc,
-	.pdos = pdos,
-	.reg = reg,
-	.rest = rest,
-	.reference_clock = reference_clock,
-	.interval = interval,
-	.names = names,
+	.create_domain = rec_create_domain,
+	.unit = rec_unit,
+	.set_unit = rec_set_unit,
+	.slave = rec_slave,
+	.group = rec_group,
+	.member = rec_member,
+	.flag = rec_flag,
+	.sdo = rec_sdo,
+	.complete_sdo = rec_complete_sdo,
+	.sdo32 = rec_sdo32,
+	.idn = rec_idn,
+	.command = rec_command,
+	.state_timeout = rec_state_timeout,
+	.sdo_timeout = rec_sdo_timeout,
+	.dc = rec_dc,
+	.pdos = rec_pdos,
+	.reg = rec_reg,
+	.rest = rec_rest,
+	.reference_clock = rec_reference_clock,
+	.interval = rec_interval,
+	.names = rec_names,
 };
