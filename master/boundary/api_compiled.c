@@ -54,7 +54,7 @@ static int add_domain(struct build *b)
 	return 0;
 }
 
-static int add_unit(struct build *b, const struct ec_compiled_record *r)
+static int add_sync_unit(struct build *b, const struct ec_compiled_record *r)
 {
 	const ec_unit_config_t unit = {
 		.name = r->name, .policy = (ec_unit_policy_t)r->policy, .limit = r->limit,
@@ -287,7 +287,7 @@ static int call(struct build *b, const struct ec_compiled_record *r)
 	case EC_COMPILED_DOMAIN:
 		return add_domain(b);
 	case EC_COMPILED_UNIT:
-		return add_unit(b, r);
+		return add_sync_unit(b, r);
 	case EC_COMPILED_DOMAIN_UNIT:
 		return ecrt_domain_set_unit(b->domains[r->domain], b->units[r->unit]);
 	case EC_COMPILED_SLAVE:

@@ -12,7 +12,7 @@ struct ec_master;
 struct ec_loaded_value {
 	/** @name: in ec_loaded.texts */
 	const char *name;
-	/** @v: where and what it is; its unit is there as well */
+	/** @v: where and what it is; so is its unit */
 	ec_value_t v;
 };
 

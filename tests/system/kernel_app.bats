@@ -129,21 +129,41 @@ copied() {
 configured() {
 	ethercat config -v
 	ethercat domains -v
-	ethercat units | awk '{ print $1, $2 }'
+	ethercat units
 }
 
-named() { insmod "$EC_BUILD/mini/ec_named.ko" bus="${bus:-bus.bin}" "$@"; }
+# named BUS PARAMETER...: BUS is a file in the folder of this test
+named() {
+	printf %s "$BATS_TEST_TMPDIR" >/sys/module/firmware_class/parameters/path
+	insmod "$EC_BUILD/mini/ec_named.ko" bus="$1" "${@:2}"
+}
 
 # the log has so many different values of the input
 logged() { [ "$(dmesg | grep -o "ec_named: $1 = .*" | sort -u | wc -l)" -ge "$2" ]; }
 
-# the output has its latest value, by the names that the file gave to tools
-follows() {
-	ethercat data --names | awk '$1 == "ai.pressure" { a = $NF } $1 == "ao.pump" { b = $NF }
-		END { exit !(a != "" && b != "") }'
+# what ec_named has written, by the names that the file gave to tools; a value later than the input
+pumped() { ethercat data --names | grep -E '^ao.pump .* -?[1-9][0-9]*$'; }
+
+# the bus of "save", with units, clocks and names of its own
+describe() {
+	ethercat bus save --whole "$1"
+	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    sync_units: [UNIT]\n    slaves:/
+		s/UNIT/{name: analog, policy: zero, limit: 3}/
+		s/name: el3062$/name: ai\n        sync_unit: analog/
+		s/name: el4002$/name: ao\n        sync_unit: analog/
+		s/parent: el3062/parent: ai/
+		s/name: ai_standard_channel_1.value/name: pressure, PA/
+		s/PA/unit: Pa, scale: 0.25, offset: 1.5/
+		s/name: ao_outputs_channel_1.analog_output/name: pump/
+		s/^\( *\)type: "drive"/&\n\1timeouts: {safeop_op: 9 s}\n\1CLOCK\n\1startup: [SDO]/
+		s/CLOCK/clock: {assign_activate: 0x0300, sync0: 2 ms}/
+		s/SDO/{at: safeop, sdo: "0x6060:00", type: int8, value: 8}/' "$1"
+	# the lamps keep their own PDOs
+	sed -i '/name: el2008$/,/name: ai$/{/pdos:/,/channel_8.output/d}' "$1"
+	cat "$1"
 }
 
-@test "ec_named gets its bus from a compiled file, as a process from the file, and finds values by name" {
+@test "ec_named: a compiled bus file configures as the file does, and has the values by name" {
 	local f=$BATS_TEST_TMPDIR/bus.yaml app
 
 	rmmod ec_mini
@@ -152,67 +172,60 @@ follows() {
 		"slave motor drive in=8 out=8" "slave ao EL4002" \
 		"ramp ai.1 amplitude=100 period=500ms" >"$BATS_TEST_TMPDIR/segment"
 	start "$BATS_TEST_TMPDIR/segment" 5
-	ethercat bus save --whole "$f"
-	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    sync_units: [{name: analog, policy: zero, limit: 3}]\n    slaves:/
-		s/name: el3062$/name: ai\n        sync_unit: analog/
-		s/name: el4002$/name: ao\n        sync_unit: analog/
-		s/parent: el3062/parent: ai/
-		s/name: ai_standard_channel_1.value/name: pressure, unit: Pa, scale: 0.25, offset: 1.5/
-		s/name: ao_outputs_channel_1.analog_output/name: pump/' "$f"
-	# the lamps keep their own PDOs
-	sed -i '/name: el2008$/,/name: ai$/{/pdos:/,/channel_8.output/d}' "$f"
-	sed -i 's/^\( *\)type: "drive"/&\n\1timeouts: {safeop_op: 9 s}\n\1clock: {assign_activate: 0x0300, sync0: 2 ms}\n\1startup: [{at: safeop, sdo: "0x6060:00", type: int8, value: 8}]/' "$f"
-	cat "$f"
-	ethercat bus check "$f" || true
+	describe "$f"
 	ethercat bus compile "$f" -o "$BATS_TEST_TMPDIR/bus.bin"
-	echo "$BATS_TEST_TMPDIR" >/sys/module/firmware_class/parameters/path
-	"$EC_BUILD/examples/bus_values" "$f" ai.pressure ao.pump 60 >"$BATS_TEST_TMPDIR/app" 2>&1 3>&- &
+	"$EC_BUILD/examples/bus_values" "$f" ai.pressure ao.pump 60 >"$f.out" 2>&1 3>&- &
 	app=$!
-	wait_for 60 all_slaves_are OP 5 || { cat "$BATS_TEST_TMPDIR/app"; return 1; }
+	wait_for 60 all_slaves_are OP 5 || { cat "$f.out"; return 1; }
 	configured >"$BATS_TEST_TMPDIR/process"
 	cat "$BATS_TEST_TMPDIR/process"
 	kill "$app"
 	wait "$app" || true
 	wait_for 60 all_slaves_are PREOP 5
-	named input=ai.pressure output=ao.pump
+	named bus.bin input=ai.pressure output=ao.pump || { dmesg | tail; return 1; }
 	wait_for 60 all_slaves_are OP 5
 	diff "$BATS_TEST_TMPDIR/process" <(configured)
 	wait_for 60 logged ai.pressure 5
-	dmesg | grep -E 'ec_named: (5 slaves, 2|ai.pressure = -?[0-9]+\.(0|25|5|75)0* Pa)'
-	follows
-	ethercat cycle | grep -q '2000.000 us'
-	# the file is not read any more
-	rm "$BATS_TEST_TMPDIR/bus.bin"
+	dmesg | grep 'ec_named: 5 slaves, '
+	dmesg | grep -E 'ec_named: ai.pressure = -?[0-9]+\.(0|25|5|75)0* Pa'
+	wait_for 60 pumped
+	ethercat cycle
+	[[ "$(ethercat cycle)" == *"Interval: 2000.000 us"* ]]
 	rmmod ec_named
 	wait_for 60 all_slaves_are PREOP 5
+	stop
+	start "$BATS_FILE_TMPDIR/segment" 2
 }
 
-@test "a compiled file that is not valid configures nothing, and the log has the byte and the reason" {
-	local f=$BATS_TEST_TMPDIR/bus.yaml bin=$BATS_TEST_TMPDIR/bus.bin
-
-	rmmod ec_mini
-	ethercat bus save --whole "$f"
-	ethercat bus compile "$f" -o "$bin"
-	echo "$BATS_TEST_TMPDIR" >/sys/module/firmware_class/parameters/path
-	refuses() {	# refuses TEXT PARAMETER...
-		run named "${@:2}"
-		[ "$status" != 0 ]
-		dmesg | grep -F "$1"
-		json '.masters[0].session == "none"' master
-	}
-	head -c 700 "$bin" >"$BATS_TEST_TMPDIR/cut"
-	bus=cut refuses "cannot load the compiled bus: byte 700: 700 bytes, expected $(stat -c %s "$bin") by the header (-EBADMSG)" input=x
-	{ head -c 100 "$bin"; printf '\377'; tail -c +102 "$bin"; } >"$BATS_TEST_TMPDIR/flip"
-	bus=flip refuses "cannot load the compiled bus: byte 16: CRC 0x" input=x
-	{ printf 'ECATBUS\0\2'; tail -c +10 "$bin"; } >"$BATS_TEST_TMPDIR/two"
-	bus=two refuses "byte 8: version 2, expected 1; compile the bus file again (-EPROTONOSUPPORT)" input=x
-	bus=bus.yaml refuses "byte 0: no compiled bus file; 'ethercat bus compile' writes one" input=x
-	refuses "ec_named: no value drive.nothing in the bus file" input=drive.nothing
-	# another machine: the slave is named, and stays in PREOP
-	sed 's/0x00000402/0x00000403/' "$f" >"$f.2"
-	ethercat bus compile "$f.2" -f -o "$bin"
-	named input=drive.statusword
-	wait_for 60 explained
+# refused BUS TEXT: the log has the text, and nothing is configured
+refused() {
+	run named "$1" input=x
+	[ "$status" != 0 ]
+	dmesg | grep -F "$2" || { dmesg | tail; return 1; }
+	json '.masters[0].session == "none"' master
 }
 
 explained() { ethercat config -v | tee /dev/stderr | grep -q '0x00000402'; }
+
+@test "a compiled bus file that is not valid configures nothing, and the log has byte and reason" {
+	local f=$BATS_TEST_TMPDIR/bus.yaml d=$BATS_TEST_TMPDIR bytes
+
+	rmmod ec_mini
+	ethercat bus save --whole "$f"
+	ethercat bus compile "$f" -o "$d/bus.bin"
+	bytes=$(stat -c %s "$d/bus.bin")
+	head -c 700 "$d/bus.bin" >"$d/cut"
+	refused cut "the compiled bus: byte 700: 700 bytes, expected $bytes by the header (-EBADMSG)"
+	{ head -c 100 "$d/bus.bin"; printf '\377'; tail -c +102 "$d/bus.bin"; } >"$d/flip"
+	refused flip "cannot load the compiled bus: byte 16: CRC 0x"
+	{ printf 'ECATBUS\0\2'; tail -c +10 "$d/bus.bin"; } >"$d/two"
+	refused two "version 2, expected 1; compile the bus file again (-EPROTONOSUPPORT)"
+	refused bus.yaml "byte 0: no compiled bus file; 'ethercat bus compile' writes one"
+	refused bus.bin "ec_named: no value x in the bus file"
+	# of another machine: the slave is named, and stays in PREOP
+	sed 's/0x00000402/0x00000403/' "$f" >"$f.2"
+	ethercat bus compile "$f.2" -f -o "$d/bus.bin"
+	named bus.bin input=drive.statusword
+	wait_for 60 explained
+	all_slaves_are PREOP 1
+}

@@ -32,9 +32,9 @@ struct plan {
 	size_t config;
 };
 
-/**
- * struct load_calls - what configures a master: functions of ecrt.h, or what records their arguments
- * @rest: registers the PDOs of all SyncManagers that are not registered; NULL: they are known
+/*
+ * What configures a master: functions of ecrt.h, or what writes their arguments down. @rest
+ * registers the PDOs of all SyncManagers that are not registered; NULL: the machine was asked.
  */
 struct load_calls {
 	ec_domain_t *(*create_domain)(ec_master_t *m);
