@@ -444,8 +444,9 @@ const struct cmd cmd_bus = {
 		"'schema' prints the JSON Schema of bus files for editors.\n"
 		"\n"
 		"Exit code of 'check' and 'diff': 0 equal, 1 differences, 2 not all compared.\n",
-	.json = "save: file, slaves, or text; compile: file, size; schema: text; check, diff: differences[]: kind (missing,\n"
-		"extra, exchanged, moved, value, pending), master, line, slave, key, expected, found, remedy;\n"
+	.json = "save: file, slaves, or text; compile: file, size; schema: text;\n"
+		"check, diff: differences[]: kind (missing, extra, exchanged, moved, value, pending),\n"
+		"master, line, slave, key, expected, found, remedy;\n"
 		"show: masters[]: index, cycle_ns, slaves[]: name, type, vendor, product, alias,\n"
 		"parent, port, modules[]: slot, ident, name; values[]: name, index, subindex, bits, unit",
 	.flags = CMD_COMPARES,

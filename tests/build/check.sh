@@ -380,14 +380,21 @@ examples_cmake() {
 t "the examples with cmake, outside of the tree" examples_cmake
 
 # what Documentation/kernel-api.rst says, with what was installed
-kernel_app_builds() {
-	cp -r examples/mini "$tmp/mini" &&
+mini_builds() {	# mini_builds [VARIABLE=VALUE...]
 	make -s -C "$KDIR" M="$tmp/mini" CONFIG_DEBUG_INFO_BTF_MODULES= \
-		CONFIG_DEBUG_INFO= W=1 ECRT="$root$prefix/include" \
+		CONFIG_DEBUG_INFO= W=1 ECRT="$root$prefix/include" "$@" \
 		KBUILD_EXTRA_SYMBOLS="$root/lib/modules/$release/updates/ethercat/Module.symvers" \
 		modules >"$tmp/mini.log" 2>&1 || { cat "$tmp/mini.log"; return 1; }
-	! grep -E 'warning:|WARNING:' "$tmp/mini.log" &&
-		[ "$(modinfo -F depends "$tmp/mini/ec_mini.ko")" = ec_master ]
+	! grep -E 'warning:|WARNING:' "$tmp/mini.log"
+}
+
+# with a bus from a file, then in the module
+kernel_app_builds() {
+	cp -r examples/mini "$tmp/mini" && mini_builds &&
+		[ "$(modinfo -F depends "$tmp/mini/ec_mini.ko")" = ec_master ] &&
+		nm "$tmp/mini/ec_named.ko" | grep -q request_firmware &&
+		echo "0x45, 0x43" >"$tmp/bus.inc" && mini_builds BUS="$tmp/bus.inc" &&
+		! nm "$tmp/mini/ec_named.ko" | grep -q request_firmware
 }
 
 t "a kernel application against what was installed" kernel_app_builds

@@ -132,9 +132,9 @@ configured() {
 	ethercat units
 }
 
-# named BUS PARAMETER...: BUS is a file in the folder of this test
+# named BUS PARAMETER...: BUS is a file in the folder of this test, which is in a chroot
 named() {
-	printf %s "$BATS_TEST_TMPDIR" >/sys/module/firmware_class/parameters/path
+	printf %s "/n$BATS_TEST_TMPDIR" >/sys/module/firmware_class/parameters/path
 	insmod "$EC_BUILD/mini/ec_named.ko" bus="$1" "${@:2}"
 }
 
