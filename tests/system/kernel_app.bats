@@ -128,7 +128,7 @@ copied() {
 # what the master has of the configuration, without what changes while it runs
 configured() {
 	ethercat config -v
-	ethercat domains -v
+	ethercat domains -v | grep -Ev '^ *([0-9a-f]{2} ?)+$'
 	ethercat units
 }
 
@@ -214,12 +214,11 @@ explained() { ethercat config -v | tee /dev/stderr | grep -q '0x00000402'; }
 	ethercat bus save --whole "$f"
 	ethercat bus compile "$f" -o "$d/bus.bin"
 	bytes=$(stat -c %s "$d/bus.bin")
+	# the log has three of them in 10 s; KUnit has the others
 	head -c 700 "$d/bus.bin" >"$d/cut"
 	refused cut "the compiled bus: byte 700: 700 bytes, expected $bytes by the header (-EBADMSG)"
 	{ head -c 100 "$d/bus.bin"; printf '\377'; tail -c +102 "$d/bus.bin"; } >"$d/flip"
 	refused flip "cannot load the compiled bus: byte 16: CRC 0x"
-	{ printf 'ECATBUS\0\2'; tail -c +10 "$d/bus.bin"; } >"$d/two"
-	refused two "version 2, expected 1; compile the bus file again (-EPROTONOSUPPORT)"
 	refused bus.yaml "byte 0: no compiled bus file; 'ethercat bus compile' writes one"
 	refused bus.bin "ec_named: no value x in the bus file"
 	# of another machine: the slave is named, and stays in PREOP
