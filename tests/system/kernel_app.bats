@@ -144,13 +144,14 @@ logged() { [ "$(dmesg | grep -o "ec_named: $1 = .*" | sort -u | wc -l)" -ge "$2"
 # what ec_named has written, by the names that the file gave to tools; a value later than the input
 pumped() { ethercat data --names | grep -E '^ao.pump .* -?[1-9][0-9]*$'; }
 
-# the bus of "save", with units, clocks and names of its own
+# the bus of "save", with a unit, a group, clocks and names of its own
 describe() {
 	ethercat bus save --whole "$1"
-	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    sync_units: [UNIT]\n    slaves:/
+	sed -i 's/^  - slaves:/  - cycle: 2 ms\n    reference_clock: drive\n    LISTS\n    slaves:/
+		s/LISTS/sync_units: [UNIT]\n    groups: [{name: tail, parent: drive, port: 1}]/
 		s/UNIT/{name: analog, policy: zero, limit: 3}/
 		s/name: el3062$/name: ai\n        sync_unit: analog/
-		s/name: el4002$/name: ao\n        sync_unit: analog/
+		s/name: el4002$/name: ao\n        sync_unit: analog\n        group: tail/
 		s/parent: el3062/parent: ai/
 		s/name: ai_standard_channel_1.value/name: pressure, PA/
 		s/PA/unit: Pa, scale: 0.25, offset: 1.5/
