@@ -286,6 +286,11 @@ static const struct {
 	[EC_COMPILED_VALUE] = { dec_value, "value", OF_PLACE },
 };
 
+static bool is_known(u16 op)
+{
+	return op < EC_COMPILED_OPS && ops[op].decode;
+}
+
 /**
  * ec_compiled_op_name() - what a record is
  * @op: enum ec_compiled_op
@@ -295,7 +300,7 @@ static const struct {
  */
 const char *ec_compiled_op_name(u16 op)
 {
-	return op < EC_COMPILED_OPS && ops[op].name ? ops[op].name : "unknown operation";
+	return is_known(op) ? ops[op].name : "unknown operation";
 }
 
 /**
@@ -321,7 +326,7 @@ bool ec_compiled_next(const struct ec_compiled *c, struct ec_rbuf *at,
 	size = ec_rbuf_le32(at);
 	p = ec_rbuf_take(at, size);
 	zeros(at, -size & 3);
-	if (!p || rec->op >= EC_COMPILED_OPS || !ops[rec->op].decode)
+	if (!p || !is_known(rec->op))
 		return false;
 	body = ec_rbuf(p, size);
 	ops[rec->op].decode(&body, rec);
@@ -457,9 +462,8 @@ static int check_records(struct ec_compiled *c)
 	for (i = 0; i < c->n_records; i++) {
 		if (!ec_compiled_next(c, &b, &r))
 			return invalid(c, -EINVAL, r.at, "record %u of %u (%s): %s", i,
-				       c->n_records, ec_compiled_op_name(r.op),
-				       ops[min_t(u16, r.op, EC_COMPILED_OPS - 1)].decode &&
-				       r.op < EC_COMPILED_OPS ? "its length or a text is wrong" :
+				       c->n_records, ec_compiled_op_name(r.op), is_known(r.op) ?
+				       "its length or a text is wrong" :
 				       "this version does not know it");
 		if (!valid(&r))
 			return invalid(c, -EINVAL, r.at, "record %u of %u (%s): a number is wrong",
