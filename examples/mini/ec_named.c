@@ -127,8 +127,8 @@ static void show(s64 raw)
 	s32 thousandths;
 
 	n = div_s64_rem(n, 1000, &thousandths);
-	pr_info("ec_named: %s = %s%lld.%03d %s\n", input, n || thousandths >= 0 ? "" : "-", n,
-		abs(thousandths), from.unit);
+	pr_info_ratelimited("ec_named: %s = %s%lld.%03d %s\n", input,
+			    n || thousandths >= 0 ? "" : "-", n, abs(thousandths), from.unit);
 }
 
 static void cycle(void)
@@ -142,7 +142,7 @@ static void cycle(void)
 	if (output && to.domain != from.domain)
 		ecrt_domain_process(to.domain);
 	raw = read_value(&from);
-	if ((!shown || raw != last) && printk_ratelimit())
+	if (!shown || raw != last)
 		show(raw);
 	shown = true;
 	last = raw;
