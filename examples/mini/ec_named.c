@@ -66,6 +66,9 @@ static int load(void)
 	if (!ret) {
 		ret = ecrt_master_load_compiled(master, fw->data, fw->size);
 		release_firmware(fw);
+	} else {
+		pr_err("ec_named: cannot read %s in the folder of firmware (%pe)\n", bus,
+		       ERR_PTR(ret));
 	}
 	platform_device_unregister(dev);
 	return ret;
