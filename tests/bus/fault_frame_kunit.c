@@ -216,6 +216,8 @@ static void frame_on_two_links_done_with_both_copies(struct kunit *test)
 	ec_slot_arm(bus_slots(b), e.slot, e.slot->frame, BIT(0) | BIT(1), ktime_get_ns());
 	memcpy(e.src, e.slot->frame + 6, 6);
 	e.src[1] = 1;
+	/* processed by a slave each */
+	put_unaligned_le16(1, e.reply + e.len - EC_DGRAM_WKC);
 	e.reply[EC_FRAME_HDR + EC_DGRAM_HDR] = 0x11;
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_SENT);

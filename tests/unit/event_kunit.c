@@ -193,7 +193,7 @@ static void event_each_kind_has_text_and_unique_name(struct kunit *test)
 			if (ec_event_kind(other))
 				KUNIT_EXPECT_STRNEQ(test, ec_event_kind(other)->name, k->name);
 	}
-	KUNIT_EXPECT_EQ(test, n, 53u);
+	KUNIT_EXPECT_EQ(test, n, 55u);
 }
 
 /* A record of any content, a buffer of any size. */
@@ -234,6 +234,11 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 {
 	expect(test, E(SLAVE_LOST, 5, 4, 1, 0, 2, 0x044c2c52, 20),
 	       "behind port 1 of slave 4: slave 5 (0x00000002/0x044c2c52) disconnected, last seen 20 ms ago");
+	expect(test, E(RING_OPEN, 0xffff, 3, 1, 4),
+	       "ring open between port 1 of slave 3 and slave 4: slaves run on, a second break is not covered; check the cable there");
+	expect(test, E(RING_OPEN, 0xffff, EC_EVENT_NONE, EC_EVENT_NONE, EC_EVENT_NONE),
+	       "ring open between the main device and the backup device: slaves run on, a second break is not covered; check the cable there");
+	expect(test, E(RING_CLOSED, 0xffff, 8), "ring of 8 slave(s) closed");
 	expect(test, E(SLAVE_LOST, 0, EC_EVENT_NONE, 0, 1001, 2, 3, 4),
 	       "behind the main device: slave 0 (alias 1001, 0x00000002/0x00000003) disconnected, last seen 4 ms ago");
 	expect(test, E(SLAVE_FOUND, 5, 4, 1, 0, 2, 3),

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-2.0-only
+#include "wire_kunit.h"
+#include "../../master/wire/frame.h"
+#include "../../master/wire/merge.h"
+
+/* a frame as sent, and the copies that both ends of a ring have received */
+static u8 sent[200], a[200], b[200];
+static size_t len;
+static u8 *at[3][4];	/* data of each datagram: as sent, in both copies */
+static u16 bytes[4];
+
+/* FPRD, BRD, LRW, LRD */
+static void merge_build(void)
+{
+	static const u8 cmds[4] = { EC_CMD_FPRD, EC_CMD_BRD, EC_CMD_LRW, EC_CMD_LRD };
+	struct ec_frame_buf f;
+	unsigned int i;
+
+	ec_frame_begin(&f, sent, sizeof(sent));
+	for (i = 0; i < 4; i++) {
+		bytes[i] = i < 2 ? 2 : 11;
+		at[0][i] = ec_frame_add(&f, cmds[i], 9, 0, 0x0130, bytes[i]);
+		memset(at[0][i], i < 2 ? 0 : 0xa5, bytes[i]);
+	}
+	len = ec_frame_end(&f);
+	memcpy(a, sent, len);
+	memcpy(b, sent, len);
+	for (i = 0; i < 4; i++) {
+		at[1][i] = a + (at[0][i] - sent);
+		at[2][i] = b + (at[0][i] - sent);
+	}
+}
+
+static void processed(unsigned int copy, unsigned int i, u16 wkc)
+{
+	put_unaligned_le16(wkc, at[copy][i] + bytes[i]);
+}
+
+static u16 merged(unsigned int i)
+{
+	return get_unaligned_le16(at[1][i] + bytes[i]);
+}
+
+static void merge_takes_the_copy_that_was_processed(struct kunit *test)
+{
+	merge_build();
+	memcpy(at[2][0], "\x08\x00", 2);
+	processed(2, 0, 1);
+	memcpy(at[1][3], "0123456789a", 11);
+	processed(1, 3, 1);
+	ec_merge_frame(a, b, sent, len);
+	KUNIT_EXPECT_MEMEQ(test, at[1][0], "\x08\x00", 2);
+	KUNIT_EXPECT_EQ(test, merged(0), 1);
+	KUNIT_EXPECT_MEMEQ(test, at[1][3], "0123456789a", 11);
+	KUNIT_EXPECT_EQ(test, merged(3), 1);
+	KUNIT_EXPECT_EQ(test, merged(2), 0);
+	KUNIT_EXPECT_MEMEQ(test, at[1][2], at[0][2], 11);
+}
+
+static void merge_counts_a_broadcast_of_both_sides(struct kunit *test)
+{
+	merge_build();
+	put_unaligned_le16(3, at[1][1] - EC_DGRAM_HDR + 2);
+	at[1][1][0] = 0x02;
+	processed(1, 1, 3);
+	put_unaligned_le16(5, at[2][1] - EC_DGRAM_HDR + 2);
+	at[2][1][0] = 0x08;
+	processed(2, 1, 4);
+	put_unaligned_le16(4, at[2][1] - 2);	/* events */
+	ec_merge_frame(a, b, sent, len);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(at[1][1] - EC_DGRAM_HDR + 2), 8);
+	KUNIT_EXPECT_EQ(test, at[1][1][0], 0x0a);
+	KUNIT_EXPECT_EQ(test, merged(1), 7);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(at[1][1] - 2), 4);
+}
+
+/* Bits of one byte from slaves of both sides, and a byte behind the last word of 8. */
+static void merge_takes_each_bit_of_its_side(struct kunit *test)
+{
+	merge_build();
+	at[1][2][0] = 0xaa;	/* low half */
+	at[2][2][0] = 0x55;	/* high half */
+	at[1][2][1] = 0x11;
+	at[2][2][10] = 0x22;
+	processed(1, 2, 3);
+	processed(2, 2, 6);
+	ec_merge_frame(a, b, sent, len);
+	KUNIT_EXPECT_EQ(test, merged(2), 9);
+	KUNIT_EXPECT_EQ(test, at[1][2][1], 0x11);
+	KUNIT_EXPECT_EQ(test, at[1][2][10], 0x22);
+	KUNIT_EXPECT_EQ(test, at[1][2][2], 0xa5);
+}
+
+/* A slave that both copies have reached has written the same. */
+static void merge_keeps_what_both_sides_have(struct kunit *test)
+{
+	merge_build();
+	memset(at[1][3], 0x3c, 11);
+	memset(at[2][3], 0x3c, 11);
+	processed(1, 3, 2);
+	processed(2, 3, 1);
+	ec_merge_frame(a, b, sent, len);
+	KUNIT_EXPECT_EQ(test, at[1][3][0], 0x3c);
+	KUNIT_EXPECT_EQ(test, at[1][3][10], 0x3c);
+}
+
+/* Lengths that do not fit into the frame end the merge. */
+static void merge_stays_within_the_frame(struct kunit *test)
+{
+	merge_build();
+	put_unaligned_le16(0x7ff | EC_DGRAM_MORE, at[0][1] - EC_DGRAM_HDR + 6);
+	processed(2, 0, 1);
+	ec_merge_frame(a, b, sent, len);
+	KUNIT_EXPECT_EQ(test, merged(0), 1);
+	ec_merge_frame(a, b, sent, 5);
+	KUNIT_EXPECT_EQ(test, merged(0), 1);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE(merge_takes_the_copy_that_was_processed),
+	KUNIT_CASE(merge_counts_a_broadcast_of_both_sides),
+	KUNIT_CASE(merge_takes_each_bit_of_its_side),
+	KUNIT_CASE(merge_keeps_what_both_sides_have),
+	KUNIT_CASE(merge_stays_within_the_frame),
+	{}
+};
+
+static struct kunit_suite suite = { .name = "merge", .test_cases = cases };
+kunit_test_suites(&suite);
+MODULE_LICENSE("GPL");
