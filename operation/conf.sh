@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-only
 # For ethercatctl: the configuration file. Its lines are read, never run.
 #
-# parse FILE sets: masters (their number), device_N and at_N (the line of it), modules, up and at_up
-# (interfaces), modprobe_flags, segments and at_segments, bridge and at_bridge, addresses and
-# at_addresses (of the bridge)
+# parse FILE sets: masters (their number), device_N and at_N (the line of it), device_Nb and at_Nb
+# (its backup device, if it has one), modules, up and at_up (interfaces), modprobe_flags, segments
+# and at_segments, bridge and at_bridge, addresses and at_addresses (of the bridge)
 
 native_drivers="e1000 e1000e igb intel"
 other_drivers="generic sim igc r8169 e100 8139too r8152 cx2100 ccat genet dwmac-intel stmmac-pci"
@@ -40,7 +40,7 @@ is_mac() {
 }
 is_any() { [ "$1" = ff:ff:ff:ff:ff:ff ]; }
 is_pci() { case $1 in $hex$hex$hex$hex:$hex$hex:$hex$hex.[0-7]) ;; *) return 1 ;; esac; }
-is_sim() { case $1 in sim[0-9]) ;; *) return 1 ;; esac; }
+is_sim() { case $1 in sim[0-9]|sim[0-9]b) ;; *) return 1 ;; esac; }
 is_interface() {
 	case $1 in ''|.|..|-*|*[:/,]*|*[[:space:]]*) return 1 ;; esac
 	[ ${#1} -le 15 ]
@@ -59,6 +59,7 @@ proposal() {
 	$d$d:$d$d.[0-7]) echo "0000:$1" ;;
 	[sS][iI][mM]|[sS][iI][mM]0) echo sim0 ;;
 	[sS][iI][mM][1-7]) echo "sim${1#???}" ;;
+	[sS][iI][mM][0-7][bB]) echo "sim$(echo "${1#???}" | tr B b)" ;;
 	*) return 1 ;;
 	esac
 }
@@ -73,32 +74,35 @@ not_a_device() {
 	bad "$1=\"$2\" $what; 'ethercat devices' lists the cards"
 }
 
-# device INDEX VALUE
-set_device() {
-	local value old was
+# variable DEVICE-ID: its name; a device has the number of its master, with b: the backup device
+variable() {
+	case $1 in
+	*b)	echo "MASTER${1%b}_BACKUP" ;;
+	*)	echo "MASTER$1_DEVICE" ;;
+	esac
+}
 
-	value=$(lower "$2")
+# set_device DEVICE-ID VALUE
+set_device() {
+	local value old was name
+
+	name=$(variable "$1") value=$(lower "$2")
 	if ! is_sim "$value" && old=$(proposal "$2"); then
-		bad "MASTER$1_DEVICE=\"$2\": write $old"
+		bad "$name=\"$2\": write $old"
 		return
 	fi
 	case $value in
-	sim[1-9][0-9]*) bad "MASTER$1_DEVICE=\"$2\": the simulator has sim0 to sim7" ;;
-	00:00:00:00:00:00) bad "MASTER$1_DEVICE=\"$2\": no card has this address; 'ethercat devices' lists the cards" ;;
+	sim[1-9][0-9]*) bad "$name=\"$2\": the simulator has sim0 to sim7" ;;
+	00:00:00:00:00:00) bad "$name=\"$2\": no card has this address; 'ethercat devices' lists the cards" ;;
 	ff:ff:ff:ff:ff:ff|'') ;;
-	?[13579bdf]:*:*:*:*:*) bad "MASTER$1_DEVICE=\"$2\" is a multicast address; 'ethercat devices' lists the cards" ;;
+	?[13579bdf]:*:*:*:*:*) bad "$name=\"$2\" is a multicast address; 'ethercat devices' lists the cards" ;;
 	*)	is_mac "$value" || is_pci "$value" || is_interface "$value" ||
-			not_a_device "MASTER$1_DEVICE" "$2" ;;
+			not_a_device "$name" "$2" ;;
 	esac
 	eval "old=\${device_$1:-} was=\${at_$1:-}"
 	[ -z "$old" ] || [ "$old" = "$value" ] ||
-		warn "MASTER$1_DEVICE replaces the value \"$old\" of line $was"
+		warn "$name replaces the value \"$old\" of line $was"
 	eval "device_$1=\$value at_$1=\$number"
-}
-
-set_backup() {
-	[ -n "$2" ] || return 0
-	bad "MASTER$1_BACKUP=\"$2\": this version has no cable redundancy; remove the value and connect the slaves to one port"
 }
 
 set_master() {	# set_master NAME VALUE
@@ -111,7 +115,7 @@ set_master() {	# set_master NAME VALUE
 	fi
 	case $1 in
 	*_DEVICE) set_device "$index" "$2" ;;
-	*)	set_backup "$index" "$2" ;;
+	*)	set_device "${index}b" "$2" ;;
 	esac
 }
 
@@ -308,9 +312,46 @@ parse_line() {
 	parse_value "${text#*=}" && set_variable "$name" "$value"
 }
 
-# the masters are those before the first gap; each has a device of its own
+# each_device COMMAND...: of the masters, with its ID and name
+each_device() {
+	local i=0 id d
+
+	while [ $i -lt "$masters" ]; do
+		for id in $i ${i}b; do
+			eval "d=\${device_$id:-}"
+			[ -z "$d" ] || "$@" $id "$d" || return
+		done
+		i=$((i + 1))
+	done
+}
+
+# differs ID DEVICE OTHER-ID OTHER: says so if it is not, and ends the loop
+differs() {
+	[ "$1" != "$3" ] || return
+	[ "$2" != "$4" ] || {
+		eval "number=\$at_$1"
+		case $1$3 in
+		*b*)	bad "$(variable "$1")=\"$2\" is also $(variable "$3"); each end of a ring needs its own" ;;
+		*)	bad "MASTER$1_DEVICE=\"$2\" is the device of MASTER$3; each master needs its own" ;;
+		esac
+	}
+}
+
+# check_device ID DEVICE
+check_device() {
+	local main
+
+	each_device differs "$1" "$2"
+	case $1 in *b) ;; *) return 0 ;; esac
+	eval "main=\$device_${1%b} number=\$at_$1"
+	if is_any "$2" || is_any "$main"; then
+		bad "$(variable "$1"): with a backup device both ends of the ring need the name or address of their device, not ff:ff:ff:ff:ff:ff"
+	fi
+}
+
+# the masters are those before the first gap; each device has one end of one bus
 check_masters() {
-	local i=0 k other
+	local i=0
 
 	masters=0
 	while [ $i -lt 32 ]; do
@@ -318,31 +359,32 @@ check_masters() {
 		if [ -n "$value" ] && [ $i -gt $masters ]; then
 			warn "MASTER${i}_DEVICE has no effect, since MASTER${masters}_DEVICE is empty"
 		elif [ -n "$value" ]; then
-			k=0
-			while [ $k -lt $i ]; do
-				eval "other=\$device_$k"
-				[ "$other" != "$value" ] ||
-					bad "MASTER${i}_DEVICE=\"$value\" is the device of MASTER$k; each master needs its own"
-				k=$((k + 1))
-			done
 			masters=$((masters + 1))
 		fi
+		eval "value=\${device_${i}b:-} number=\${at_${i}b:-0}"
+		[ -z "$value" ] || [ $i -lt $masters ] ||
+			bad "MASTER${i}_BACKUP=\"$value\": there is no master $i; set MASTER${masters}_DEVICE, the main device, first"
 		i=$((i + 1))
 	done
+	each_device check_device
 }
 
-# sim2 needs three segments; without SIM_SEGMENT each is the bench
-check_segments() {
-	local i=0 d need=0 text
+# need_segment ID DEVICE: sim2 needs three
+need_segment() {
+	local n=${2#sim}
 
-	while [ $i -lt "$masters" ]; do
-		eval "d=\$device_$i"
-		if is_sim "$d" && [ "${d#sim}" -ge $need ]; then
-			need=$((${d#sim} + 1))
-			eval "number=\$at_$i"
-		fi
-		i=$((i + 1))
-	done
+	n=${n%b}
+	if is_sim "$2" && [ "$n" -ge $need ]; then
+		need=$((n + 1))
+		eval "number=\$at_$1"
+	fi
+}
+
+# without SIM_SEGMENT each is the bench
+check_segments() {
+	local i need=0 text
+
+	each_device need_segment
 	sims=$need
 	[ "$need" -gt 0 ] || return 0
 	[ "$need" -le 8 ] || bad "sim$((need - 1)): the simulator has sim0 to sim7"
@@ -362,20 +404,19 @@ check_segments() {
 	fi
 }
 
+# no_bridge ID DEVICE
+no_bridge() {
+	[ "$2" != "$bridge" ] ||
+		bad "EOE_BRIDGE=\"$bridge\" is the device of MASTER${1%b}; the fieldbus is no port of a network, write another name"
+}
+
 # the bridge is none of the masters' devices, and has the addresses
 check_bridge() {
-	local i=0 d
-
 	number=$at_addresses
 	[ -n "$bridge" ] || [ -z "$addresses" ] ||
 		bad "EOE_BRIDGE_ADDRESS=\"$addresses\" needs EOE_BRIDGE, the name of the bridge"
 	number=$at_bridge
-	while [ -n "$bridge" ] && [ $i -lt "$masters" ]; do
-		eval "d=\$device_$i"
-		[ "$d" != "$bridge" ] ||
-			bad "EOE_BRIDGE=\"$bridge\" is the device of MASTER$i; the fieldbus is no port of a network, write another name"
-		i=$((i + 1))
-	done
+	[ -z "$bridge" ] || each_device no_bridge
 }
 
 # parse FILE: exit code 6 if it cannot be read, 1 after messages with its lines

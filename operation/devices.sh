@@ -30,7 +30,7 @@ interface() {	# interface DEVICE: the name
 reserved() { (set +f; grep -lx ec_intel /sys/bus/pci/devices/${1:-*}/driver_override 2>/dev/null) }
 has_reserved() { [ -n "$(reserved "$@")" ]; }
 
-# take_reserved INDEX DEVICE: what is left for others
+# take_reserved ID DEVICE: what is left for others
 take_reserved() {
 	if is_pci "$2"; then
 		! has_reserved "$2"
@@ -44,7 +44,7 @@ enough_reserved() {
 	local left
 
 	left=$(reserved | wc -l)
-	each_master take_reserved
+	each_device take_reserved
 	[ "$left" -ge 0 ]
 }
 
@@ -57,7 +57,7 @@ is_listed() {
 		{ has intel $modules && has "$driver" $native_drivers; }; }
 }
 
-# not_named INTERFACE INDEX DEVICE
+# not_named INTERFACE ID DEVICE
 not_named() {
 	local mac
 
@@ -68,7 +68,7 @@ not_named() {
 # is_free INTERFACE: hardware that is not in use
 is_free() {
 	[ -e "/sys/class/net/$1/device" ] && [ ! -e "/sys/class/net/$1/master" ] &&
-		[ ! -e "/sys/class/net/$1/phy80211" ] && each_master not_named "$1" &&
+		[ ! -e "/sys/class/net/$1/phy80211" ] && each_device not_named "$1" &&
 		[ -z "$(ip -o addr show dev "$1" scope global 2>/dev/null)" ]
 }
 
@@ -109,7 +109,7 @@ each_master() {
 }
 
 # A card is the same whenever it comes: the master waits for it. A name may be another one's.
-wait_present() {	# wait_present INDEX DEVICE
+wait_present() {	# wait_present ID DEVICE
 	local what="no such device"
 
 	until present "$2"; do
@@ -119,10 +119,10 @@ wait_present() {	# wait_present INDEX DEVICE
 			eval "number=\$at_$1"
 			if is_mac "$2"; then
 				! has_reserved || what="no interface has this address, and ec_intel has too few cards"
-				warn "MASTER$1_DEVICE=\"$2\": $what after 10 s; the master waits for it, 'ethercat devices' lists the cards"
+				warn "$(variable "$1")=\"$2\": $what after 10 s; the master waits for it, 'ethercat devices' lists the cards"
 				return
 			fi
-			bad "MASTER$1_DEVICE=\"$2\": no such device after 10 s; $(instead "$2")"
+			bad "$(variable "$1")=\"$2\": no such device after 10 s; $(instead "$2")"
 			return 1
 		fi
 		patience=$((patience - 1))
@@ -178,19 +178,19 @@ unusable() {
 	fi
 }
 
-# usable INDEX DEVICE: unless it is an interface that can never be the device of a master
+# usable ID DEVICE: unless it is an interface that can never be the device of a master
 usable() {
 	local name why
 
 	is_sim "$2" || ! name=$(interface "$2") || ! why=$(unusable "$name" "$2") || {
 		eval "number=\$at_$1"
-		bad "MASTER$1_DEVICE=\"$2\": $why"
+		bad "$(variable "$1")=\"$2\": $why"
 	}
 }
 
-# known INDEX DEVICE: reports a device that is not there
+# known ID DEVICE: reports a device that is not there
 known() {
-	local what="MASTER$1_DEVICE=\"$2\""
+	local what="$(variable "$1")=\"$2\""
 
 	eval "number=\$at_$1"
 	! present "$2" && [ -z "$(recall "$2")" ] || return 0
@@ -241,13 +241,24 @@ known_segment() {	# known_segment NAME
 	esac
 }
 
+# known_ring ID DEVICE: a segment with a second end, if this is one
+known_ring() {
+	local n=${2#sim} segment
+
+	is_sim "$2" && [ "$n" != "${n%b}" ] || return 0
+	segment=$(echo "$segments," | cut -d, -f$((${n%b} + 1)))
+	if [ -f "$segment" ] && grep -q '^[^#]*master\.1' "$segment"; then return; fi
+	eval "number=\$at_$1"
+	bad "$(variable "$1")=\"$2\": the segment $segment is no ring; its description needs a line as 'wire d8.1 -> master.1'"
+}
+
 # check_machine [all]: whether this computer has what the configuration names. start waits for
 # devices; 'all' reports those that are absent as well.
 check_machine() {
 	local i
 
-	each_master usable
-	[ -z "${1:-}" ] || each_master known
+	each_device usable
+	[ -z "${1:-}" ] || each_device known
 	number=$at_up
 	for i in $up; do
 		[ -z "${1:-}" ] || [ -e "/sys/class/net/$i" ] ||
@@ -259,19 +270,20 @@ check_machine() {
 		bad "EOE_BRIDGE=\"$bridge\": this interface is no bridge; write another name"
 	number=$at_segments
 	[ "$sims" = 0 ] || for i in $(echo "$segments" | tr , ' '); do known_segment "$i"; done
+	each_device known_ring
 	[ "$wrong" = 0 ]
 }
 
-# check_interface INDEX DEVICE NAME
+# check_interface ID DEVICE NAME
 check_interface() {
 	local all manager
 
 	all=$(interfaces_of "$2")
 	eval "number=\$at_$1"
 	[ "$all" = "$3" ] ||
-		warn "MASTER$1_DEVICE=\"$2\": the address of several interfaces ($all), the master uses one of them; write the name instead"
+		warn "$(variable "$1")=\"$2\": the address of several interfaces ($all), the master uses one of them; write the name instead"
 	has "$3" $cards $generic && {
-		bad "MASTER$1_DEVICE=\"$2\" is $3, which another master has; each master needs its own"
+		bad "$(variable "$1")=\"$2\" is $3, which another master has; each master needs its own"
 		return 1
 	}
 	[ -z "$(ip -o addr show dev "$3" scope global 2>/dev/null)" ] ||
@@ -286,18 +298,19 @@ recall() {
 	[ -f $state ] && awk -v device="$1" '$2 == device || $3 == device { print; exit }' $state
 }
 
-# loaded_device INDEX: what ec_master was loaded with
+# loaded_device ID: what ec_master was loaded with
 loaded_device() {
-	local all
+	local all list=main
 
-	read -r all 2>/dev/null </sys/module/ec_master/parameters/main_devices || return
-	echo "$all," | cut -d, -f$(($1 + 1))
+	[ "$1" = "${1%b}" ] || list=backup
+	read -r all 2>/dev/null </sys/module/ec_master/parameters/${list}_devices || return
+	echo "$all," | cut -d, -f$((${1%b} + 1))
 }
 
-# choose_any INDEX: sets device, to the only card that it may be. A wrong one could be the network
+# choose_any ID: sets device, to the only card that it may be. A wrong one could be the network
 # of this computer.
 choose_any() {
-	local found what="MASTER$1_DEVICE=\"ff:ff:ff:ff:ff:ff\""
+	local found what="$(variable "$1")=\"ff:ff:ff:ff:ff:ff\""
 
 	eval "number=\$at_$1"
 	device=$(loaded_device "$1")
@@ -317,13 +330,17 @@ choose_any() {
 	esac
 }
 
-# attached INDEX: the master has its card already, an application may be in OP
+# end ID: as 'ethercat master' names it
+end() { if [ "$1" = "${1%b}" ]; then echo Main; else echo Backup; fi; }
+
+# attached ID: the master has its card already, an application may be in OP
 attached() {
-	loaded ec_master && ethercat master -m "$1" 2>/dev/null | grep -q '^ *Main: .*(attached)'
+	loaded ec_master && ethercat master -m "${1%b}" 2>/dev/null |
+		grep -q "^ *$(end "$1"): .*(attached)"
 }
 
-# choose INDEX DEVICE: adds to main what ec_master gets, and to cards, generic or either (the driver
-# is chosen already or not known yet) what drives it
+# choose ID DEVICE: adds to main or backup what ec_master gets, and to cards, generic or either (the
+# driver is chosen already or not known yet) what drives it
 choose() {
 	local name card pci mac device=$2
 
@@ -359,6 +376,9 @@ choose() {
 	elif ! is_sim "$device"; then
 		generic="$generic $device"
 	fi
-	main=${main:+$main,}$mac
-	asked=${asked:+$asked,}$2
+	case $1 in
+	0)	main=$mac asked=$2 ;;
+	*b)	backup=$backup$mac asked_backup=$asked_backup$2 ;;
+	*)	main=$main,$mac asked=$asked,$2 backup=$backup, asked_backup=$asked_backup, ;;
+	esac
 }

@@ -196,10 +196,50 @@ accepted() {
 	grep -qF 'BUILD_EXCLUSIVE_KERNEL="^(6\.[1-9]|7\.[0-3]\.)"' "$top/debian/ethercat-dkms.dkms"
 }
 
-@test "a backup device is refused with the reason" {
-	run ctl -c "$BATS_TEST_DIRNAME/conf/backup.conf" check
-	[ "$status" = 1 ]
-	[ "$output" = "$BATS_TEST_DIRNAME/conf/backup.conf:4: MASTER0_BACKUP=\"52:54:00:ec:00:01\": this version has no cable redundancy; remove the value and connect the slaves to one port" ]
+@test "a master has a backup device, with a main device and an end of its own" {
+	local one='MASTER0_DEVICE=eth0\n' any=ff:ff:ff:ff:ff:ff mac=ec:00:00:00:00:02
+
+	echo 52:54:00:ec:00:01 >"$root/sys/class/net/eth1/address"
+	means backup 'Master0: 52:54:00:ec:00:00, backup 52:54:00:ec:00:01' 'Drivers: generic'
+	accepted "${one}MASTER0_BACKUP=EC:00:00:00:00:02" "eth0, backup $mac" \
+		"2: MASTER0_BACKUP=\"$mac\": no interface has this address yet; the master waits for it"
+	accepted "${one}MASTER0_BACKUP=\"\"" eth0
+	accepted "MASTER0_BACKUP=eth1\n$one" 'eth0, backup eth1'
+	refused 'MASTER0_DEVICE=sim0\nMASTER1_BACKUP=eth1' \
+		'2: MASTER1_BACKUP="eth1": there is no master 1; set MASTER1_DEVICE,'
+	refused "${one}MASTER0_BACKUP=eth0" \
+		'2: MASTER0_BACKUP="eth0" is also MASTER0_DEVICE; each end of a ring needs its own'
+	refused "${one}MASTER0_BACKUP=eth1\nMASTER1_DEVICE=veth0\nMASTER1_BACKUP=eth1" \
+		'4: MASTER1_BACKUP="eth1" is also MASTER0_BACKUP;'
+	refused "${one}MASTER0_BACKUP=eth1\nMASTER1_DEVICE=eth1" \
+		'3: MASTER1_DEVICE="eth1" is also MASTER0_BACKUP;'
+	refused "${one}MASTER0_BACKUP=$any" \
+		'2: MASTER0_BACKUP: with a backup device both ends of the ring'
+	refused "${one}MASTER0_BACKUP=0000:0A:00" \
+		'2: MASTER0_BACKUP="0000:0A:00" is neither a MAC address,'
+	refused "${one}MASTER0_BACKUP=525400ec0001" \
+		'2: MASTER0_BACKUP="525400ec0001": write 52:54:00:ec:00:01'
+	refused "${one}MASTER0_BACKUP=lo" \
+		'2: MASTER0_BACKUP="lo": the loopback interface has no cable;'
+	refused "${one}MASTER0_BACKUP=eth9" '2: MASTER0_BACKUP="eth9": no such interface;'
+	refused "${one}master0_backup=eth1" \
+		'2: unknown variable master0_backup; write MASTER0_BACKUP'
+	refused "${one}MASTER0_BACKUP=eth1\nEOE_BRIDGE=eth1" \
+		'3: EOE_BRIDGE="eth1" is the device of MASTER0;'
+}
+
+@test "the second end of a simulated segment needs a ring" {
+	local ring=$BATS_TEST_TMPDIR/ring.seg
+
+	refused 'MASTER0_DEVICE=sim0\nMASTER0_BACKUP=sim0b' \
+		"2: MASTER0_BACKUP=\"sim0b\": the segment bench is no ring; its description needs a line as"
+	printf 'repeat 8 slave d drive\nwire d8.1 -> master.1\n' >"$ring"
+	accepted "MASTER0_DEVICE=sim0\nMASTER0_BACKUP=sim0b\nSIM_SEGMENT=$ring" 'sim0, backup sim0b'
+	accepted "MASTER0_DEVICE=eth0\nMASTER1_DEVICE=sim1\nMASTER1_BACKUP=sim1b\nSIM_SEGMENT=bench,$ring" \
+		eth0
+	refused 'MASTER0_DEVICE=sim0\nMASTER0_BACKUP=SIM0B' '2: MASTER0_BACKUP="SIM0B": write sim0b'
+	refused "MASTER0_DEVICE=sim0\nMASTER0_BACKUP=sim1b\nSIM_SEGMENT=$ring" \
+		'2: sim1 needs 2 segments, SIM_SEGMENT names 1'
 }
 
 @test "quotes, blanks, comments and line ends are those of a shell script" {

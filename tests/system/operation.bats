@@ -143,6 +143,51 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 	[ "$(cat /sys/class/net/eth0/address)" = 52:54:00:ec:00:00 ]
 }
 
+ring_is() { [[ $(ethercat master) == *"Ring: $1"* ]]; }
+
+@test "MASTER0_BACKUP: a ring of the simulator, and of two cards" {
+	printf 'repeat 4 slave d drive\nwire d4.1 -> master.1\n' >"$BATS_TEST_TMPDIR/ring"
+	conf 'MASTER0_DEVICE=sim0' 'MASTER0_BACKUP=sim0b' "SIM_SEGMENT=$BATS_TEST_TMPDIR/ring"
+	run own start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ $output =~ ^"Master0: sim0 (attached), link up, backup sim0b (attached), link up, ring " ]]
+	wait_for 60 slaves_are 0 4
+	wait_for 60 ring_is closed
+	run own status
+	[ "${lines[1]}" = "  sim0 (attached), link up, backup sim0b (attached), link up, ring closed, slaves: 4 (4 PREOP)" ]
+	run own start
+	[ "$status" = 0 ]
+	[ "${lines[0]}" = "ethercatctl: ec_master is already loaded" ]
+	# the same master without its ring is another configuration
+	conf 'MASTER0_DEVICE=sim0' "SIM_SEGMENT=$BATS_TEST_TMPDIR/ring"
+	fails 'already loaded with backup_devices=sim0b, but .* has none; run' own start
+	own stop
+	none_loaded
+	# the second of two masters has one
+	conf 'MASTER0_DEVICE=sim0' 'MASTER1_DEVICE=sim1' 'MASTER1_BACKUP=sim1b' \
+		"SIM_SEGMENT=thin,$BATS_TEST_TMPDIR/ring"
+	own start
+	wait_for 60 slaves_are 1 4
+	[ "$(cat /sys/module/ec_master/parameters/backup_devices)" = ,sim1b ]
+	own start
+	own stop
+	none_loaded
+	run ctl backup start
+	echo "$output"
+	[ "$status" = 0 ]
+	[[ $output =~ "Master0: 52:54:00:ec:00:00 (attached), link "[a-z]*", backup 52:54:00:ec:00:01 (attached)" ]]
+	ctl backup stop
+	none_loaded
+	conf 'MASTER0_DEVICE=eth0' 'MASTER0_BACKUP=eth1' 'DEVICE_MODULES="e1000e"'
+	own start
+	[ "$(ethercat devices -j | gojq -r '[.devices[] | select(.driver == "ec_intel").used_by] | join(",")')" = \
+		"Master0 main,Master0 backup" ]
+	own stop
+	none_loaded
+	[ "$(cat /sys/class/net/eth1/address)" = 52:54:00:ec:00:01 ]
+}
+
 @test "modules.conf: each master gets the driver of its card" {
 	run ctl modules start
 	echo "$output"
@@ -154,7 +199,10 @@ slaves_are() { [ "$(ethercat slaves -m "$1" | grep -c PREOP)" = "$2" ]; }
 }
 
 @test "a start that fails names the cause and leaves nothing loaded" {
-	fails 'backup.conf:4: MASTER0_BACKUP=.* no cable redundancy' ctl backup start
+	conf 'MASTER0_DEVICE="eth0"' 'MASTER0_BACKUP="eth0"'
+	fails 'conf:2: MASTER0_BACKUP="eth0" is also MASTER0_DEVICE; each end' own start
+	conf 'MASTER0_DEVICE="eth0"' 'MASTER0_BACKUP="52:54:00:ec:00:00"'
+	fails 'conf:2: MASTER0_BACKUP="52:54:00:ec:00:00" is eth0, which another' own start
 	none_loaded
 	conf '' 'MASTER0_DEVICE="eth9"'
 	fails 'conf:2: MASTER0_DEVICE="eth9": no such device after 10 s' own start
