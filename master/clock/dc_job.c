@@ -13,6 +13,7 @@
 #define CORRECT_CYCLES	8	/* then the cycle compensates them, so many cycles */
 #define CORRECT_MS	20	/* or so long */
 #define LOST		16	/* lost latches, then the measurement fails */
+#define EXIT_NS		(300 * NSEC_PER_MSEC)	/* a port closed for a second is closed again */
 
 /**
  * ec_dc_job_free() - end a job
@@ -407,20 +408,36 @@ static void sum_up(struct ec_dc_job *j)
 
 /*
  * In a closed ring no frame returns to the ports through which it has left. So while delays are
- * measured the last port before the backup device is closed: frames turn there.
+ * measured the last port before the backup device is closed: frames turn there. The setting is
+ * temporary: if the ring breaks meanwhile, no frame reaches this slave before the port has opened
+ * itself. The read of the ports clears their event, which would cause another scan.
  */
 static void close_exit(struct ec_dc_job *j, bool close)
 {
 	const struct ec_slave *s;
-	u8 loops;
+	u8 control[2], dl[2];
+	struct ec_dg dg[2];
 
 	if (j->exit == j->n)
 		return;
 	s = j->slaves[j->exit];
-	loops = s->ports.loops;
-	if (close)
-		loops |= EC_LOOP_CLOSED << 2 * j->exit_port;
-	ec_xfer_fpwr(j->dc->links, s->station, EC_REG_DL_LOOPS, &loops, 1);
+	control[0] = s->ports.control & ~EC_DL_TEMPORARY;
+	control[1] = s->ports.loops;
+	if (close) {
+		control[0] |= EC_DL_TEMPORARY;
+		control[1] |= EC_LOOP_CLOSED << 2 * j->exit_port;
+	}
+	dg[0] = EC_FPWR(s->station, EC_REG_DL_CONTROL, sizeof(control), control);
+	dg[1] = EC_FPRD(s->station, EC_REG_DL_STATUS, sizeof(dl), dl);
+	ec_xfer(j->dc->links, dg, 2);
+	j->exit_ns = ktime_get_ns();
+}
+
+/* before it opens itself */
+static void keep_exit_closed(struct ec_dc_job *j)
+{
+	if (j->exit < j->n && ktime_get_ns() - j->exit_ns > EXIT_NS)
+		close_exit(j, true);
 }
 
 /*
@@ -439,6 +456,7 @@ static int measure_rounds(struct ec_dc_job *j)
 	while (rounds < j->rounds) {
 		if (ended(j))
 			return -ECANCELED;
+		keep_exit_closed(j);
 		n = latched ? ec_dc_add(j, 0, EC_DC_TIMES, EC_CMD_FPRD, EC_REG_DC_RECV(0),
 					sizeof(j->recv[0]), j->recv[0], sizeof(j->recv[0])) : 0;
 		n = add_latch(j, n);

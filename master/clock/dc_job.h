@@ -29,6 +29,7 @@
  * @ref: index of the reference clock, @n: none
  * @exit: index of the slave at which a closed ring leads to the backup device, @n: none
  * @exit_port: its port there
+ * @exit_ns: when it was closed (ktime)
  * @latch_ns: when the last latch was sent (ktime)
  * @path: changes of ports that the list of slaves takes into account
  * @compensated: the cycle has compensated clocks until now
@@ -52,6 +53,7 @@ struct ec_dc_job {
 	unsigned int ref;
 	unsigned int exit;
 	u8 exit_port;
+	u64 exit_ns;
 	u64 latch_ns;
 	u32 path;
 	bool compensated;
