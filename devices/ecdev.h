@@ -61,7 +61,8 @@ struct ecdev *ecdev_offer(const char *name, const u8 *mac,
 void ecdev_withdraw(struct ecdev *dev);
 void ecdev_rename(struct ecdev *dev, const char *name);
 bool ecdev_numbered(struct ecdev *dev);
-bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size);
+bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size,
+		   bool *backup);
 bool ecdev_wanted(const char *name, const u8 *mac, bool any);
 int ecdev_register_notifier(struct notifier_block *nb);
 void ecdev_unregister_notifier(struct notifier_block *nb);

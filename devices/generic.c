@@ -638,7 +638,7 @@ static bool is_any(const char *spec)
 	return mac_pton(spec, mac) && is_broadcast_ether_addr(mac);
 }
 
-/* Why no network device matches main_devices=; NULL: one does, and was refused. */
+/* Why no network device matches @spec; NULL: one does, and was refused. */
 static const char * __init why_waiting(const char *spec)
 {
 	const char *why = "is neither the name nor the MAC address of a network interface";
@@ -664,12 +664,13 @@ static void __init report_waiting(void)
 	unsigned int i = 0, master;
 	char spec[IFNAMSIZ + MAX_ADDR_LEN];
 	const char *why;
+	bool backup;
 
-	while (ecdev_waiting(&i, &master, spec, sizeof(spec))) {
+	while (ecdev_waiting(&i, &master, spec, sizeof(spec), &backup)) {
 		why = strncmp(spec, "sim", 3) ? why_waiting(spec) : NULL;
 		if (why)
-			pr_warn("ec_generic: main_devices: \"%s\" %s; master %u waits for it\n",
-				spec, why, master);
+			pr_warn("ec_generic: %s: \"%s\" %s; master %u waits for it\n",
+				backup ? "backup_devices" : "main_devices", spec, why, master);
 	}
 }
 

@@ -189,16 +189,25 @@ static void __init add_controls(void)
 	}
 }
 
-/* sim7 of main_devices= is never offered when there is one segment. */
+/* sim7 is never offered when there is one segment, and sim0b when this is no ring. */
 static void __init report_waiting(unsigned int n)
 {
+	const char *list;
 	unsigned int i = 0, master, k;
-	char spec[32];
+	char spec[32], b = '\0';
+	bool backup;
 
-	while (ecdev_waiting(&i, &master, spec, sizeof(spec)))
-		if (sscanf(spec, "sim%u", &k) == 1 && k >= n)
-			pr_warn("ec_sim: main_devices: \"%s\" is not offered, segment= names %u segment(s); master %u waits for it\n",
-				spec, n, master);
+	while (ecdev_waiting(&i, &master, spec, sizeof(spec), &backup)) {
+		list = backup ? "backup_devices" : "main_devices";
+		if (sscanf(spec, "sim%u%c", &k, &b) < 1)
+			continue;
+		if (k >= n)
+			pr_warn("ec_sim: %s: \"%s\" is not offered, segment= names %u segment(s); master %u waits for it\n",
+				list, spec, n, master);
+		else if (b == 'b')
+			pr_warn("ec_sim: %s: \"%s\" is not offered, that segment has no wire to master.1; master %u waits for it\n",
+				list, spec, master);
+	}
 }
 
 static int __init sim_init(void)

@@ -64,30 +64,35 @@ bool ecdev_wanted(const char *name, const u8 *mac, bool any)
 EXPORT_SYMBOL_GPL(ecdev_wanted);
 
 /**
- * ecdev_waiting() - find a master that waits for its main device
- * @index: number to start with, initially 0; result: the number after @master
+ * ecdev_waiting() - find a master that waits for a device
+ * @index: where to start, initially 0; result: where to continue
  * @master: result: number of the master
- * @name: result: name or MAC address of its main device
+ * @name: result: name or MAC address of the device
  * @size: of @name
+ * @backup: result: it is its backup device
  *
  * Context: Process. May sleep.
  * Return: whether one waits.
  */
-bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size)
+bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t size,
+		   bool *backup)
 {
 	const struct ec_links *l;
+	unsigned int side, at;
 	bool found = false;
 
 	mutex_lock(&devices_lock);
-	list_for_each_entry(l, &masters, list) {
-		if (l->base->index < *index || l->link[EC_MAIN].dev || l->closed)
-			continue;
-		strscpy(name, l->main, size);
-		*master = l->base->index;
-		*index = l->base->index + 1;
-		found = true;
-		break;
-	}
+	list_for_each_entry(l, &masters, list)
+		for (side = 0; side < EC_MAX_LINKS && !found; side++) {
+			at = l->base->index * EC_MAX_LINKS + side;
+			if (at < *index || l->link[side].dev || !name_of(l, side))
+				continue;
+			strscpy(name, name_of(l, side), size);
+			*master = l->base->index;
+			*backup = side == EC_BACKUP;
+			*index = at + 1;
+			found = true;
+		}
 	mutex_unlock(&devices_lock);
 	return found;
 }

@@ -28,12 +28,9 @@ IS(EC_COE_EMERGENCY_MSG_SIZE, 8);
 	!defined(EC_HAVE_REF_CLOCK_TIME) || !defined(EC_HAVE_REG_BY_POS) || \
 	!defined(EC_HAVE_SYNC_TO) || !defined(EC_HAVE_FLAGS) || \
 	!defined(EC_HAVE_SOE_REQUESTS) || !defined(EC_HAVE_SCAN_PROGRESS) || \
-	!defined(EC_HAVE_SET_IP) || !defined(EC_HAVE_STATE_TIMEOUT)
+	!defined(EC_HAVE_SET_IP) || !defined(EC_HAVE_STATE_TIMEOUT) || \
+	!defined(EC_HAVE_REDUNDANCY)
 #error "a feature flag is missing"
-#endif
-/* its members and functions are there, so that applications compile */
-#ifdef EC_HAVE_REDUNDANCY
-#error "there is no redundancy"
 #endif
 
 /* enumerations */
