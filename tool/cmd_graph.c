@@ -78,26 +78,38 @@ static void edge(const struct slaves *all, const struct ect_slave *s, unsigned i
 	out_end();
 }
 
-/* The first open port without a slave behind it leads to the master; it may be on any slave. */
-static void to_master(const struct slaves *all, enum info info,
-		      const struct ect_errors *const *regs)
+static void edge_to_master(const struct slaves *all, unsigned int at, unsigned int port,
+			   enum info info, const struct ect_errors *const *regs)
 {
-	unsigned int at = 0, port = 0;
-
-	for (size_t i = all->n; i-- > 0;)
-		for (unsigned int p = ECT_PORTS; p-- > 0;) {
-			const struct ect_port *x = &all->v[i].ports[p];
-
-			if (!x->signal || x->loop_closed || x->next_slave != ECT_NONE16)
-				continue;
-			at = i;
-			port = p;
-		}
 	out_text("\tmaster -- slave%u [label=\"%s\", weight=\"%u\"", at,
 		 port_type_text(all->v[at].ports[port].type),
 		 all->v[at].ports[port].type == TYPE_EBUS ? 5u : 1u);
 	label("headlabel", &all->v[at], port, info, regs[at]);
 	out_text("]\n");
+}
+
+/*
+ * The first open port without a slave behind it leads to the master, in a ring the last one as
+ * well; it may be on any slave.
+ */
+static void to_master(const struct slaves *all, bool ring, enum info info,
+		      const struct ect_errors *const *regs)
+{
+	unsigned int at[2] = { 0 }, port[2] = { 0 }, n = 0;
+
+	for (unsigned int i = 0; i < all->n; i++)
+		for (unsigned int p = 0; p < ECT_PORTS; p++) {
+			const struct ect_port *x = &all->v[i].ports[p];
+
+			if (!x->signal || x->loop_closed || x->next_slave != ECT_NONE16)
+				continue;
+			at[!!n] = i;
+			port[!!n] = p;
+			n++;
+		}
+	edge_to_master(all, at[0], port[0], info, regs);
+	if (ring && n > 1)
+		edge_to_master(all, at[1], port[1], info, regs);
 }
 
 static void no_line(const struct dev *d, const char *text)
@@ -108,8 +120,11 @@ static void no_line(const struct dev *d, const char *text)
 static int draw(struct dev *d, const struct slaves *all, enum info info,
 		const struct ect_errors *const *regs)
 {
+	struct ect_list *devices;
 	int ret;
 
+	if (dev_devices(d, &devices))
+		return 1;
 	out_text("/* ethercat graph | dot -Tsvg > bus.svg */\n\n");
 	out_text("strict graph bus {\n\trankdir=\"LR\"\n\tranksep=0.8\n\tnodesep=0.8\n"
 		 "\tnode [fontname=\"Helvetica\"]\n"
@@ -121,7 +136,8 @@ static int draw(struct dev *d, const struct slaves *all, enum info info,
 	out_end();
 	out_text("\n");
 	if (all->n)
-		to_master(all, info, regs);
+		to_master(all, ect_list_get(devices, 1), info, regs);
+	ect_list_free(devices);
 	out_array("links");
 	for (size_t i = 0; i < all->n; i++)
 		for (unsigned int p = 0; p < ECT_PORTS; p++) {
