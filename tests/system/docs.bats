@@ -83,6 +83,21 @@ has_slaves() { wait_for 60 eval "[ \"\$(ethercat slaves | grep -c PREOP)\" = $1 
 	wait_for 60 eval '[ "$(stat -c %s frames.pcap)" -gt 1000 ]'
 }
 
+@test "ring.rst: a ring is opened and closed" {
+	local f=Documentation/ring.rst
+
+	mountpoint -q /sys/kernel/debug || mount -t debugfs none /sys/kernel/debug
+	doc $f "printf 'repeat 8 slave d drive\\nwire d8.1 -> master.1\\n' >/tmp/segment"
+	wait_for 60 eval 'ethercat master | grep -q "Ring: closed"'
+	doc $f "echo 'cut d4.1' >/sys/kernel/debug/ec_sim/sim0" >"$BATS_TEST_TMPDIR/shown"
+	cat "$BATS_TEST_TMPDIR/shown"
+	grep -q 'Ring: open between port 1 of slave 3 and slave 4' "$BATS_TEST_TMPDIR/shown"
+	grep -q 'xxx LINK FAILURE xxx' "$BATS_TEST_TMPDIR/shown"
+	grep -q 'backup device sim0b' "$BATS_TEST_TMPDIR/shown"
+	doc $f "echo 'heal d4.1' >/sys/kernel/debug/ec_sim/sim0"
+	wait_for 60 eval 'ethercat master | grep -q "Ring: closed"'
+}
+
 @test "simulator.rst: virtual device" {
 	doc Documentation/simulator.rst 'modprobe ec_master main_devices=sim0'
 	has_slaves 22

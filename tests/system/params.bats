@@ -54,14 +54,32 @@ no_insmod() {
 	no_insmod 'debug_level: 3 is not 0, 1 or 2' master main_devices=sim0 debug_level=3
 }
 
-@test "backup devices are refused until there is redundancy" {
-	no_insmod 'backup_devices: "eth1": this version has no cable redundancy; load ec_master without' \
-		master main_devices=sim0 backup_devices=eth1
-	no_insmod 'backup_devices: "eth1"' master main_devices=sim0,sim1 backup_devices=,eth1
+@test "a backup device needs a master and a name of its own" {
+	local any=ff:ff:ff:ff:ff:ff
+
+	no_insmod 'backup_devices: sim0b: there is no master 0; main_devices= has 0 entries' \
+		master backup_devices=sim0b
+	no_insmod 'backup_devices: sim1b: there is no master 1; main_devices= has 1 entries' \
+		master main_devices=sim0 backup_devices=,sim1b
+	no_insmod 'backup_devices: device sim0 is listed twice; each end of a ring needs its own' \
+		master main_devices=sim0 backup_devices=sim0
+	no_insmod 'backup_devices: device sim1 is listed twice' \
+		master main_devices=sim0,sim1 backup_devices=sim1
+	no_insmod 'backup_devices: device eth1 is listed twice' \
+		master main_devices=sim0,sim1 backup_devices=eth1,eth1
+	no_insmod 'master 0: with a backup device both ends of the ring need the name' \
+		master main_devices=sim0 backup_devices=$any
+	no_insmod 'master 0: with a backup device both ends of the ring need the name' \
+		master main_devices=$any backup_devices=eth1
+	no_insmod 'backup_devices: "eth0:1" is neither the MAC address of a device' \
+		master main_devices=sim0 backup_devices=eth0:1
+	[ ! -e /dev/EtherCAT0 ]
 	# none, as scripts write it
 	dmesg -C
 	master main_devices=sim0 backup_devices=
 	[ -z "$(dmesg | grep EtherCAT)" ]
+	ethercat master | grep -q 'Main: sim0'
+	[[ $(ethercat master) != *Ring:* ]]
 }
 
 @test "a missing interface is reported, and the master waits for it" {
@@ -156,6 +174,22 @@ bridged() {
 	dmesg -C
 	sim segment=thin
 	one_line '"sim1" is not offered, segment= names 1 segment\(s\); master 0 waits'
+}
+
+@test "a backup device that is absent is reported: sim0b of no ring, a missing interface" {
+	master main_devices=sim0 backup_devices=sim0b
+	dmesg -C
+	sim segment=thin
+	dmesg | grep -v attached | grep ec_sim | tee "$BATS_TEST_TMPDIR/log"
+	grep -q 'backup_devices: "sim0b" is not offered, that segment has no wire to master.1; master 0' \
+		"$BATS_TEST_TMPDIR/log"
+	stop
+	ip link add veth0 type veth peer name veth1
+	master main_devices=veth0 backup_devices=veth9
+	dmesg -C
+	generic
+	dmesg | grep -q 'backup_devices: "veth9" is neither the name nor the MAC address of a network'
+	ethercat master | grep -q 'Backup: veth9 (waiting...)'
 }
 
 @test "ec_sim at a missing interface: insmod fails with one line" {
