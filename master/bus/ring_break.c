@@ -54,7 +54,7 @@ void ec_ring_break_report(struct ec_bus *bus)
 	    (bus->ring_told[0] == state &&
 	     (state == EC_RING_CLOSED || bus->ring_told[1] == bus->front)))
 		return;
-	bus->ring_told[0] = state;
+	WRITE_ONCE(bus->ring_told[0], state);
 	bus->ring_told[1] = bus->front;
 	ec_ring_break_show(bus, &state, &slave, &port, &next);
 	if (state == EC_RING_CLOSED)
@@ -79,6 +79,9 @@ void ec_ring_break_show(const struct ec_bus *bus, u32 *state, u32 *slave, u32 *p
 
 	*state = READ_ONCE(bus->links->ring.state);
 	*slave = *port = *next = EC_EVENT_NONE;
+	/* a scan begins: the place is not known before it is complete */
+	if (*state >= EC_RING_CLOSED && *state != READ_ONCE(bus->ring_told[0]))
+		*state = EC_RING_UNKNOWN;
 	if (*state != EC_RING_OPEN)
 		return;
 	*slave = bus->break_at[0];
