@@ -8,7 +8,7 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 out=$(mktemp)
 trap 'rm -f "$out" "$out.x" "$out.y"' EXIT
-names="run compare syncunits hotconnect"
+names="run compare syncunits hotconnect redundancy"
 passed=0 failed=0
 
 t() {	# t NAME COMMAND...
@@ -58,6 +58,11 @@ t "DEMO=compare names the exchanged slave" \
 t "DEMO=syncunits shows the unit that has failed" shows '^  failed, outputs zero, 1 fault'
 t "DEMO=syncunits and hotconnect draw a part that goes and returns, and one that stays" \
 	[ "$(grep -cE '^left +[#~-]{60}\|$' "$out.y")" = 2 ]
+t "DEMO=redundancy shows where the ring is open" \
+	shows '^Warning: ring open between port 1 of slave 2 .* and slave 3 '
+t "DEMO=redundancy shows a tree for each device" shows '^Master0: backup device sim0b, link up'
+t "DEMO=redundancy has all slaves in OP and its cycles complete" \
+	shows '^cycles: [0-9]{4,}, incomplete: [0-4]$'
 for name in install kernel build:\ {modules,library,tool,application}; do
 	t "the step '$name' has its seconds" says "^\[ *[0-9]+ s\] $name: done in [0-9]+ s$"
 done

@@ -16,6 +16,7 @@ list() {
 	compare     yesterday's file and today's machine: an exchanged slave is named
 	syncunits   a part of the machine fails, the other one keeps running
 	hotconnect  a part of the machine is unplugged and plugged in again while the other one runs
+	redundancy  a cable of a ring is taken out: each value keeps moving
 	END
 }
 
@@ -61,11 +62,11 @@ wait_for() {	# wait_for SECONDS COMMAND...
 
 ready() { [ "$(ethercat slaves 2>/dev/null | awk '$3 == "PREOP"' | wc -l)" = "$1" ]; }
 
-# bus SLAVES: the segment on stdin
+# bus SLAVES [PARAMETER...]: of ec_master; the segment on stdin
 bus() {
 	unload
 	cat >"$tmp/segment"
-	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0 &&
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=sim0 "${@:2}" &&
 		insmod "$EC_BUILD/modules/devices/sim/ec_sim.ko" segment="$tmp/segment" ||
 		die "the modules cannot be loaded" "dmesg says why; with secure boot they must be signed"
 	wait_for 60 ready "$1" || die "not all of $1 slaves reached PREOP in 60 s" "see dmesg"
@@ -190,6 +191,73 @@ scene_hotconnect() {
 	step "its cable is taken away for 2 s; the left part keeps all of its cycles"
 	parts groups 'unplug coupler.2' 'plug coupler.2 coupler2.0' slaves
 	judge
+}
+
+# two stations, each with a coupler, analog inputs and an extension; the last cable leads back
+stations() {
+	cat <<-END
+	segment seed=6
+	slave station1 EK1100
+	slave level EL3062
+	slave end1 EK1110
+	slave station2 EK1100 cable=50
+	slave pressure EL3062
+	slave end2 EK1110
+	wire end2.1 -> master.1 cable=50
+	sine level.1 amplitude=15000 period=2s
+	sine pressure.1 amplitude=15000 period=1500ms
+	END
+}
+
+ring_is() { ethercat master --json | grep -q "\"state\": *\"$1\""; }
+
+# change FAULT STATE: of the cable between the stations, and what the master says then
+change() {
+	echo "\$ echo '$1' >$sim"
+	echo "$1" >$sim || die "the simulator" "is debugfs mounted?"
+	wait_for 20 ring_is "$2" || die "the ring" "it should be $2"
+	show ethercat graph --tree
+	show ethercat slaves
+	ethercat slaves | awk '/^ *[0-9]+ / && $3 != "OP" { bad = 1 } END { exit bad }' ||
+		die "slaves" "all of them should stay in OP"
+}
+
+scene_redundancy() {
+	local recorder file=$tmp/ring.csv
+
+	step "redundancy: two stations in a ring, with a device of the master at each end"
+	cat <<-END
+
+	    main device ---- station 1 ---- station 2 ---- backup device
+
+	Each frame is sent at both ends. While the ring is closed the slaves process the copy of one
+	end; with a cable out each copy reaches the slaves up to the break and comes back.
+
+	END
+	bus 6 backup_devices=sim0b < <(stations)
+	show ethercat run || die "ethercat run" "'ethercat why' names the cause"
+	wait_for 20 ring_is closed || die "the ring" "it should be closed"
+	show ethercat graph --tree
+	step "record: both stations have an input that moves all the time"
+	echo "\$ ethercat record '*.value' -o ring.csv --time 6 &"
+	"$EC_BUILD/tool/ethercat" record '*.value' -o "$file" --time 6 &
+	recorder=$!
+	sleep 2
+	step "the cable between the stations is taken out"
+	change 'cut end1.1' open
+	show ethercat why
+	sleep 2
+	step "and plugged in again"
+	change 'heal end1.1' closed
+	wait $recorder || die "ethercat record" "see above"
+	step "plot: what was recorded; the cable was out from second 2 on, for more than 2 seconds"
+	show ethercat plot "$file" || die "ethercat plot" "see above"
+	step "count: cycles whose working counter was not complete"
+	awk -F, '!/^#/ && NF > 5 { if (!head++) next; n++; bad += $5 != 2 }
+		END { printf "cycles: %d, incomplete: %d\n", n, bad; exit !n || bad > 4 }' "$file" ||
+		die "process data" "at most a frame at each event should be lost"
+	show ethercat log
+	show ethercat stop || die "ethercat stop" "see above"
 }
 
 for name; do
