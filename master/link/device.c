@@ -267,26 +267,24 @@ static void set_main(struct ec_links *l, const char *name)
 	raw_spin_unlock(&l->main_lock);
 }
 
-/* Another master that has this device or waits for it. */
+/* The master that has this device or waits for it, but for @l as its main device. */
 static const struct ec_links *rival_of(const struct ec_links *l, const char *name)
 {
 	const struct ec_links *o;
 	unsigned int side;
 
 	lockdep_assert_held(&devices_lock);
-	list_for_each_entry(o, &masters, list) {
-		if (o == l)
-			continue;
-		if (ec_spec_same(name, o->main))
-			return o;
-		for (side = 0; side < EC_MAX_LINKS; side++) {
+	list_for_each_entry(o, &masters, list)
+		for (side = o == l ? EC_BACKUP : EC_MAIN; side < EC_MAX_LINKS; side++) {
+			const char *spec = side ? o->backup : o->main;
 			const struct ecdev *dev = o->link[side].dev;
 
+			if (spec && ec_spec_same(name, spec))
+				return o;
 			if (dev && !ec_spec_is_any(name) &&
 			    ec_spec_matches(name, dev->name, dev->mac))
 				return o;
 		}
-	}
 	return NULL;
 }
 
@@ -300,7 +298,7 @@ static const struct ec_links *rival_of(const struct ec_links *l, const char *nam
  *
  * Context: Process. May sleep, takes RTNL.
  * Return: 0; -EEXIST when it keeps its device, which is @name now; -EBUSY when another master has
- * the device @name or waits for it.
+ * the device @name or waits for it, or it is the backup device.
  */
 int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival)
 {
@@ -355,7 +353,7 @@ int ec_device_use(struct ec_links *l, const char *name)
 	rtnl_unlock();
 	/* drivers offer only devices that a master wants */
 	blocking_notifier_call_chain(&changes, 0, NULL);
-	return ec_links_attached(l) ? 0 : -ENODEV;
+	return READ_ONCE(l->link[EC_MAIN].dev) ? 0 : -ENODEV;
 }
 
 /**

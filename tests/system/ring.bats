@@ -216,6 +216,14 @@ app_ends() {
 	wait_for 60 all_slaves_are OP 3
 }
 
+@test "the main device of a ring can be another one, but not the backup device" {
+	virtual
+	refused 'sim0b is the device of master 0' device use sim0b
+	refused 'no driver offers sim5.*keeps sim0' device use sim5
+	wait_for 60 ring closed
+	wait_for 60 all_slaves_are PREOP $slaves
+}
+
 # wire N M: a cable between vethN and vethM
 wire() {
 	ip link add veth$1 type veth peer name veth$2
