@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * ec_sim.ko: segment=<built-in name or path of a description>[,<another>], as the
- * virtual devices sim0, sim1... (the other end of a ring: sim0b...), or one segment with netdev=<name>[,<name>]
- * answering at network devices.
+ * virtual devices sim0, sim1... (the other end of a ring: sim0b...), or one segment with
+ * netdev=<name>[,<name>] answering at network devices.
  */
 #include <linux/err.h>
 #include <linux/file.h>

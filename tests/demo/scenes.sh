@@ -239,8 +239,8 @@ scene_redundancy() {
 	wait_for 20 ring_is closed || die "the ring" "it should be closed"
 	show ethercat graph --tree
 	step "record: both stations have an input that moves all the time"
-	echo "\$ ethercat record '*.value' -o ring.csv --time 6 &"
-	"$EC_BUILD/tool/ethercat" record '*.value' -o "$file" --time 6 &
+	echo "\$ ethercat record '*channel_1.value' -o ring.csv --time 6 &"
+	"$EC_BUILD/tool/ethercat" record '*channel_1.value' -o "$file" --time 6 &
 	recorder=$!
 	sleep 2
 	step "the cable between the stations is taken out"

@@ -50,6 +50,12 @@ ring() { [ "$(says Ring)" = "$1" ] || { echo "ring: $(says Ring)"; return 1; }; 
 # tell FAULT...: of the simulator
 tell() { echo "$*" >$sim; }
 
+# how often slaves have changed their state
+changes() {
+	ethercat log --json |
+		gojq '[.masters[0].events[] | select(.event == "al_state")] | length'
+}
+
 # in the background, all slaves in OP
 app_runs() {
 	python3 "$BATS_TEST_DIRNAME/ring_app.py" "$EC_BUILD/lib/libethercat.so" 5 $slaves \
@@ -89,7 +95,7 @@ app_ends() {
 	app_runs
 	ring closed
 	seen_is redundancy_active 0
-	before=$(ethercat log --json | gojq '[.masters[0].events[] | select(.event == "al_state")] | length')
+	before=$(changes)
 	for i in 1 2 3 4; do
 		tell cut o$i.1
 		wait_for 20 ring "open between port 1 of slave $((2 * i - 2)) and slave $((2 * i - 1))"
@@ -114,8 +120,7 @@ app_ends() {
 	tell heal i4.1
 	wait_for 20 ring closed
 	goes_on 100
-	[ "$(ethercat log --json |
-		gojq '[.masters[0].events[] | select(.event == "al_state")] | length')" = "$before" ]
+	[ "$(changes)" = "$before" ]
 	app_ends 12
 }
 
@@ -142,7 +147,7 @@ app_ends() {
 	json '[.masters[0].events[] | select(.event == "ring_open")] | length == 1' log
 	tell heal i2.1
 	wait_for 20 ring closed
-	json '.masters[0].ring == {"state": "closed", "slave": null, "port": null, "next": null}' master
+	json '.masters[0].ring | .state == "closed" and .slave == null and .next == null' master
 	json '[.masters[0].events[] | select(.event == "ring_closed")] | length >= 1' log
 	run ethercat slaves
 	[[ $output != *FAILURE* ]]
