@@ -43,7 +43,7 @@ struct ec_dg {
 	u16 side_wkc[EC_MAX_LINKS];
 	/** @side_back: result: slaves that each link's copy has passed */
 	u16 side_back[EC_MAX_LINKS];
-	/** @crossed: result: mask of the links whose copy came back by the other one */
+	/** @crossed: result: mask of the links whose copy the other one has received */
 	u8 crossed;
 	/** @back: result: @adp of the reply (position plus slaves passed by all copies) */
 	u16 back;

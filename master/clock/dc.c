@@ -131,7 +131,7 @@ void ec_dc_look_behind(struct ec_dc *dc)
 	}
 	if (b->station == station && b->front == front)
 		return;
-	/* the cycle begins anew when it has seen the number */
+	/* the cycle begins again when it has seen the number */
 	WRITE_ONCE(b->station, 0);
 	WRITE_ONCE(b->delay, delay);
 	WRITE_ONCE(b->ref, first && first == dc->ref);

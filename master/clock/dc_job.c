@@ -497,9 +497,9 @@ static u64 device_before(const struct ec_dc_job *j, unsigned int i)
 }
 
 /*
- * Does a delay stay valid? A ring that opens and closes changes no way in it, and cannot be measured
- * while it runs without opening it: there a delay is valid as long as the slave is behind the same
- * one.
+ * Does a delay stay valid? A ring that opens and closes changes no way in it, and cannot be
+ * measured while it runs without opening it: there a delay is valid as long as the slave is behind
+ * the same one.
  */
 static bool stays(const struct ec_dc_job *j, unsigned int i, u32 scan)
 {

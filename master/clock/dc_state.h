@@ -199,7 +199,7 @@ struct ec_dc_app {
 struct ec_dc_behind {
 	/** @number: of the break; changes with what follows */
 	u32 number;
-	/** @station: of the reference clock if it is there, else of the first clock; 0: none */
+	/** @station: of the reference clock if it is behind, else of the first clock; 0: none */
 	u16 station;
 	/** @ref: it is the reference clock */
 	bool ref;

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * On one side of the break of a ring no reference clock is on the way of the frames, so the master
- * gives the time, predicted from the replies of that clock on the other side. The frames of the backup link pass the
- * slaves there in the same order as those of the main link did, so the delays in their registers
- * stay right but for one difference: how much later or earlier the first one is reached. Just
- * after the break the clocks there are right: their time shows that difference.
+ * gives the time, predicted from the replies of that clock on the other side. The frames of the
+ * backup link pass the slaves there in the same order as those of the main link did, so the delays
+ * in their registers stay right but for one difference: how much later or earlier the first one is
+ * reached. Just after the break the clocks there are right: their time shows that difference.
  */
 #include "../clock/dc_state.h"
 #include "../wire/frame.h"

@@ -115,8 +115,8 @@ static u8 live(const struct ec_links *l, u8 sides)
  * @now: time
  *
  * A link that is down is skipped while another one is up. One that fails does not stop the others:
- * the slot awaits only the copies of links that have sent the frame. One without transmit buffer counts an error then, since the frame does not wait
- * for it. ec_links_flush() must follow.
+ * the slot awaits only the copies of links that have sent the frame. One without transmit buffer
+ * counts an error then, since the frame does not wait for it. ec_links_flush() must follow.
  *
  * Context: The owner of the bus access, in an RCU read section. RT-safe.
  * Return: 0: at least one link has sent it; -ENODEV: no device; -EBUSY: no transmit buffer, not

@@ -17,8 +17,8 @@ static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
 }
 
 /*
- * Find the slot that a frame belongs to, and fill it. A reply to the cycle may stay in the memory of
- * the device, see struct ec_link.keep: the cycle owner takes it before it leaves the links.
+ * Find the slot that a frame belongs to, and fill it. A reply to the cycle may stay in the memory
+ * of the device, see struct ec_link.keep: the cycle owner takes it before it leaves the links.
  */
 static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_link *by,
 					   const u8 *src, const u8 *data, size_t len)

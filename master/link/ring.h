@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
 /*
  * A ring: the backup device is at its other end. Each frame enters at both ends. In a closed ring
- * the slaves process the copy of one end, and each copy returns at the other end. In an open one each
- * copy reaches the slaves up to the break, and returns where it was sent.
+ * the slaves process the copy of one end, and each copy returns at the other end. In an open one
+ * each copy reaches the slaves up to the break, and returns where it was sent.
  */
 #ifndef EC_RING_H
 #define EC_RING_H
