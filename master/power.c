@@ -315,7 +315,10 @@ void ec_power_down(const char *what)
 				LIMIT_MS);
 }
 
-/* A session without an application has no owner; neither has one whose process has left its file to another. */
+/*
+ * A session without an application has no owner; neither has one whose process has left its file to
+ * another.
+ */
 static void refuse(struct ec_master *m)
 {
 	char who[64];

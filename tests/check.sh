@@ -78,7 +78,9 @@ count() {
 # LINES (40) of comment; at most ALL lines (200)
 failures() {
 	awk -v most="${2:-40}" '
-		/^[ \t]*(not ok|FAIL |FAILED:|ERROR: |KERNEL REPORT|demo: FAILED)/ { n = 0; max = most; print; next }
+		/^[ \t]*(not ok|FAIL |FAILED:|ERROR: |KERNEL REPORT|demo: FAILED)/ {
+			n = 0; max = most; print; next
+		}
 		max > 12 && !/^#/ { max = 12 }
 		n++ < max' "$1" | head -n "${3:-200}"
 }

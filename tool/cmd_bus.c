@@ -421,8 +421,7 @@ static int run(struct tool *t, int argc, char **argv)
 const struct cmd cmd_bus = {
 	.name = "bus",
 	.run = run,
-	.args = "save [<FILE>] | check <FILE> | diff <FILE> <FILE> | show <FILE> | "
-		"compile <FILE> | schema",
+	.args = "save [<FILE>] | check <FILE> | diff <FILE> <FILE> | show <FILE> | compile <FILE> | schema",
 	.opts = "mofZ",
 	.summary = "Write the bus to a file, compare it with a file, show a file",
 	.help = "A bus file is YAML: masters, slaves and what they need, names of values.\n"

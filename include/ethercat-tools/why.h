@@ -67,7 +67,8 @@ struct ect_why;
  * Goes from the symptoms to the causes: device, link, cycle, missing and different slaves, PDOs,
  * SDOs, AL status codes, clocks, working counters, EEPROMs, error counters, emergencies, errors of
  * drives (SoE). Reads what the master knows; only the error counters of the ports are read from
- * the slaves, and drives are asked for their errors, if the user may. May wait half a second to see whether a counter still grows.
+ * the slaves, and drives are asked for their errors, if the user may. May wait half a second to see
+ * whether a counter still grows.
  *
  * Context: The thread of the handle.
  * Return: 0, also when there are faults; or a negative errno.

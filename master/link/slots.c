@@ -140,8 +140,8 @@ bool ec_slot_settle(struct ec_slot *slot)
 }
 
 /*
- * The reply is the copy of the first link that has one, or what was sent. With the last copy the slot
- * is DONE.
+ * The reply is the copy of the first link that has one, or what was sent. With the last copy the
+ * slot is DONE.
  */
 static bool is_complete(struct ec_slot *slot)
 {

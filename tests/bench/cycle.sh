@@ -418,12 +418,13 @@ ring_cost() {
 				--period-us 4100 || return
 			cost ring
 			reliable "ring, $state"
-			work2=$((v[application_work] + v[card_work] + v[master_work] + v[rest_work]))
+			work2=$((v[application_work] + v[card_work] + v[master_work]))
+			work2=$((work2 + v[rest_work]))
 			echo "# all work: $work2, with one device $work"
 			limit=$((one * ${most[$state]} / 100))
 			two=${v[total_mean]}
 			row "$two" $limit "instructions of the calls, ring $state: $n drive(s)"
-			gate "$n drive(s), ring $state: $two instructions, $(ratio $two $one) of one device" \
+			gate "$n drive(s), ring $state: $two instructions, $(ratio $two $one) of one" \
 				"two > one && two <= limit"
 		done
 	done

@@ -396,5 +396,7 @@ static struct kunit_case cases[] = {
 	{ }
 };
 
-static struct kunit_suite suite = { .name = "bus_dc_wiring", .exit = bus_exit, .test_cases = cases };
+static struct kunit_suite suite = {
+	.name = "bus_dc_wiring", .exit = bus_exit, .test_cases = cases,
+};
 kunit_test_suite(suite);

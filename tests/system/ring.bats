@@ -208,7 +208,7 @@ app_ends() {
 	[ ! -e /dev/EtherCAT0 ]
 }
 
-@test "a master whose backup device is absent works with the main device, and says what is missing" {
+@test "a master whose backup device is absent works with the main device, and names the absent one" {
 	segment=three
 	master main_devices=sim0 backup_devices=veth9
 	simulator

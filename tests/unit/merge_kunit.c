@@ -41,7 +41,7 @@ static u16 merged(unsigned int i)
 	return get_unaligned_le16(at[1][i] + bytes[i]);
 }
 
-static void merge_takes_the_copy_that_was_processed(struct kunit *test)
+static void merge_processed_copy_is_taken(struct kunit *test)
 {
 	merge_build();
 	memcpy(at[2][0], "\x08\x00", 2);
@@ -57,7 +57,7 @@ static void merge_takes_the_copy_that_was_processed(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, at[1][2], at[0][2], 11);
 }
 
-static void merge_counts_a_broadcast_of_both_sides(struct kunit *test)
+static void merge_broadcast_counts_both_sides(struct kunit *test)
 {
 	merge_build();
 	put_unaligned_le16(3, at[1][1] - EC_DGRAM_HDR + 2);
@@ -75,7 +75,7 @@ static void merge_counts_a_broadcast_of_both_sides(struct kunit *test)
 }
 
 /* Bits of one byte from slaves of both sides, and a byte behind the last word of 8. */
-static void merge_takes_each_bit_of_its_side(struct kunit *test)
+static void merge_bits_are_of_their_side(struct kunit *test)
 {
 	merge_build();
 	at[1][2][0] = 0xaa;	/* low half */
@@ -92,7 +92,7 @@ static void merge_takes_each_bit_of_its_side(struct kunit *test)
 }
 
 /* A slave that both copies have reached has written the same. */
-static void merge_keeps_what_both_sides_have(struct kunit *test)
+static void merge_same_change_of_both_sides_stays(struct kunit *test)
 {
 	merge_build();
 	memset(at[1][3], 0x3c, 11);
@@ -105,7 +105,7 @@ static void merge_keeps_what_both_sides_have(struct kunit *test)
 }
 
 /* Lengths that do not fit into the frame end the merge. */
-static void merge_stays_within_the_frame(struct kunit *test)
+static void merge_length_beyond_frame_ends_it(struct kunit *test)
 {
 	merge_build();
 	put_unaligned_le16(0x7ff | EC_DGRAM_MORE, at[0][1] - EC_DGRAM_HDR + 6);
@@ -117,11 +117,11 @@ static void merge_stays_within_the_frame(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
-	KUNIT_CASE(merge_takes_the_copy_that_was_processed),
-	KUNIT_CASE(merge_counts_a_broadcast_of_both_sides),
-	KUNIT_CASE(merge_takes_each_bit_of_its_side),
-	KUNIT_CASE(merge_keeps_what_both_sides_have),
-	KUNIT_CASE(merge_stays_within_the_frame),
+	KUNIT_CASE(merge_processed_copy_is_taken),
+	KUNIT_CASE(merge_broadcast_counts_both_sides),
+	KUNIT_CASE(merge_bits_are_of_their_side),
+	KUNIT_CASE(merge_same_change_of_both_sides_stays),
+	KUNIT_CASE(merge_length_beyond_frame_ends_it),
 	{}
 };
 
