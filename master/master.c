@@ -168,7 +168,7 @@ static int master_check_name(const char *list, const char *spec, unsigned int in
 	return -EINVAL;
 }
 
-static bool is_listed(const char *spec, char **names, unsigned int n)
+static bool names_have(const char *spec, char **names, unsigned int n)
 {
 	unsigned int i;
 
@@ -200,7 +200,7 @@ static int check_backups(char **main, unsigned int n_main, char **backup, unsign
 			       i);
 			return -EINVAL;
 		}
-		if (!is_listed(backup[i], main, n_main) && !is_listed(backup[i], backup, i))
+		if (!names_have(backup[i], main, n_main) && !names_have(backup[i], backup, i))
 			continue;
 		pr_err("EtherCAT: backup_devices: device %s is listed twice; each end of a ring needs its own\n",
 		       backup[i]);
@@ -222,7 +222,7 @@ static int check_names(char **main, unsigned int n_main, char **backup, unsigned
 		ret = master_check_name("main_devices", main[i], i);
 		if (ret)
 			return ret;
-		if (!is_listed(main[i], main, i))
+		if (!names_have(main[i], main, i))
 			continue;
 		pr_err("EtherCAT: main_devices: device %s is listed twice; each master needs its own\n",
 		       main[i]);

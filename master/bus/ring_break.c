@@ -5,7 +5,7 @@
 #include "ring_break.h"
 #include "slave.h"
 
-static bool is_open(const struct ec_bus *bus)
+static bool ring_is_open(const struct ec_bus *bus)
 {
 	return bus->links->ring.state == EC_RING_OPEN;
 }
@@ -26,7 +26,7 @@ void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned i
 	u32 *at = bus->break_at;
 
 	lockdep_assert_held_write(&bus->topo);
-	if (!is_open(bus))
+	if (!ring_is_open(bus))
 		return;
 	up = next ? ec_graph_parent(next) : NULL;
 	if (up) {

@@ -501,7 +501,7 @@ static u64 device_before(const struct ec_dc_job *j, unsigned int i)
  * measured while it runs without opening it: there a delay is valid as long as the slave is behind
  * the same one.
  */
-static bool stays(const struct ec_dc_job *j, unsigned int i, u32 scan)
+static bool delay_stays(const struct ec_dc_job *j, unsigned int i, u32 scan)
 {
 	const struct ec_clock *c = ec_job_clock(j, i);
 
@@ -516,11 +516,11 @@ static bool known(struct ec_dc_job *j, u32 scan)
 	unsigned int i;
 
 	for (i = 0; i < j->n; i++)
-		if (j->nodes[i].dc && !stays(j, i, scan))
+		if (j->nodes[i].dc && !delay_stays(j, i, scan))
 			return false;
 	/* also of excluded slaves: their clocks may be set again */
 	for (i = 0; i < j->n; i++)
-		if (stays(j, i, scan))
+		if (delay_stays(j, i, scan))
 			ec_job_clock(j, i)->delay -= zero;
 	return true;
 }
