@@ -164,6 +164,23 @@ bool ec_graph_is_reversed(const struct ec_slave *s)
 }
 
 /**
+ * ec_graph_free_port() - a port by which frames leave a slave although none is known there
+ * @s: slave of the list
+ *
+ * Context: The monitor thread, or as for ec_bus_assert_stays().
+ * Return: port, or -1: there is none.
+ */
+int ec_graph_free_port(const struct ec_slave *s)
+{
+	unsigned int p;
+
+	for (p = 0; p < EC_MAX_PORT; p++)
+		if (p != s->graph.upstream && ec_graph_is_open(s, p) && !s->graph.at[p])
+			return p;
+	return -1;
+}
+
+/**
  * ec_graph_ring_exit() - by which port does a closed ring leave a slave for the backup device?
  * @s: slave of the list
  *
@@ -172,14 +189,9 @@ bool ec_graph_is_reversed(const struct ec_slave *s)
  */
 int ec_graph_ring_exit(const struct ec_slave *s)
 {
-	unsigned int p;
-
 	if (READ_ONCE(s->bus->links->ring.state) != EC_RING_CLOSED)
 		return -1;
-	for (p = 0; p < EC_MAX_PORT; p++)
-		if (p != s->graph.upstream && ec_graph_is_open(s, p) && !s->graph.at[p])
-			return p;
-	return -1;
+	return ec_graph_free_port(s);
 }
 
 /**

@@ -10,6 +10,17 @@ static bool ring_is_open(const struct ec_bus *bus)
 	return bus->links->ring.state == EC_RING_OPEN;
 }
 
+/* The port of a ring that was closed until now, from which a cable led to the backup device. */
+static void note_exit(struct ec_bus *bus)
+{
+	ec_for_each_slave(s, bus) {
+		if (ec_graph_free_port(s) < 0)
+			continue;
+		bus->break_at[0] = s->position;
+		bus->break_at[1] = ec_graph_free_port(s);
+	}
+}
+
 /**
  * ec_ring_break_note() - the list of slaves changes: where will the ring be open?
  * @bus: bus, @front set; the graph is that of the list before
@@ -37,6 +48,8 @@ void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned i
 	} else if (at[0] != bus->front - 1 || bus->ring_told[0] != EC_RING_OPEN) {
 		at[0] = min(bus->front, n) - 1;
 		at[1] = EC_EVENT_NONE;
+		if (!next && bus->ring_told[0] == EC_RING_CLOSED)
+			note_exit(bus);
 	}
 }
 

@@ -3,6 +3,7 @@
 #include "cyc.h"
 #include "devices/sim/esc_int.h"
 #include "master/bus/graph.h"
+#include "master/bus/ring_break.h"
 #include "master/mailbox/coe.h"
 
 #define SLAVES		8
@@ -223,7 +224,7 @@ static void ring_cut_at_rest(struct kunit *test)
 {
 	struct bus *b = bus_up(test, ring_text, SLAVES);
 	u16 station[SLAVES];
-	u32 i, k;
+	u32 i, k, at[4];
 
 	bus_idle(b);
 	for (k = 0; k < SLAVES; k++)
@@ -232,6 +233,10 @@ static void ring_cut_at_rest(struct kunit *test)
 		cable(b, true, i);
 		bus_idle(b);
 		expect_open(b, i);
+		ec_ring_break_show(bus_table(b), &at[0], &at[1], &at[2], &at[3]);
+		KUNIT_EXPECT_EQ(test, at[1], i ? i - 1 : EC_EVENT_NONE);
+		KUNIT_EXPECT_EQ(test, at[2], i ? 1 : EC_EVENT_NONE);
+		KUNIT_EXPECT_EQ(test, at[3], i < SLAVES ? i : EC_EVENT_NONE);
 		for (k = 0; k < SLAVES; k++) {
 			KUNIT_EXPECT_EQ(test, bus_slave(b, k)->station, station[k]);
 			KUNIT_EXPECT_FALSE(test, bus_slave(b, k)->graph.inconsistent);

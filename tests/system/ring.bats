@@ -114,7 +114,7 @@ app_ends() {
 	tell heal o1.0
 	wait_for 20 ring closed
 	tell cut i4.1
-	wait_for 20 ring "open between slave 7 and the backup device"
+	wait_for 20 ring "open between port 1 of slave 7 and the backup device"
 	goes_on 100
 	json '.masters[0].devices | .[0].link_up and .[1].link_up == false' master
 	tell heal i4.1
@@ -262,7 +262,7 @@ cut_and_heal() {
 	# a device goes, and the slaves are reached by the other one
 	tell cut i4.1
 	ip link set veth3 down
-	wait_for 20 ring "open between slave 7 and the backup device"
+	wait_for 20 ring "open between port 1 of slave 7 and the backup device"
 	goes_on 100
 	ip link set veth3 up
 	tell heal i4.1
@@ -318,7 +318,7 @@ links_are_up() { json '.masters[0].devices | all(.link_up)' master; }
 	wait_for 20 ring closed
 	goes_on 100
 	pull nic2 i4.1
-	wait_for 20 ring "open between slave 7 and the backup device"
+	wait_for 20 ring "open between port 1 of slave 7 and the backup device"
 	goes_on 100
 	plug nic2 i4.1
 	wait_for 20 ring closed
