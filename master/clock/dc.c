@@ -116,9 +116,12 @@ void ec_dc_look_behind(struct ec_dc *dc)
 	u32 front = dc->bus->front, delay = 0;
 	const struct ec_slave *first = NULL;
 	u16 station = 0;
+	bool ref = false;
 
 	if (dc->bus->links->only)
 		return;
+	/* the worker of the clocks may choose another reference clock */
+	down_read(&dc->bus->topo);
 	if (dc->bus->links->ring.state == EC_RING_OPEN && dc->ref) {
 		if (ec_graph_is_reversed(dc->ref))
 			first = dc->ref;
@@ -128,13 +131,15 @@ void ec_dc_look_behind(struct ec_dc *dc)
 	if (first) {
 		station = first->station;
 		delay = ec_clock_of(first)->delay;
+		ref = first == dc->ref;
 	}
-	if (b->station == station && b->front == front)
+	up_read(&dc->bus->topo);
+	if (b->station == station && b->front == front && b->ref == ref)
 		return;
 	/* the cycle begins again when it has seen the number */
 	WRITE_ONCE(b->station, 0);
 	WRITE_ONCE(b->delay, delay);
-	WRITE_ONCE(b->ref, first && first == dc->ref);
+	WRITE_ONCE(b->ref, ref);
 	WRITE_ONCE(b->front, front);
 	WRITE_ONCE(b->station, station);
 	/* pairs with ec_ring_clock_wanted() */

@@ -269,8 +269,9 @@ static void track_again(struct ec_dc *dc)
 	struct ec_dc_job j;
 
 	/* in a ring frames do not return through the ports */
-	if (!dc->links->only || !READ_ONCE(ec_dc_track_on) || !track_is_quiet(dc) ||
-	    ++t->looks % EVERY ||
+	if (!dc->links->only)
+		return;
+	if (!READ_ONCE(ec_dc_track_on) || !track_is_quiet(dc) || ++t->looks % EVERY ||
 	    ec_dc_job_init(&j, dc, false))
 		return;
 	mutex_lock(&dc->lock);

@@ -294,13 +294,16 @@ static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
 	return (f->missed || (back && !(slot->sides & ~back & ~c->mute))) && ec_slot_settle(slot);
 }
 
-/* The copies of both ends of a ring: one reply. */
-static noinline void join_copies(struct ec_cycle *c, struct ec_slot *slot)
+/* The copies of both ends of a ring: one reply. Clock datagrams have a frame without domains. */
+static noinline void join_copies(struct ec_cycle *c, const struct ec_cyc_flight *f,
+				 struct ec_slot *slot)
 {
+	if (!f->count)
+		return;
 	c->mute = slot->sides & ~slot->back;
 	c->from_backup = slot->back & ~slot->blank & BIT(EC_BACKUP);
 	ec_ring_note(c->links, slot);
-	if (c->mute || slot->blank)
+	if (slot->back != (BIT(EC_MAIN) | BIT(EC_BACKUP)) || slot->blank)
 		return;
 	ec_merge_frame(slot->copy[EC_MAIN], slot->copy[EC_BACKUP], ec_slot_body(slot),
 		       slot->eth_len - EC_ETH_HDR);
@@ -364,8 +367,8 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (has_reply(c, f, slot)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
-			if (unlikely(slot->sides & (slot->sides - 1)))
-				join_copies(c, slot);
+			if (unlikely(!l->only))
+				join_copies(c, f, slot);
 			irq |= take_frame(c, f);
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);

@@ -38,7 +38,7 @@ bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc)
  * @fb: frame
  * @index: of its slot
  * @time: expected of the reference clock when a frame of the main link, sent now, reaches it, ns
- * @held: ways may have changed: no clock gets a time
+ * @unsure: ways may have changed: no clock gets a time
  * @f: result, for ec_ring_clock_take()
  *
  * Register 0x0910.
@@ -46,17 +46,17 @@ bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc)
  * Context: The cycle owner. RT-safe.
  */
 void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
-			struct ec_frame_buf *fb, u8 index, u64 time, bool held,
+			struct ec_frame_buf *fb, u8 index, u64 time, bool unsure,
 			struct ec_ring_clock_flight *f)
 {
-	bool reads = held || r->samples < EC_RING_SAMPLES;
+	bool reads = unsure || r->samples < EC_RING_SAMPLES;
 	u16 station = reads ? READ_ONCE(dc->behind.station) : READ_ONCE(dc->ref_station);
 	u8 *p = ec_frame_add(fb, reads ? EC_CMD_FPRD : EC_CMD_FRMW, index, station,
 			     EC_REG_DC_SYSTIME, 8);
 
 	put_unaligned_le64(reads ? 0 : time + r->shift, p);
 	*f = (struct ec_ring_clock_flight){
-		.there = true, .reads = reads && !held, .gives = !reads,
+		.there = true, .reads = reads && !unsure, .gives = !reads,
 		.break_seen = r->break_seen, .time = time,
 	};
 }

@@ -36,7 +36,7 @@ struct ec_ring_clock_flight {
 
 bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc);
 void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
-			struct ec_frame_buf *fb, u8 index, u64 time, bool held,
+			struct ec_frame_buf *fb, u8 index, u64 time, bool unsure,
 			struct ec_ring_clock_flight *f);
 bool ec_ring_clock_take(struct ec_ring_clock *r, const struct ec_dc *dc,
 			const struct ec_ring_clock_flight *f, const u8 *data, u64 *time);

@@ -259,10 +259,13 @@ static void ring_cut_in_op(struct kunit *test)
 		cyc_run(r->c, 300);
 		expect_open(b, i);
 		ring_expect(r, "a cut");
+		/* with the last cable all slaves are before the break */
+		KUNIT_EXPECT_EQ(test, cyc_state(r->c, 0)->redundancy_active, i < SLAVES);
 		cable(b, false, i);
 		cyc_run(r->c, 300);
 		expect_closed(b, SLAVES);
 		ring_expect(r, "it has healed");
+		KUNIT_EXPECT_EQ(test, cyc_state(r->c, 0)->redundancy_active, 0);
 	}
 	bus_figure("ring of %u slaves, cut and healed at each of %u cables: %u cycles met an event, %u without a value",
 		   SLAVES, CUTS, r->met, r->flown);

@@ -27,7 +27,7 @@ setup() { segment=$BATS_FILE_TMPDIR/segment; }
 
 teardown() {
 	[ -z "${app:-}" ] || kill -9 $app 2>/dev/null || true
-	ethercat stop 2>/dev/null || true
+	ethercat stop 2>/dev/null || true	# mostly nothing runs
 	stop
 	for d in veth0 veth2; do ip link del $d 2>/dev/null || true; done
 	[ ! -e "$BATS_TEST_TMPDIR/native" ] || driver "$(cat "$BATS_TEST_TMPDIR/native")" e1000e
