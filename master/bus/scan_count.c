@@ -54,7 +54,7 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 	/* the copy that the slaves of a closed ring have processed is missing */
 	if (dg->crossed && !dg->back)
 		return false;
-	ec_ring_set(l, dg->crossed, came(dg, EC_MAIN) ? dg->side_back[EC_MAIN] : 0);
+	ec_ring_set(&l->ring, dg->crossed, came(dg, EC_MAIN) ? dg->side_back[EC_MAIN] : 0);
 	return true;
 }
 

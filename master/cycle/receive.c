@@ -302,7 +302,7 @@ static noinline void join_copies(struct ec_cycle *c, const struct ec_cyc_flight 
 		return;
 	c->mute = slot->sides & ~slot->back;
 	c->from_backup = slot->back & ~slot->blank & BIT(EC_BACKUP);
-	ec_ring_note(c->links, slot);
+	ec_links_note_ring(c->links, slot);
 	if (slot->back != (BIT(EC_MAIN) | BIT(EC_BACKUP)) || slot->blank)
 		return;
 	ec_merge_frame(slot->copy[EC_MAIN], slot->copy[EC_BACKUP], ec_slot_body(slot),

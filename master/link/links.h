@@ -33,9 +33,6 @@ struct ec_links_ops {
 	void (*event)(struct ec_links *l);
 };
 
-#define EC_MAIN		0	/* numbers of the links */
-#define EC_BACKUP	1
-
 /** struct ec_links - links of a master and all that uses them */
 struct ec_links {
 	/** @base: of the master, immutable */
@@ -156,6 +153,13 @@ static inline void ec_links_leave(struct ec_links *l)
 	ec_access_leave(&l->access);
 }
 
+/* a frame of the cycle that both ends of a ring have sent is back: as expected? RT-safe */
+static inline void ec_links_note_ring(struct ec_links *l, const struct ec_slot *slot)
+{
+	if (unlikely(ec_ring_note(&l->ring, slot)) && l->ops->event)
+		l->ops->event(l);
+}
+
 /* report ECAT events of the slaves in a reply to the cycle; RT-safe */
 static inline void ec_links_events(struct ec_links *l, u16 events)
 {
@@ -259,7 +263,7 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
 static inline struct ec_ring_way ec_ring_way(const struct ec_links *l, u8 cmd, u16 adp)
 {
 	return likely(l->only) ? (struct ec_ring_way){ .sides = l->sides } :
-				 ec_ring_find_way(l, cmd, adp);
+				 ec_ring_find_way(&l->ring, cmd, adp);
 }
 
 void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long sides);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
-#include "links.h"
+#include <linux/bits.h>
+#include "../wire/frame.h"
 #include "ring.h"
+#include "slots.h"
 
 static bool has_position(u8 cmd)
 {
@@ -9,16 +11,16 @@ static bool has_position(u8 cmd)
 
 /**
  * ec_ring_find_way() - ec_ring_way() in a ring
- * @l: links, several
+ * @r: ring
  * @cmd: as there
  * @adp: likewise
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: as there.
  */
-struct ec_ring_way ec_ring_find_way(const struct ec_links *l, u8 cmd, u16 adp)
+struct ec_ring_way ec_ring_find_way(const struct ec_ring *r, u8 cmd, u16 adp)
 {
-	struct ec_ring_way way = { .sides = l->sides };
+	struct ec_ring_way way = { .sides = BIT(EC_MAIN) | BIT(EC_BACKUP) };
 	u32 front;
 
 	/* behind a break frames pass in the other direction, for which no delays are known */
@@ -26,7 +28,7 @@ struct ec_ring_way ec_ring_find_way(const struct ec_links *l, u8 cmd, u16 adp)
 		way.sides = BIT(EC_MAIN);
 	if (!has_position(cmd))
 		return way;
-	front = READ_ONCE(l->ring.front);
+	front = READ_ONCE(r->front);
 	way.sides = BIT(EC_MAIN);
 	if ((u16)-adp >= front) {
 		way.sides = BIT(EC_BACKUP);
@@ -37,40 +39,33 @@ struct ec_ring_way ec_ring_find_way(const struct ec_links *l, u8 cmd, u16 adp)
 
 /**
  * ec_ring_note() - has a copy returned by the link that is expected?
- * @l: links, several
+ * @r: ring
  * @slot: frame of the cycle with at least one copy
  *
  * Context: The cycle owner. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether the monitor has to look: it has not, for the first time.
  */
-void ec_ring_note(struct ec_links *l, const struct ec_slot *slot)
+bool ec_ring_note(struct ec_ring *r, const struct ec_slot *slot)
 {
 	bool closed = slot->crossed;
 
-	if (likely(closed == (READ_ONCE(l->ring.state) == EC_RING_CLOSED)) ||
-	    READ_ONCE(l->ring.news))
-		return;
-	WRITE_ONCE(l->ring.news, true);
-	if (l->ops && l->ops->event)
-		l->ops->event(l);
+	if (likely(closed == (READ_ONCE(r->state) == EC_RING_CLOSED)) || READ_ONCE(r->news))
+		return false;
+	WRITE_ONCE(r->news, true);
+	return true;
 }
 
 /**
  * ec_ring_set() - the state of the ring, as copies of a frame have shown it
- * @l: links, several
+ * @r: ring
  * @closed: a copy has returned by the other link
  * @front: slaves that the copy of the main link has passed
  *
  * Context: The monitor thread.
- * Return: whether it has changed.
  */
-bool ec_ring_set(struct ec_links *l, bool closed, u32 front)
+void ec_ring_set(struct ec_ring *r, bool closed, u32 front)
 {
-	struct ec_ring *r = &l->ring;
-	u8 state = closed ? EC_RING_CLOSED : EC_RING_OPEN;
-	bool changed = r->state != state || r->front != front;
-
 	WRITE_ONCE(r->news, false);
 	WRITE_ONCE(r->front, front);
-	WRITE_ONCE(r->state, state);
-	return changed;
+	WRITE_ONCE(r->state, closed ? EC_RING_CLOSED : EC_RING_OPEN);
 }

@@ -8,9 +8,12 @@
 #define EC_RING_H
 
 #include <linux/types.h>
+#include "ethercat.h"
 
-struct ec_links;
 struct ec_slot;
+
+#define EC_MAIN		0	/* numbers of the links */
+#define EC_BACKUP	1
 
 /** struct ec_ring - what is known of a ring */
 struct ec_ring {
@@ -33,8 +36,8 @@ struct ec_ring_way {
 	u16 shift;
 };
 
-struct ec_ring_way ec_ring_find_way(const struct ec_links *l, u8 cmd, u16 adp);
-void ec_ring_note(struct ec_links *l, const struct ec_slot *slot);
-bool ec_ring_set(struct ec_links *l, bool closed, u32 front);
+struct ec_ring_way ec_ring_find_way(const struct ec_ring *r, u8 cmd, u16 adp);
+bool ec_ring_note(struct ec_ring *r, const struct ec_slot *slot);
+void ec_ring_set(struct ec_ring *r, bool closed, u32 front);
 
 #endif
