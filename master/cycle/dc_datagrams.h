@@ -11,6 +11,9 @@ struct ec_access;
 struct ec_dc;
 struct ec_frame_buf;
 
+/* a frame with the datagram for clocks behind the break of a ring, and nothing else */
+#define EC_DC_BEHIND	0x4000
+
 /* flags of a send that make datagrams */
 #define EC_CYC_CLOCKS	(EC_SEND_FLAG_SYNC_REF | EC_SEND_FLAG_SYNC_SLAVES | \
 			 EC_SEND_FLAG_MONITOR | EC_SEND_FLAG_REF_TIME)
@@ -65,11 +68,11 @@ struct ec_dc_datagrams {
 
 /** struct ec_dc_flight - the clock datagrams of a frame in flight */
 struct ec_dc_flight {
-	/** @dgrams: as from ec_dc_datagrams_wanted() */
+	/** @dgrams: as from ec_dc_datagrams_wanted(), or EC_DC_BEHIND */
 	u32 dgrams;
 	/** @time: time that was sent in them, ns */
 	u64 time;
-	/** @behind: a frame with the time for clocks behind the break of a ring */
+	/** @behind: of EC_DC_BEHIND */
 	struct ec_ring_clock_flight behind;
 };
 

@@ -123,7 +123,7 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 	if (unlikely(!complete))
 		dom->partial++;
 	/* more in a ring: a slave was reached from both ends, perhaps with two values */
-	if (wkc && (c->links->only || wkc <= d->expected))
+	if (wkc && (complete || c->links->only || wkc <= d->expected))
 		take_inputs(c, d, f, data, complete);
 }
 
@@ -135,7 +135,7 @@ static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 	unsigned int i;
 	u16 irq = 0;
 
-	if (unlikely(f->clocks.behind.there)) {
+	if (f->clocks.dgrams == EC_DC_BEHIND) {
 		ec_dc_datagrams_take_behind(&c->clock, &f->clocks.behind, f->slot->sent_ns, data);
 		return get_unaligned_le16(data - 2);
 	}
@@ -344,6 +344,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 {
 	struct ec_status *st = c->shared->status;
 	struct ec_links *l = c->links;
+	const struct ec_link *only = l->only;
 	unsigned int i, left = 0;
 	unsigned long flags;
 	u64 now = 0;
@@ -367,7 +368,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (has_reply(c, f, slot)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
-			if (unlikely(!l->only))
+			if (unlikely(!only))
 				join_copies(c, f, slot);
 			irq |= take_frame(c, f);
 			if (likely(slot->back == slot->sides))

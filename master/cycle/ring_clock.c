@@ -56,7 +56,7 @@ void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
 
 	put_unaligned_le64(reads ? 0 : time + r->shift, p);
 	*f = (struct ec_ring_clock_flight){
-		.there = true, .reads = reads && !unsure, .gives = !reads,
+		.reads = reads && !unsure, .gives = !reads,
 		.break_seen = r->break_seen, .time = time,
 	};
 }

@@ -22,8 +22,6 @@ struct ec_ring_clock {
 
 /** struct ec_ring_clock_flight - the clock datagram of a frame behind the break */
 struct ec_ring_clock_flight {
-	/** @there: it has one, and nothing else */
-	bool there;
 	/** @reads: it reads the time of a clock */
 	bool reads;
 	/** @gives: it gives the clocks the time */

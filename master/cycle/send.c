@@ -65,15 +65,9 @@ static void send_fill_dgram(const struct ec_cycle *c, const struct ec_cyc_dgram 
 			     a->offset_stride, a->len, a->count);
 }
 
-/* The clock datagrams of a ring go one way, process data both ways. */
-static bool is_alone(const struct ec_cycle *c, const struct send *send)
-{
-	return unlikely(!c->links->only) && send->dc;
-}
-
 /* Queued datagrams from @g on, as many as fit; returns how many were added or not queued. */
 static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, unsigned int g,
-			 struct send *send)
+			 struct send *send, bool alone)
 {
 	const struct ec_cyc_dgram *d = &c->layout.dgrams[g], *last = NULL;
 	unsigned int room, dc, first = g;
@@ -85,7 +79,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 	if (send->dc)
 		ec_dc_datagrams_fill(&c->clock, &fb, slot->index, send->dc, send->now);
 	dc = fb.count;
-	room = is_alone(c, send) ? 0 : max(c->links->max_datagrams, dc) - dc;
+	room = unlikely(alone) ? 0 : max(c->links->max_datagrams, dc) - dc;
 	for (; g < c->layout.n_dgrams && room; g++, d++) {
 		if (!(queued & BIT_ULL(d->domain)))
 			continue;
@@ -100,7 +94,7 @@ static unsigned int fill(struct ec_cycle *c, struct ec_slot *slot, u8 *frame, un
 		room--;
 	}
 	send->riding.mask = 0;
-	if (unlikely(atomic_read(&c->riders->queued)) && !is_alone(c, send))
+	if (unlikely(atomic_read(&c->riders->queued)) && !alone)
 		ec_riders_add(c->riders, &fb, slot->index, &send->riding);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	return g - first;
@@ -123,7 +117,6 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 		f->direct &= ~c->units->replaced;
 	f->clocks.dgrams = send->dc;
 	f->clocks.time = c->clock.sent;
-	f->clocks.behind.there = false;
 	f->riding = send->riding;
 }
 
@@ -131,7 +124,8 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_links *l = c->links;
-	u8 sides = is_alone(c, send) ? BIT(EC_MAIN) : l->sides;
+	/* the clock datagrams of a ring go one way, process data both ways */
+	bool alone = unlikely(!l->only) && send->dc;
 	struct ec_slot *slot = NULL;
 	struct ec_tx tx;
 	unsigned int count;
@@ -141,19 +135,23 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	if (make_room(c, send->now))
 		slot = ec_slot_get(&l->slots, true, send->now);
 	if (!slot) {
-		ec_links_count(l, sides, tx_errors);
+		ec_links_count(l, l->sides, tx_errors);
 		send->dc = 0;
 		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
-	frame = ec_links_tx_get(l, sides, &tx) ?: slot->frame;
-	count = fill(c, slot, frame, g, send);
+	if (unlikely(alone))
+		frame = ec_links_tx_get(l, BIT(EC_MAIN), &tx);
+	else
+		frame = ec_links_tx_get(l, l->sides, &tx);
+	frame = frame ?: slot->frame;
+	count = fill(c, slot, frame, g, send, alone);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
 	ret = ec_links_transmit(l, slot, frame, &tx, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
-		ec_links_count(l, sides, tx_errors);
+		ec_links_count(l, tx.sides, tx_errors);
 	if (!ret) {
 		note_flight(c, slot, g, count, send);
 	} else {
@@ -169,14 +167,15 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 static noinline void send_behind(struct ec_cycle *c, struct send *send)
 {
 	struct ec_links *l = c->links;
-	struct ec_slot *slot = make_room(c, send->now) ? ec_slot_get(&l->slots, true, send->now) :
-							 NULL;
 	struct ec_ring_clock_flight behind;
+	struct ec_slot *slot = NULL;
 	struct ec_frame_buf fb;
 	struct ec_tx tx;
 	u8 *frame;
 	int ret;
 
+	if (ec_ring_clock_wanted(&c->clock.ring, c->dc) && make_room(c, send->now))
+		slot = ec_slot_get(&l->slots, true, send->now);
 	if (!slot)
 		return;
 	frame = ec_links_tx_get(l, BIT(EC_BACKUP), &tx) ?: slot->frame;
@@ -192,6 +191,7 @@ static noinline void send_behind(struct ec_cycle *c, struct send *send)
 	send->dc = 0;
 	send->riding.mask = 0;
 	note_flight(c, slot, c->layout.n_dgrams, 0, send);
+	c->flight[c->n_flight - 1].clocks.dgrams = EC_DC_BEHIND;
 	c->flight[c->n_flight - 1].clocks.behind = behind;
 }
 
@@ -257,11 +257,6 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
 	/* frames that are repeated go behind all others: a disturbance may last a while */
-	if (unlikely(!l->only) && send.dc & EC_SEND_FLAG_SYNC_SLAVES) {
-		g = send_frame(c, g, &send);
-		if (ec_ring_clock_wanted(&c->clock.ring, c->dc))
-			send_behind(c, &send);
-	}
 	do {
 		while (g < c->layout.n_dgrams || send.dc) {
 			if (send.dc || send.queued & BIT_ULL(c->layout.dgrams[g].domain))
@@ -272,6 +267,8 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		g = 0;
 		send.queued = ec_units_of(c) ? what->queued & c->units->repeated[copies++] : 0;
 	} while (send.queued);
+	if (unlikely(!l->only) && what->flags & EC_SEND_FLAG_SYNC_SLAVES)
+		send_behind(c, &send);
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(l->access.wire_ns, max(send.wire.ns, wire_ns(c)));

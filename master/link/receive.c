@@ -51,14 +51,15 @@ static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_l
 	}
 	/* read before the slot may be used for another frame */
 	done = slot->done;
-	if (unlikely(side != by->side))
-		slot->crossed |= BIT(side);
 	if (READ_ONCE(by->keep) && !done && slot->sides == BIT(side)) {
 		slot->reply = data;
 		slot->back = slot->sides;
 		ec_slot_release(slot, EC_SLOT_DONE);
-	} else if (ec_slot_take(slot, side, data + EC_FRAME_HDR) && done) {
-		done(slot);
+	} else {
+		if (unlikely(side != by->side))
+			slot->crossed |= BIT(side);
+		if (ec_slot_take(slot, side, data + EC_FRAME_HDR) && done)
+			done(slot);
 	}
 	return EC_MATCH_DONE;
 }
