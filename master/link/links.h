@@ -153,7 +153,7 @@ static inline void ec_links_leave(struct ec_links *l)
 	ec_access_leave(&l->access);
 }
 
-/* a frame of the cycle that both ends of a ring have sent is back: as expected? RT-safe */
+/* a frame of the cycle that both ends of a ring have sent was received: as expected? RT-safe */
 static inline void ec_links_note_ring(struct ec_links *l, const struct ec_slot *slot)
 {
 	if (unlikely(ec_ring_note(&l->ring, slot)) && l->ops->event)
