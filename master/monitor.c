@@ -52,7 +52,6 @@ static const char doubled[] =
 struct watch {
 	struct ec_master *m;
 	bool link_up;
-	u8 up;			/* mask of the links that are */
 	unsigned int count;	/* of the last look */
 	unsigned int same;	/* looks with that count */
 	u64 moving_ns;		/* since when counts differ and no scan has begun, 0: they do not */
@@ -82,26 +81,12 @@ struct watch {
 	struct ec_quiet quiet;	/* looks of the timer */
 };
 
-/* A link of a ring that comes or goes changes the way of all frames. */
-static void note_links(struct watch *w)
-{
-	const struct ec_link *link;
-	u8 up = 0;
-
-	ec_links_for_each(&w->m->links, link)
-		up |= link->up << link->side;
-	if (up != w->up && !w->m->links.only)
-		WRITE_ONCE(w->m->links.ring.news, true);
-	w->up = up;
-}
-
 static void check_links(struct watch *w)
 {
 	struct ec_master *m = w->m;
 	u64 now = ktime_get_ns();
 
 	w->link_up = ec_links_look(&m->links);
-	note_links(w);
 	if (now - w->rates_ns >= NSEC_PER_SEC) {
 		w->rates_ns = now;
 		ec_links_update_rates(&m->links);
@@ -279,13 +264,9 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 
 static void set_present(struct ec_master *m, unsigned int count, u32 al_states)
 {
-	unsigned int main;
-
 	WRITE_ONCE(m->bus.responding, count);
 	WRITE_ONCE(m->bus.al_states, al_states);
-	main = min(count, m->links.only ? count : m->links.ring.front);
-	ec_link_saw(&m->links.link[EC_MAIN], main, main ? al_states : 0);
-	ec_link_saw(&m->links.link[EC_BACKUP], count - main, count > main ? al_states : 0);
+	ec_links_saw(&m->links, count, al_states);
 }
 
 static void ask_slaves(struct watch *w)
@@ -539,17 +520,6 @@ static void look_at_ports(struct watch *w)
 	}
 }
 
-static void want_states(struct ec_master *m)
-{
-	ec_for_each_slave(s, &m->bus) {
-		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
-			continue;
-		if (READ_ONCE(s->al.status) != READ_ONCE(s->al.requested) ||
-		    READ_ONCE(s->work.reconfigure) || !s->work.ours)
-			ec_slave_kick(s);
-	}
-}
-
 static void maybe_scan(struct watch *w)
 {
 	struct ec_master *m = w->m;
@@ -608,7 +578,7 @@ static void maybe_scan(struct watch *w)
 		if (!result.again)
 			ec_doubt_judge(&m->bus, result.changed, !READ_ONCE(m->cycles.active) &&
 				       ec_dc_is_contradicted(&m->dc));
-		want_states(m);
+		ec_slave_want_states(&m->bus);
 	} else {
 		w->same = 0;
 	}

@@ -593,3 +593,20 @@ void ec_slave_request_anew(struct ec_slave *slave, u8 state, u32 limit_ms)
 	ec_slave_forgive(slave);
 	ec_slave_kick(slave);
 }
+
+/**
+ * ec_slave_want_states() - the workers of slaves that are not as requested have something to do
+ * @bus: bus
+ *
+ * Context: The monitor thread.
+ */
+void ec_slave_want_states(struct ec_bus *bus)
+{
+	ec_for_each_slave(s, bus) {
+		if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
+			continue;
+		if (READ_ONCE(s->al.status) != READ_ONCE(s->al.requested) ||
+		    READ_ONCE(s->work.reconfigure) || !s->work.ours)
+			ec_slave_kick(s);
+	}
+}

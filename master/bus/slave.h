@@ -328,6 +328,7 @@ struct ec_slave *ec_slave_ref(struct ec_slave *slave);
 void ec_slave_unref(struct ec_slave *slave);
 int ec_slave_parse_sii(struct ec_slave *slave);
 void ec_slave_kick(struct ec_slave *slave);
+void ec_slave_want_states(struct ec_bus *bus);
 u8 ec_slave_wanted(const struct ec_slave *slave);
 void ec_slave_request(struct ec_slave *slave, u8 state);
 void ec_slave_request_anew(struct ec_slave *slave, u8 state, u32 limit_ms);

@@ -34,12 +34,20 @@ struct batch {
 	int err;	/* why the other datagrams are not sent */
 };
 
-/* How many datagrams from @first on fit into a frame before the next cycle; at least one. */
-static unsigned int xfer_count(const struct batch *b, unsigned int first)
+static bool goes(const struct ec_links *l, const struct ec_dg *dg, struct ec_ring_way way)
+{
+	struct ec_ring_way its = ec_ring_way(l, dg->cmd, dg->adp);
+
+	return its.sides == way.sides && its.shift == way.shift;
+}
+
+/*
+ * How many datagrams from @first on fit into a frame before the next cycle; at least one. All have
+ * the way of the first one: the ring may change at any time.
+ */
+static unsigned int xfer_count(const struct batch *b, unsigned int first, struct ec_ring_way way)
 {
 	const struct ec_links *l = b->c->links;
-	const struct ec_dg *dg = &b->dg[first];
-	u8 sides = ec_ring_way(l, dg->cmd, dg->adp).sides;
 	unsigned int most = l->max_datagrams, len = 0, i;
 	u16 least = b->dg[first].len +
 		    (b->dg[first].pair ? EC_DGRAM_OVERHEAD + b->dg[first + 1].len : 0);
@@ -55,7 +63,7 @@ static unsigned int xfer_count(const struct batch *b, unsigned int first)
 	room = min_t(u16, room, EC_FRAME_BODY_MAX);
 	for (i = first; i < b->n && i - first < most && b->dg[i].err == -EAGAIN; i++) {
 		len += EC_DGRAM_OVERHEAD + b->dg[i].len;
-		if (len > room || ec_ring_way(l, b->dg[i].cmd, b->dg[i].adp).sides != sides)
+		if (len > room || (i > first && !goes(l, &b->dg[i], way)))
 			break;
 		if (b->class == EC_POST_TRAIN && b->dg[i].last)
 			return i + 1 - first;
@@ -116,8 +124,8 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 		post->wait = &h->wait;
 		post->class = b->class;
 		post->dg = &b->dg[first];
-		post->n = xfer_count(b, first);
 		way = ec_ring_way(b->c->links, post->dg->cmd, post->dg->adp);
+		post->n = xfer_count(b, first, way);
 		post->sides = way.sides;
 		post->shift = way.shift;
 		first += post->n;

@@ -167,6 +167,8 @@ bool ec_links_look(struct ec_links *l)
 
 		if (up != l->link[i].up) {
 			WRITE_ONCE(l->link[i].up, up);
+			/* the way of all frames of a ring changes */
+			WRITE_ONCE(l->ring.news, !l->only);
 			ec_report(l->base, up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN, i);
 		}
 		any |= up;
@@ -189,15 +191,21 @@ void ec_links_update_rates(struct ec_links *l)
 }
 
 /**
- * ec_link_saw() - store the results of the last broadcast
- * @link: link
- * @slaves: slaves that answered
+ * ec_links_saw() - store the results of the last broadcast
+ * @l: links
+ * @slaves: slaves that answered: in a ring those before the break on the main link
  * @al_states: OR of their AL states
  *
  * Context: The monitor.
  */
-void ec_link_saw(struct ec_link *link, u32 slaves, u32 al_states)
+void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states)
 {
-	WRITE_ONCE(link->slaves, slaves);
-	WRITE_ONCE(link->al_states, al_states);
+	u32 by[EC_MAX_LINKS] = { min(slaves, l->ring.front) };
+	unsigned int i;
+
+	by[EC_BACKUP] = slaves - by[EC_MAIN];
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		WRITE_ONCE(l->link[i].slaves, by[i]);
+		WRITE_ONCE(l->link[i].al_states, by[i] ? al_states : 0);
+	}
 }

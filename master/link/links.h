@@ -408,6 +408,6 @@ const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t 
 bool ec_links_need_thread(const struct ec_links *l);
 bool ec_links_look(struct ec_links *l);
 void ec_links_update_rates(struct ec_links *l);
-void ec_link_saw(struct ec_link *link, u32 slaves, u32 al_states);
+void ec_links_saw(struct ec_links *l, u32 slaves, u32 al_states);
 
 #endif
