@@ -170,6 +170,7 @@ static noinline void send_behind(struct ec_cycle *c, struct send *send)
 	struct ec_ring_clock_flight behind;
 	struct ec_slot *slot = NULL;
 	struct ec_frame_buf fb;
+	u32 dc = send->dc;
 	struct ec_tx tx;
 	u8 *frame;
 	int ret;
@@ -193,6 +194,7 @@ static noinline void send_behind(struct ec_cycle *c, struct send *send)
 	note_flight(c, slot, c->layout.n_dgrams, 0, send);
 	c->flight[c->n_flight - 1].clocks.dgrams = EC_DC_BEHIND;
 	c->flight[c->n_flight - 1].clocks.behind = behind;
+	send->dc = dc;
 }
 
 /* Wire time of a send of all domains and clock datagrams at most, ns. */
@@ -256,6 +258,9 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (what->flags & EC_CYC_CLOCKS)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
+	/* first, so that its delay after the send is constant */
+	if (unlikely(!l->only) && what->flags & EC_SEND_FLAG_SYNC_SLAVES)
+		send_behind(c, &send);
 	/* frames that are repeated go behind all others: a disturbance may last a while */
 	do {
 		while (g < c->layout.n_dgrams || send.dc) {
@@ -267,8 +272,6 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		g = 0;
 		send.queued = ec_units_of(c) ? what->queued & c->units->repeated[copies++] : 0;
 	} while (send.queued);
-	if (unlikely(!l->only) && what->flags & EC_SEND_FLAG_SYNC_SLAVES)
-		send_behind(c, &send);
 	WRITE_ONCE(c->last.frames, send.wire.frames);
 	WRITE_ONCE(c->last.ns, send.wire.ns);
 	WRITE_ONCE(l->access.wire_ns, max(send.wire.ns, wire_ns(c)));
