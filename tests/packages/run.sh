@@ -165,7 +165,7 @@ boots() {
 			n=0
 			until eval "$1"; do
 				n=$((n + 1))
-				[ $n -lt 100 ]
+				[ $n -lt 100 ] || return
 				sleep 1
 			done
 		}
@@ -174,7 +174,10 @@ boots() {
 		unloaded() { [ ! -e /dev/EtherCAT0 ] && [ ! -e /sys/module/ec_master ]; }
 		refused() { if "$@"; then exit 1; fi; }
 		# the journal has it some time after the end of the program that wrote it
-		said() { wait_until "journalctl -u ethercat | grep \"$1\""; }
+		said() {
+			wait_until "journalctl -u ethercat | grep \"$1\"" ||
+				{ journalctl -n 30; return 1; }
+		}
 		systemctl is-active ethercat
 		wait_until "slaves PREOP 22"
 		ethercat slaves | head -n 3
