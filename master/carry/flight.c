@@ -265,7 +265,8 @@ static bool take_results(const struct ec_slot *slot, struct ec_post *post)
 	unsigned int i;
 
 	for (left = copies; left; left &= left - 1) {
-		u8 *copy = slot->copy[__ffs(left)];
+		/* posts are never kept: the iterator has no const form */
+		u8 *copy = (u8 *)slot->got[__ffs(left)];
 
 		it[__ffs(left)] = (struct ec_frame_iter){
 			.p = copy + post->at, .end = copy + slot->eth_len - EC_ETH_HDR,

@@ -195,10 +195,17 @@ struct ec_cycle {
 	struct ec_cyc_flight flight[EC_CYC_FRAMES];
 	/** @n_flight: entries in @flight */
 	unsigned int n_flight;
-	/** @mute: links of a ring whose copy of the last frame is missing */
+	/** @mute: links of a ring whose copy of the last frame is missing, and not late either */
 	u8 mute;
-	/** @from_backup: slaves have processed the copy of the backup link in an open ring */
-	bool from_backup;
+	/** @copies_late: late copies that @mute knows of */
+	u64 copies_late;
+	/**
+	 * @from_backup: domains with data that slaves have processed in the copy of the backup
+	 * link, which has returned there: the ring is open
+	 */
+	u64 from_backup;
+	/** @shown_backup: the same in the status page */
+	u64 shown_backup;
 	/** @last: frames of the last send */
 	struct ec_cyc_wire last;
 	/** @send: number of the last send */

@@ -214,12 +214,17 @@ static bool is_steady(const struct ec_cycle *c, const struct ec_cyc_domain *d,
 }
 
 /* Does the backup link contribute to the domains that were received? */
-static noinline void show_backup(const struct ec_cycle *c, struct ec_status *page)
+static noinline void show_backup(struct ec_cycle *c, struct ec_status *page)
 {
-	u64 left;
+	u64 left = (c->from_backup ^ c->shown_backup) & c->back;
 
-	for (left = c->back; left; left &= left - 1)
-		WRITE_ONCE(page->domains[__ffs64(left)].redundancy_active, c->from_backup);
+	c->shown_backup ^= left;
+	for (; left; left &= left - 1) {
+		unsigned int i = __ffs64(left);
+
+		WRITE_ONCE(page->domains[i].redundancy_active, c->from_backup >> i & 1);
+	}
+	c->from_backup = 0;
 }
 
 /* Judge domains that were sent or received since the last receive. */
@@ -279,47 +284,101 @@ void ec_cycle_log_stale(struct ec_cycle *c)
 	}
 }
 
-/*
- * Can the data be taken? Of several copies the last one is awaited until the next receive, which
- * takes the data of the others. One of a link that was missing the last time is not awaited.
- */
-static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
-		      struct ec_slot *slot)
-{
-	u8 back;
-
-	if (likely(atomic_read_acquire(&slot->state) == EC_SLOT_DONE))
-		return true;
-	back = READ_ONCE(slot->back);
-	return (f->missed || (back && !(slot->sides & ~back & ~c->mute))) && ec_slot_settle(slot);
-}
-
-/* The copies of both ends of a ring: one reply. Clock datagrams have a frame without domains. */
-static noinline void join_copies(struct ec_cycle *c, const struct ec_cyc_flight *f,
-				 struct ec_slot *slot)
-{
-	if (!f->count)
-		return;
-	c->mute = slot->sides & ~slot->back;
-	c->from_backup = slot->back & ~slot->blank & BIT(EC_BACKUP);
-	ec_links_note_ring(c->links, slot);
-	if (slot->back != (BIT(EC_MAIN) | BIT(EC_BACKUP)) || slot->blank)
-		return;
-	ec_merge_frame(slot->copy[EC_MAIN], slot->copy[EC_BACKUP], ec_slot_body(slot),
-		       slot->eth_len - EC_ETH_HDR);
-	slot->reply = slot->copy[EC_MAIN];
-}
-
-/* Is the frame lost? Not at the first receive without reply: the machine may have stood still. */
-static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
+/* Not at the first receive without reply: the machine may have stood still. */
+static bool is_overdue(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
 	if (!f->missed)
 		return false;
 	/* read once in a receive, and mostly not at all */
 	if (!*now)
 		*now = ktime_get_ns();
-	return *now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC &&
-	       ec_slot_cancel(f->slot, *now);
+	return *now - f->slot->sent_ns > (u64)c->links->io_timeout_us * NSEC_PER_USEC;
+}
+
+/*
+ * Of several copies the last one is awaited until the first receive after the next send, which
+ * takes the data of the others. One of a link that was missing the last time is not awaited, but
+ * not if only the copy is there that passes a closed ring the other way.
+ */
+static noinline bool has_copies(const struct ec_cycle *c, const struct ec_cyc_flight *f,
+				struct ec_slot *slot, u64 *now)
+{
+	u8 back = READ_ONCE(slot->back);
+
+	return back &&
+	       (f->send != c->send || is_overdue(c, f, now) ||
+		(!(slot->sides & ~back & ~c->mute) && back & ~READ_ONCE(slot->blank))) &&
+	       ec_slot_settle(slot);
+}
+
+static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
+		      struct ec_slot *slot, u64 *now)
+{
+	if (likely(atomic_read_acquire(&slot->state) == EC_SLOT_DONE))
+		return true;
+	return unlikely(!c->links->only) && has_copies(c, f, slot, now);
+}
+
+/* Links whose copy was missing, unless late ones show that these do return. */
+static void note_mute(struct ec_cycle *c, u8 missing)
+{
+	u64 late = 0;
+	u8 side;
+
+	if (likely(!(missing | c->mute)))
+		return;
+	for (side = 0; side < EC_MAX_LINKS; side++)
+		late += atomic64_read(&c->links->link[side].stats.late);
+	c->mute = late == c->copies_late ? missing : 0;
+	c->copies_late = late;
+}
+
+/* Domains in the copy of the backup link that slaves have processed. */
+static void note_backup(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *copy)
+{
+	const struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
+	const u8 *data = copy + EC_FRAME_HDR + EC_DGRAM_HDR;
+	unsigned int i;
+
+	for (i = 0; i < f->count; i++, d++) {
+		if (!(f->queued & BIT_ULL(d->domain)))
+			continue;
+		if (get_unaligned_le16(data + d->len))
+			c->from_backup |= BIT_ULL(d->domain);
+		data += d->len + EC_DGRAM_OVERHEAD;
+	}
+}
+
+/*
+ * The copies of both ends of a ring: one reply. One that has crossed has passed all slaves, also
+ * if the other one was processed by some as the ring was just breaking or healing: their values
+ * would be those of two moments. Clock datagrams have a frame without domains.
+ */
+static noinline void join_copies(struct ec_cycle *c, const struct ec_cyc_flight *f,
+				 struct ec_slot *slot)
+{
+	u8 processed = slot->back & ~slot->blank, crossed = processed & slot->crossed;
+
+	if (!f->count)
+		return;
+	note_mute(c, slot->sides & ~slot->back);
+	ec_links_note_ring(c->links, slot);
+	if (is_power_of_2(crossed)) {
+		slot->reply = slot->got[__ffs(crossed)];
+		return;
+	}
+	if (processed & ~crossed & BIT(EC_BACKUP))
+		note_backup(c, f, slot->got[EC_BACKUP]);
+	if (processed != (BIT(EC_MAIN) | BIT(EC_BACKUP)))
+		return;
+	slot->reply = c->links->slots.merged;
+	ec_merge_frame(c->links->slots.merged, slot->got[EC_MAIN], slot->got[EC_BACKUP],
+		       ec_slot_body(slot), slot->eth_len - EC_ETH_HDR);
+}
+
+static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
+{
+	return is_overdue(c, f, now) && ec_slot_cancel(f->slot, *now);
 }
 
 /* The copy of a link is missing, and may still be received: the slot goes into quarantine. */
@@ -365,7 +424,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		struct ec_cyc_flight *f = &c->flight[i];
 		struct ec_slot *slot = f->slot;
 
-		if (has_reply(c, f, slot)) {
+		if (has_reply(c, f, slot, &now)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
 			if (unlikely(!only))
@@ -382,6 +441,8 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 			f->missed = true;
 			if (f->send == c->send)
 				f->in_time = READ_ONCE(slot->back);
+			if (unlikely(slot->kept))
+				ec_slot_unkeep(&l->slots, slot);
 			if (left++ != i)
 				c->flight[left - 1] = *f;
 		}

@@ -8,26 +8,124 @@
 #include "same.h"
 
 /* Does the reply carry the same datagrams as the frame that was sent, and no more? */
-static __always_inline bool same(struct ec_slot *slot, u8 *reply, size_t len)
+static __always_inline bool same(struct ec_slot *slot, const u8 *reply, size_t len, u16 *touched)
 {
 	struct ec_frame_iter ri;
 
-	return !ec_frame_iter_init(&ri, reply, len) && ec_slot_same(slot, &ri) &&
-	       !ri.more && ri.p == ri.end;
+	/* the iterator only reads; it has no const form */
+	return !ec_frame_iter_init(&ri, (u8 *)reply, len) &&
+	       ec_slot_same(slot, &ri, touched) && !ri.more && ri.p == ri.end;
+}
+
+/* Enter the state FILL of the slot that awaits the copy of a link. */
+static __always_inline enum ec_match hold(struct ec_slot *slot, u32 seq, u8 side,
+					  const u8 *data, size_t len, u16 *touched)
+{
+	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
+		/* a cancelled frame; otherwise a second copy of a reply */
+		return atomic_read(&slot->state) == EC_SLOT_QUARANTINE ? EC_MATCH_LATE :
+									 EC_MATCH_UNMATCHED;
+	if (ec_slot_awaits(slot, side) && len >= slot->eth_len - EC_ETH_HDR &&
+	    same(slot, data, len, touched))
+		return EC_MATCH_DONE;
+	ec_slot_release(slot, EC_SLOT_SENT);
+	return EC_MATCH_UNMATCHED;
+}
+
+/* Fill the slot of a master with two links. Return: @last: the slot is DONE. */
+static __always_inline enum ec_match fill_copy(const struct ec_link *by, struct ec_slot *slot,
+					       u32 seq, u8 side, const u8 *data, size_t len,
+					       bool *last)
+{
+	u16 touched = 0;
+	enum ec_match what = hold(slot, seq, side, data, len, &touched);
+
+	if (what != EC_MATCH_DONE)
+		return what;
+	if (side != by->side)
+		slot->crossed |= BIT(side);
+	*last = ec_slot_take(slot, side, data, READ_ONCE(by->keep) && !slot->done, !touched);
+	return what;
+}
+
+/* The devices may deliver the copies of a frame at the same time, and neither may be lost. */
+static noinline enum ec_match fill_locked(struct ec_slots *s, const struct ec_link *by,
+					  struct ec_slot *slot, u32 seq, u8 side, const u8 *data,
+					  size_t len)
+{
+	void (*done)(struct ec_slot *slot);
+	enum ec_match what;
+	unsigned long flags;
+	bool last = false;
+
+	raw_spin_lock_irqsave(&s->both, flags);
+	done = slot->done;
+	what = fill_copy(by, slot, seq, side, data, len, &last);
+	raw_spin_unlock_irqrestore(&s->both, flags);
+	if (last && done)
+		done(slot);
+	return what;
+}
+
+/* Does the thread that polls this device for the cycle poll the other one, too? */
+static __always_inline bool one_thread(const struct ec_link *by)
+{
+	const struct ecdev *other;
+
+	if (!READ_ONCE(by->keep))
+		return false;
+	other = READ_ONCE(by->links->link[!by->side].dev);
+	return !other || other->ops->keeps;
+}
+
+static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link *by,
+				       struct ec_slot *slot, const u8 *src, const u8 *data,
+				       size_t len)
+{
+	u32 seq = s->numbered ? get_unaligned_le32(src + 2) : READ_ONCE(slot->seq);
+	bool last;
+
+	if (one_thread(by) && !slot->done)
+		return fill_copy(by, slot, seq, src[1], data, len, &last);
+	return fill_locked(s, by, slot, seq, src[1], data, len);
 }
 
 /*
- * Find the slot that a frame belongs to, and fill it. A reply to the cycle may stay in the memory
- * of the device, see struct ec_link.keep: the cycle owner takes it before it leaves the links.
+ * Fill the slot of a master with one link. A reply to the cycle may stay in the memory of the
+ * device, see struct ec_link.keep: the cycle owner takes it before it leaves the links.
  */
+static __always_inline enum ec_match fill(const struct ec_link *by, struct ec_slot *slot, u32 seq,
+					  u8 side, const u8 *data, size_t len)
+{
+	enum ec_match what = hold(slot, seq, side, data, len, NULL);
+	void (*done)(struct ec_slot *slot);
+
+	if (what != EC_MATCH_DONE)
+		return what;
+	/* read before the slot may be used for another frame */
+	done = slot->done;
+	slot->back = slot->sides;
+	if (READ_ONCE(by->keep) && !done) {
+		slot->reply = data;
+		ec_slot_release(slot, EC_SLOT_DONE);
+		return what;
+	}
+	slot->reply = slot->copy[EC_MAIN];
+	slot->got[EC_MAIN] = slot->reply;
+	memcpy(slot->copy[EC_MAIN] + EC_FRAME_HDR, data + EC_FRAME_HDR,
+	       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
+	ec_slot_release(slot, EC_SLOT_DONE);
+	if (done)
+		done(slot);
+	return what;
+}
+
+/* Find the slot that a frame belongs to, and fill it. */
 static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_link *by,
 					   const u8 *src, const u8 *data, size_t len)
 {
 	u32 seq = get_unaligned_le32(src + 2);
-	void (*done)(struct ec_slot *slot);
 	struct ec_slot *slot;
-	enum ec_slot_state state;
-	u8 side = src[1];
 
 	if (len < EC_FRAME_HDR + EC_DGRAM_OVERHEAD)
 		return EC_MATCH_UNMATCHED;
@@ -35,33 +133,11 @@ static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_l
 	if (!s->numbered)
 		seq = READ_ONCE(slot->seq);
 	/* first: a frame of an earlier use must not hold the slot */
-	if (READ_ONCE(slot->seq) != seq) {
-		state = atomic_read(&slot->state);
-		return state == EC_SLOT_SENT ? EC_MATCH_LATE : EC_MATCH_UNMATCHED;
-	}
-	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
-		/* a cancelled frame; otherwise a second copy of a reply */
-		return atomic_read(&slot->state) == EC_SLOT_QUARANTINE ? EC_MATCH_LATE :
-									 EC_MATCH_UNMATCHED;
-	/* the iterator only reads; it has no const form */
-	if (!ec_slot_awaits(slot, side) || len < slot->eth_len - EC_ETH_HDR ||
-	    !same(slot, (u8 *)data, len)) {
-		ec_slot_release(slot, EC_SLOT_SENT);
-		return EC_MATCH_UNMATCHED;
-	}
-	/* read before the slot may be used for another frame */
-	done = slot->done;
-	if (READ_ONCE(by->keep) && !done && slot->sides == BIT(side)) {
-		slot->reply = data;
-		slot->back = slot->sides;
-		ec_slot_release(slot, EC_SLOT_DONE);
-	} else {
-		if (unlikely(side != by->side))
-			slot->crossed |= BIT(side);
-		if (ec_slot_take(slot, side, data + EC_FRAME_HDR) && done)
-			done(slot);
-	}
-	return EC_MATCH_DONE;
+	if (READ_ONCE(slot->seq) != seq)
+		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
+								   EC_MATCH_UNMATCHED;
+	return unlikely(s->copies) ? fill_two(s, by, slot, src, data, len) :
+				     fill(by, slot, seq, src[1], data, len);
 }
 
 static __always_inline enum ec_match receive(struct ec_link *link, const u8 *src,

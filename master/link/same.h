@@ -23,15 +23,24 @@ static __always_inline bool ec_same_header(const u8 *sent, const u8 *got)
 			  BIT(sent[0]) & EC_SAME_COUNTED);
 }
 
+/* What slaves count in a datagram, and their events. */
+static __always_inline u16 ec_same_touched(const u8 *sent, const u8 *got, u16 len)
+{
+	return get_unaligned_le16(got + EC_DGRAM_HDR + len) | get_unaligned_le16(got + 8) |
+	       (get_unaligned_le16(sent + 2) ^ get_unaligned_le16(got + 2));
+}
+
 /**
  * ec_slot_same() - check that a reply carries the datagrams of a slot
  * @slot: slot in state FILL
  * @reply: the reply, at the first of them; afterwards behind the last one
+ * @touched: NULL, or result: not 0 if a slave has processed or counted a datagram
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: whether it does.
  */
-static __always_inline bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply)
+static __always_inline bool ec_slot_same(struct ec_slot *slot, struct ec_frame_iter *reply,
+					 u16 *touched)
 {
 	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR;
 	size_t left = slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR;
@@ -47,6 +56,8 @@ static __always_inline bool ec_slot_same(struct ec_slot *slot, struct ec_frame_i
 		size = EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
 		if (left < size || replied < size)
 			return false;
+		if (touched)
+			*touched |= ec_same_touched(sent, reply->p, size - EC_DGRAM_OVERHEAD);
 		reply->more = get_unaligned_le16(reply->p + 6) & EC_DGRAM_MORE;
 		reply->p += size;
 		sent += size;

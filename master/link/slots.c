@@ -25,8 +25,10 @@ int ec_slots_init(struct ec_slots *s, bool two)
 	unsigned int i, side;
 
 	s->numbered = frame_numbers;
+	raw_spin_lock_init(&s->both);
 	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
-	s->copies = two ? vzalloc(array3_size(EC_SLOTS, EC_MAX_LINKS, COPY_MAX)) : NULL;
+	s->copies = two ? vzalloc(array_size(EC_SLOTS * EC_MAX_LINKS + 1, COPY_MAX)) : NULL;
+	s->merged = two ? s->copies + EC_SLOTS * EC_MAX_LINKS * COPY_MAX : NULL;
 	if (!s->slot || (two && !s->copies)) {
 		ec_slots_exit(s);
 		return -ENOMEM;
@@ -54,6 +56,7 @@ void ec_slots_exit(struct ec_slots *s)
 	vfree(s->copies);
 	s->slot = NULL;
 	s->copies = NULL;
+	s->merged = NULL;
 }
 
 static bool take(struct ec_slot *slot, u64 now_ns, s64 quarantine_ns)
@@ -139,23 +142,6 @@ bool ec_slot_settle(struct ec_slot *slot)
 	return slot->back;
 }
 
-/*
- * The reply is the copy of the first link that has one, or what was sent. With the last copy the
- * slot is DONE.
- */
-static bool is_complete(struct ec_slot *slot)
-{
-	bool complete = slot->back == slot->sides;
-	u8 copies = slot->back & ~slot->blank;
-
-	if (copies)
-		slot->reply = slot->copy[__ffs(copies)];
-	else if (slot->back)
-		slot->reply = ec_slot_body(slot);
-	ec_slot_release(slot, complete ? EC_SLOT_DONE : EC_SLOT_SENT);
-	return complete;
-}
-
 /**
  * ec_slot_disarm() - stop waiting for a frame on links that have not sent it
  * @slot: slot that was armed
@@ -179,46 +165,31 @@ bool ec_slot_disarm(struct ec_slot *slot, u8 sides)
 	}
 	slot->back &= slot->sides;
 	done = slot->done;
-	if (is_complete(slot) && done)
+	if (ec_slot_complete(slot) && done)
 		done(slot);
 	return false;
 }
 
-/* Has no slave processed or counted a datagram? That of one end of a closed ring. */
-static bool is_blank(struct ec_slot *slot, const u8 *data)
-{
-	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR;
-	size_t size;
-	u16 len;
-
-	do {
-		len = get_unaligned_le16(sent + 6);
-		size = EC_DGRAM_OVERHEAD + (len & EC_DGRAM_LEN_MASK);
-		if (get_unaligned_le16(data + size - EC_DGRAM_WKC) ||
-		    get_unaligned_le16(data + 2) != get_unaligned_le16(sent + 2))
-			return false;
-		data += size;
-		sent += size;
-	} while (len & EC_DGRAM_MORE);
-	return true;
-}
-
 /**
- * ec_slot_take() - take the copy of a link, and leave the state FILL
- * @slot: slot that awaits it
- * @side: number of the link
- * @data: datagrams, compared with what was sent
+ * ec_slot_unkeep() - take the copies of a slot out of the memory of the devices
+ * @s: slots, of two links
+ * @slot: of the cycle; it may still await a copy
  *
- * Context: Any. RT-safe: bounded, no sleep, no allocation.
- * Return: whether it was the last copy: @done is to be called.
+ * Context: The cycle owner. RT-safe: bounded, no sleep, no allocation.
  */
-bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data)
+void ec_slot_unkeep(struct ec_slots *s, struct ec_slot *slot)
 {
-	if (slot->sides != BIT(side) && is_blank(slot, data))
-		slot->blank |= BIT(side);
-	else
-		memcpy(slot->copy[side] + EC_FRAME_HDR, data,
-		       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
-	slot->back |= BIT(side);
-	return is_complete(slot);
+	unsigned long flags, left;
+
+	/* the other link may deliver its copy now */
+	raw_spin_lock_irqsave(&s->both, flags);
+	for (left = slot->kept; left; left &= left - 1) {
+		unsigned int side = __ffs(left);
+
+		memcpy(slot->copy[side], slot->got[side], slot->eth_len - EC_ETH_HDR);
+		slot->got[side] = slot->copy[side];
+	}
+	slot->kept = 0;
+	ec_slot_choose(slot);
+	raw_spin_unlock_irqrestore(&s->both, flags);
 }

@@ -18,6 +18,7 @@
 
 #include <linux/atomic.h>
 #include <linux/etherdevice.h>
+#include <linux/spinlock.h>
 #include <linux/types.h>
 #include "../base/limits.h"
 #include "../base/once64.h"
@@ -44,8 +45,10 @@ struct ec_slot {
 	u8 back;
 	/** @crossed: of these, the copies that came in by another link: the ring is closed */
 	u8 crossed;
-	/** @blank: of these, the copies that no slave has processed; they have no @copy */
+	/** @blank: of these, the copies that no slave has processed; they are not kept */
 	u8 blank;
+	/** @kept: of these, the copies that are in the memory of the device */
+	u8 kept;
 	/** @eth_len: bytes of the Ethernet frame without padding and FCS */
 	u16 eth_len;
 	/** @seq: sequence number in the source MAC address */
@@ -60,10 +63,12 @@ struct ec_slot {
 	/** @user: for @done */
 	void *user;
 	/**
-	 * @reply: in state DONE: received bytes behind the EtherType; in a copy, or for the cycle
+	 * @reply: in state DONE: received bytes behind the EtherType; in @copy, or for the cycle
 	 * in the memory of the device, see struct ec_link.keep
 	 */
 	const u8 *reply;
+	/** @got: the same of each link that has returned a copy, but for blank ones */
+	const u8 *got[EC_MAX_LINKS];
 	/**
 	 * @copy: memory for the copy of each link, behind the EtherType; with one link that of
 	 * @frame
@@ -82,6 +87,10 @@ struct ec_slots {
 	struct ec_slot *slot;
 	/** @copies: memory of the copies with a second link, else NULL */
 	u8 *copies;
+	/** @merged: likewise, for the cycle: a frame that both links have returned, in one */
+	u8 *merged;
+	/** @both: with a second link: both may receive their copies of a frame at the same time */
+	raw_spinlock_t both;
 	/** @hint: where the search for a free slot begins */
 	atomic_t hint;
 	/** @seq: sequence number of the last frame */
@@ -102,7 +111,7 @@ struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_settle(struct ec_slot *slot);
 bool ec_slot_disarm(struct ec_slot *slot, u8 sides);
-bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data);
+void ec_slot_unkeep(struct ec_slots *s, struct ec_slot *slot);
 
 /* initial values of a slot that was just taken */
 static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
@@ -112,6 +121,7 @@ static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
 	slot->back = 0;
 	slot->crossed = 0;
 	slot->blank = 0;
+	slot->kept = 0;
 	return slot;
 }
 
@@ -183,6 +193,56 @@ static inline void ec_slot_put(struct ec_slot *slot)
 static inline bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
 {
 	return side < EC_MAX_LINKS && slot->sides & ~slot->back & BIT(side);
+}
+
+/* The reply is the copy of the first link that has one, or what was sent. */
+static inline void ec_slot_choose(struct ec_slot *slot)
+{
+	u8 copies = slot->back & ~slot->blank;
+
+	if (copies)
+		slot->reply = slot->got[copies & BIT(0) ? 0 : 1];
+	else if (slot->back)
+		slot->reply = slot->frame + EC_ETH_HDR;
+}
+
+/* Leave the state FILL: with the last copy the slot is DONE. */
+static inline bool ec_slot_complete(struct ec_slot *slot)
+{
+	bool complete = slot->back == slot->sides;
+
+	ec_slot_choose(slot);
+	ec_slot_release(slot, complete ? EC_SLOT_DONE : EC_SLOT_SENT);
+	return complete;
+}
+
+/**
+ * ec_slot_take() - take the copy of one of two links, and leave the state FILL
+ * @slot: slot that awaits it
+ * @side: number of the link
+ * @data: received bytes behind the EtherType, compared with what was sent
+ * @keep: @data stay until the cycle owner has taken them, or calls ec_slot_unkeep()
+ * @blank: no slave has processed or counted a datagram: the copy of one end of a closed ring
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: whether it was the last copy: @done is to be called.
+ */
+static inline bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, bool keep,
+				bool blank)
+{
+	if (blank && slot->sides != BIT(side)) {
+		slot->blank |= BIT(side);
+	} else if (keep) {
+		slot->got[side] = data;
+		slot->kept |= BIT(side);
+	} else {
+		slot->got[side] = slot->copy[side];
+		memcpy(slot->copy[side] + EC_FRAME_HDR, data + EC_FRAME_HDR,
+		       slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR);
+	}
+	/* the cycle owner reads it at any time */
+	WRITE_ONCE(slot->back, slot->back | BIT(side));
+	return ec_slot_complete(slot);
 }
 
 /* bytes of the frame on the wire, without FCS */

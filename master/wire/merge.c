@@ -2,6 +2,8 @@
 #include "frame.h"
 #include "merge.h"
 
+#define MERGE_PIECE	(4 * sizeof(u64))	/* compared at once */
+
 /* commands whose data all slaves combine by OR */
 static bool is_broadcast(u8 cmd)
 {
@@ -16,40 +18,72 @@ static u64 merge_bits(u64 a, u64 b, u64 sent)
 
 /*
  * Bits that slaves of either side have changed; each bit belongs to a slave of one side. One that
- * both copies have reached, as a break has just healed, has changed both in the same way.
+ * both copies have reached, as a break has just healed, has changed both in the same way. Mostly a
+ * piece belongs to one side.
  */
-static void merge_changed(u8 *a, const u8 *b, const u8 *sent, size_t len)
+static void merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
 {
-	size_t i;
+	size_t i, j;
 
-	for (i = 0; i + sizeof(u64) <= len; i += sizeof(u64))
-		put_unaligned_le64(merge_bits(get_unaligned_le64(a + i), get_unaligned_le64(b + i),
-					      get_unaligned_le64(sent + i)), a + i);
+	memcpy(to, b, len);
+	for (i = 0; i + MERGE_PIECE <= len; i += MERGE_PIECE) {
+		u64 changed = 0;
+
+		for (j = i; j < i + MERGE_PIECE; j += sizeof(u64))
+			changed |= get_unaligned_le64(a + j) ^ get_unaligned_le64(sent + j);
+		if (!changed)
+			continue;
+		for (j = i; j < i + MERGE_PIECE; j += sizeof(u64))
+			put_unaligned_le64(merge_bits(get_unaligned_le64(a + j),
+						      get_unaligned_le64(b + j),
+						      get_unaligned_le64(sent + j)), to + j);
+	}
 	for (; i < len; i++)
-		a[i] = (u8)merge_bits(a[i], b[i], sent[i]);
+		to[i] = (u8)merge_bits(a[i], b[i], sent[i]);
 }
 
-static void merge_or(u8 *a, const u8 *b, size_t len)
+static void merge_or(u8 *to, const u8 *a, const u8 *b, size_t len)
 {
 	size_t i;
 
 	for (i = 0; i < len; i++)
-		a[i] |= b[i];
+		to[i] = a[i] | b[i];
 }
 
 /* Each slave has counted the position, also one that has not processed it. */
-static void merge_broadcast(u8 *a, const u8 *b, const u8 *sent, size_t len)
+static void merge_broadcast(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
 {
 	u16 passed = get_unaligned_le16(b + 2) - get_unaligned_le16(sent + 2);
 
-	put_unaligned_le16(get_unaligned_le16(a + 2) + passed, a + 2);
+	memcpy(to, a, EC_DGRAM_HDR + len);
+	put_unaligned_le16(get_unaligned_le16(a + 2) + passed, to + 2);
 	if (ec_cmd_reads(a[0]))
-		merge_or(a + EC_DGRAM_HDR, b + EC_DGRAM_HDR, len);
+		merge_or(to + EC_DGRAM_HDR, a + EC_DGRAM_HDR, b + EC_DGRAM_HDR, len);
+}
+
+/* one datagram; returns both working counters together */
+static u16 merge_dgram(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
+{
+	u16 wa = get_unaligned_le16(a + EC_DGRAM_HDR + len);
+	u16 wb = get_unaligned_le16(b + EC_DGRAM_HDR + len);
+
+	if (is_broadcast(sent[0])) {
+		merge_broadcast(to, a, b, sent, len);
+	} else if (wa && wb) {
+		memcpy(to, a, EC_DGRAM_HDR);
+		merge_changed(to + EC_DGRAM_HDR, a + EC_DGRAM_HDR, b + EC_DGRAM_HDR,
+			      sent + EC_DGRAM_HDR, len);
+	} else {
+		memcpy(to, wb ? b : a, EC_DGRAM_HDR + len);
+	}
+	put_unaligned_le16(get_unaligned_le16(a + 8) | get_unaligned_le16(b + 8), to + 8);
+	return wa + wb;
 }
 
 /**
  * ec_merge_frame() - merge the copies of a frame that both ends of a ring have received
- * @a: EtherCAT header and datagrams of one copy; result
+ * @to: result; none of the others
+ * @a: EtherCAT header and datagrams of one copy
  * @b: the same of the other copy
  * @sent: the same as both were sent
  * @len: bytes of each; all have the same datagrams
@@ -61,28 +95,21 @@ static void merge_broadcast(u8 *a, const u8 *b, const u8 *sent, size_t len)
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_merge_frame(u8 *a, const u8 *b, const u8 *sent, size_t len)
+void ec_merge_frame(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
 {
 	size_t at = EC_FRAME_HDR;
 
+	if (len < at)
+		return;
+	memcpy(to, a, at);
 	while (at + EC_DGRAM_OVERHEAD <= len) {
-		u16 word = get_unaligned_le16(sent + at + 6), wa, wb;
+		u16 word = get_unaligned_le16(sent + at + 6), wkc;
 		size_t data = word & EC_DGRAM_LEN_MASK, size = EC_DGRAM_OVERHEAD + data;
 
 		if (size > len - at)
 			break;
-		wa = get_unaligned_le16(a + at + EC_DGRAM_HDR + data);
-		wb = get_unaligned_le16(b + at + EC_DGRAM_HDR + data);
-		if (is_broadcast(sent[at]))
-			merge_broadcast(a + at, b + at, sent + at, data);
-		else if (wa && wb)
-			merge_changed(a + at + EC_DGRAM_HDR, b + at + EC_DGRAM_HDR,
-				      sent + at + EC_DGRAM_HDR, data);
-		else if (wb)
-			memcpy(a + at, b + at, EC_DGRAM_HDR + data);
-		put_unaligned_le16(get_unaligned_le16(a + at + 8) | get_unaligned_le16(b + at + 8),
-				   a + at + 8);
-		put_unaligned_le16(wa + wb, a + at + EC_DGRAM_HDR + data);
+		wkc = merge_dgram(to + at, a + at, b + at, sent + at, data);
+		put_unaligned_le16(wkc, to + at + EC_DGRAM_HDR + data);
 		if (!(word & EC_DGRAM_MORE))
 			break;
 		at += size;

@@ -411,7 +411,7 @@ record_cost() {
 
 # The same cycle with one native device, and with one at each end of a ring, closed and open.
 ring_cost() {
-	local n state limit one two work work2
+	local n state limit one two work work1
 	local -A most=([closed]=140 [open]=160)
 
 	echo "# a ring with two native devices, of what one device costs"
@@ -419,7 +419,7 @@ ring_cost() {
 		run "drive$n, native" "${icount[@]}" --nics -- native "drive$n.seg" --cycles 300 \
 			--period-us 4100 || return
 		one=${v[total_mean]}
-		work=$((v[application_work] + v[card_work] + v[master_work] + v[rest_work]))
+		work "" 4100 "one device"; work1=$work
 		for state in closed open; do
 			[ $n-$state != 1-open ] || continue
 			run "ring$n, $state" "${icount[@]}" --nics --more-nics e1000e -- ring \
@@ -427,9 +427,8 @@ ring_cost() {
 				--period-us 4100 || return
 			cost ring
 			reliable "ring, $state"
-			work2=$((v[application_work] + v[card_work] + v[master_work]))
-			work2=$((work2 + v[rest_work]))
-			echo "# all work: $work2, with one device $work"
+			work "" 4100 "ring, $state"
+			echo "# all work: $(ratio "$work" "$work1") of that with one device"
 			limit=$((one * ${most[$state]} / 100))
 			two=${v[total_mean]}
 			row "$two" $limit "instructions of the calls, ring $state: $n drive(s)"

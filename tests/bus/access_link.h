@@ -115,12 +115,18 @@ static inline void bus_two_copies(const struct bus *b, struct ec_slot *slot)
 		slot->copy[side] = kunit_kzalloc(b->test, EC_ETH_MAX, GFP_KERNEL);
 		KUNIT_ASSERT_NOT_NULL(b->test, slot->copy[side]);
 	}
+	bus_slots(b)->copies = slot->copy[0];
+	if (!bus_slots(b)->merged)
+		bus_slots(b)->merged = kunit_kzalloc(b->test, EC_ETH_MAX, GFP_KERNEL);
+	KUNIT_ASSERT_NOT_NULL(b->test, bus_slots(b)->merged);
 }
 
-static inline void bus_one_copy(struct ec_slot *slot)
+static inline void bus_one_copy(const struct bus *b, struct ec_slot *slot)
 {
 	u32 side;
 
+	bus_slots(b)->copies = NULL;
+	bus_slots(b)->merged = NULL;
 	for (side = 0; side < EC_MAX_LINKS; side++)
 		slot->copy[side] = ec_slot_body(slot);
 }

@@ -235,7 +235,7 @@ static void pair_exit(struct kunit *test)
 		/* the copies are the case's */
 		msleep(100);
 		for (i = 0; i < EC_SLOTS; i++)
-			bus_one_copy(bus_slot(p->b, i));
+			bus_one_copy(p->b, bus_slot(p->b, i));
 		bus_dev(p->b)->ops = p->real;
 	}
 	pair = NULL;
@@ -295,6 +295,80 @@ static void cycle_links_no_copy_of_backup(struct kunit *test)
 static void cycle_links_no_copy_of_main(struct kunit *test)
 {
 	one_copy(test, EC_BACKUP);
+}
+
+/* The application polls: the copy that no slave has processed is first. */
+static void cycle_links_copy_between_receives(struct kunit *test)
+{
+	struct pair *p = pair_by_hand(test);
+
+	send(p);
+	receive(p);
+	give(p, EC_BACKUP, 2, 0);
+	receive(p);
+	expect_data(p, false, 1, 0x11);
+	give(p, EC_MAIN, 2, 0x22);
+	receive(p);
+	expect_data(p, true, 0, 0x22);
+	expect_counts(p, EC_MAIN, 0, 0);
+	expect_counts(p, EC_BACKUP, 0, 0);
+}
+
+/* A link whose copies come after each receive was mute once: they are awaited again. */
+static void cycle_links_late_link_is_heard_again(struct kunit *test)
+{
+	struct pair *p = pair_by_hand(test);
+	u32 i, complete = 0;
+
+	for (i = 2; i < 10; i++) {
+		send(p);
+		give(p, EC_BACKUP, i, 0);
+		receive(p);
+		complete += cyc_state(p->c, 0)->wc_state == EC_STATUS_WC_COMPLETE;
+		/* one is lost */
+		if (i != 3)
+			give(p, EC_MAIN, i, 0x20 + i);
+	}
+	/* the one before, and not the one that is lost */
+	KUNIT_EXPECT_EQ(test, complete, 6u);
+	KUNIT_EXPECT_EQ(test, cyc_pd(p->c, 0, 3)[0], 0x28);
+}
+
+/* Without a send it is given up after the time limit, and the other one is taken. */
+static void cycle_links_one_copy_without_send(struct kunit *test)
+{
+	struct pair *p = pair_by_hand(test);
+
+	send(p);
+	give(p, EC_MAIN, 2, 0x22);
+	receive(p);
+	expect_data(p, false, 1, 0x11);
+	usleep_range(21000, 21001);
+	receive(p);
+	expect_data(p, true, 0, 0x22);
+	expect_counts(p, EC_MAIN, 0, 0);
+	expect_counts(p, EC_BACKUP, 1, 0);
+}
+
+/*
+ * As a cable heals: the copy of the backup link has turned at the break, that of the main link has
+ * passed all slaves. A value is that of the latter, as is the working counter.
+ */
+static void cycle_links_crossed_copy_is_whole(struct kunit *test)
+{
+	struct pair *p = pair_by_hand(test);
+	struct copy *copy;
+
+	send(p);
+	give(p, EC_BACKUP, 2, 0x81);
+	copy = &p->sent[EC_MAIN][2];
+	swap(p->sent[EC_BACKUP][2], *copy);
+	/* sent by the main link, received by the other one */
+	p->sent[EC_BACKUP][2].buf[7] = 0;
+	give(p, EC_BACKUP, 2, 0x42);
+	receive(p);
+	expect_data(p, true, 0, 0x42);
+	KUNIT_EXPECT_EQ(test, cyc_state(p->c, 0)->redundancy_active, 0u);
 }
 
 /* Not given up yet, but after the next send: late on its link, not on the other. */
@@ -411,6 +485,10 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(cycle_links_both_copies_come),
 	KUNIT_CASE(cycle_links_no_copy_of_backup),
 	KUNIT_CASE(cycle_links_no_copy_of_main),
+	KUNIT_CASE(cycle_links_copy_between_receives),
+	KUNIT_CASE(cycle_links_late_link_is_heard_again),
+	KUNIT_CASE(cycle_links_one_copy_without_send),
+	KUNIT_CASE(cycle_links_crossed_copy_is_whole),
 	KUNIT_CASE(cycle_links_copy_after_next_send),
 	KUNIT_CASE(cycle_links_oldest_given_up),
 	KUNIT_CASE(cycle_links_backup_withdrawn),

@@ -230,12 +230,12 @@ static void frame_on_two_links_done_with_both_copies(struct kunit *test)
 	e.reply[EC_FRAME_HDR + EC_DGRAM_HDR] = 0x22;
 	give(b, e.src, e.reply, e.len);
 	KUNIT_EXPECT_EQ(test, state(&e), EC_SLOT_DONE);
-	KUNIT_EXPECT_EQ(test, e.slot->copy[1][EC_FRAME_HDR + EC_DGRAM_HDR], 0x11);
-	KUNIT_EXPECT_EQ(test, e.slot->copy[0][EC_FRAME_HDR + EC_DGRAM_HDR], 0x22);
+	KUNIT_EXPECT_EQ(test, e.slot->got[1][EC_FRAME_HDR + EC_DGRAM_HDR], 0x11);
+	KUNIT_EXPECT_EQ(test, e.slot->got[0][EC_FRAME_HDR + EC_DGRAM_HDR], 0x22);
 	/* what was sent is still there */
 	KUNIT_EXPECT_EQ(test, memcmp(ec_slot_body(e.slot), sent, e.len), 0);
 	ec_slot_put(e.slot);
-	bus_one_copy(e.slot);
+	bus_one_copy(b, e.slot);
 }
 
 /* Bytes by chance, of every length, while the bus works. */

@@ -258,7 +258,7 @@ static void post_cancel_waits_for_end(struct kunit *test)
 	ec_slot_hold(bus_slot(r->b, r->post[0].slot), EC_SLOT_SENT,
 		     bus_slot(r->b, r->post[0].slot)->seq);
 	ec_slot_take(bus_slot(r->b, r->post[0].slot), 0,
-		     r->frame[0] + EC_ETH_HDR + EC_FRAME_HDR);
+		     r->frame[0] + EC_ETH_HDR, false, false);
 	ec_flight_landed(bus_slot(r->b, r->post[0].slot));
 	wait_for_completion(&cancelling.over);
 	rig_expect(r, BIT(0), 1, 0);

@@ -137,7 +137,7 @@ void rig_exit(struct kunit *test)
 			/* the copies are the case's */
 			msleep(100);
 			for (i = 0; i < EC_SLOTS; i++)
-				bus_one_copy(bus_slot(r->b, i));
+				bus_one_copy(r->b, bus_slot(r->b, i));
 		}
 	}
 	rig = NULL;

@@ -21,14 +21,13 @@ const struct fuzz_seed fuzz_seeds[] = {
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 {
 	size_t each = len / 3, at = EC_FRAME_HDR, size;
-	u8 *a = malloc(each + 1), *b = malloc(each + 1), *sent = malloc(each + 1);
-	u16 before;
+	u8 *a = malloc(each), *b = malloc(each), *sent = malloc(each), *to = malloc(each);
 
-	MUST(a && b && sent);
+	MUST(a && b && sent && to);
 	memcpy(sent, data, each);
 	memcpy(a, data + each, each);
 	memcpy(b, data + 2 * each, each);
-	ec_merge_frame(a, b, sent, each);
+	ec_merge_frame(to, a, b, sent, each);
 	/* working counters are those of both */
 	while (at + EC_DGRAM_OVERHEAD <= each) {
 		u16 word = get_unaligned_le16(sent + at + 6);
@@ -36,9 +35,9 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 		size = EC_DGRAM_OVERHEAD + (word & EC_DGRAM_LEN_MASK);
 		if (size > each - at)
 			break;
-		before = get_unaligned_le16(data + each + at + size - EC_DGRAM_WKC);
-		MUST(get_unaligned_le16(a + at + size - EC_DGRAM_WKC) ==
-		     (u16)(before + get_unaligned_le16(b + at + size - EC_DGRAM_WKC)));
+		MUST(get_unaligned_le16(to + at + size - EC_DGRAM_WKC) ==
+		     (u16)(get_unaligned_le16(a + at + size - EC_DGRAM_WKC) +
+			   get_unaligned_le16(b + at + size - EC_DGRAM_WKC)));
 		if (!(word & EC_DGRAM_MORE))
 			break;
 		at += size;
@@ -46,5 +45,6 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 	free(a);
 	free(b);
 	free(sent);
+	free(to);
 	return 0;
 }

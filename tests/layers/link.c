@@ -96,7 +96,7 @@ static int send(struct bench *b, struct ec_slot **slot)
 
 static u8 data_of(const struct ec_slot *slot, unsigned int side)
 {
-	return slot->copy[side][EC_FRAME_HDR + EC_DGRAM_HDR];
+	return slot->got[side][EC_FRAME_HDR + EC_DGRAM_HDR];
 }
 
 static void reply_ends_the_slot(void)

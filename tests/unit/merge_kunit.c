@@ -4,9 +4,9 @@
 #include "../../master/wire/merge.h"
 
 /* a frame as sent, and the copies that both ends of a ring have received */
-static u8 sent[200], a[200], b[200];
+static u8 sent[300], a[300], b[300], to[300];
 static size_t len;
-static u8 *at[3][4];	/* data of each datagram: as sent, in both copies */
+static u8 *at[4][4];	/* data of each datagram: as sent, in both copies, in the result */
 static u16 bytes[4];
 
 /* FPRD, BRD, LRW, LRD */
@@ -18,7 +18,7 @@ static void merge_build(void)
 
 	ec_frame_begin(&f, sent, sizeof(sent));
 	for (i = 0; i < 4; i++) {
-		bytes[i] = i < 2 ? 2 : 11;
+		bytes[i] = i < 2 ? 2 : 75;
 		at[0][i] = ec_frame_add(&f, cmds[i], 9, 0, 0x0130, bytes[i]);
 		memset(at[0][i], i < 2 ? 0 : 0xa5, bytes[i]);
 	}
@@ -28,6 +28,7 @@ static void merge_build(void)
 	for (i = 0; i < 4; i++) {
 		at[1][i] = a + (at[0][i] - sent);
 		at[2][i] = b + (at[0][i] - sent);
+		at[3][i] = to + (at[0][i] - sent);
 	}
 }
 
@@ -38,7 +39,7 @@ static void processed(unsigned int copy, unsigned int i, u16 wkc)
 
 static u16 merged(unsigned int i)
 {
-	return get_unaligned_le16(at[1][i] + bytes[i]);
+	return get_unaligned_le16(at[3][i] + bytes[i]);
 }
 
 static void merge_processed_copy_is_taken(struct kunit *test)
@@ -48,13 +49,13 @@ static void merge_processed_copy_is_taken(struct kunit *test)
 	processed(2, 0, 1);
 	memcpy(at[1][3], "0123456789a", 11);
 	processed(1, 3, 1);
-	ec_merge_frame(a, b, sent, len);
-	KUNIT_EXPECT_MEMEQ(test, at[1][0], "\x08\x00", 2);
+	ec_merge_frame(to, a, b, sent, len);
+	KUNIT_EXPECT_MEMEQ(test, at[3][0], "\x08\x00", 2);
 	KUNIT_EXPECT_EQ(test, merged(0), 1);
-	KUNIT_EXPECT_MEMEQ(test, at[1][3], "0123456789a", 11);
+	KUNIT_EXPECT_MEMEQ(test, at[3][3], "0123456789a", 11);
 	KUNIT_EXPECT_EQ(test, merged(3), 1);
 	KUNIT_EXPECT_EQ(test, merged(2), 0);
-	KUNIT_EXPECT_MEMEQ(test, at[1][2], at[0][2], 11);
+	KUNIT_EXPECT_MEMEQ(test, at[3][2], at[0][2], 11);
 }
 
 static void merge_broadcast_counts_both_sides(struct kunit *test)
@@ -67,11 +68,11 @@ static void merge_broadcast_counts_both_sides(struct kunit *test)
 	at[2][1][0] = 0x08;
 	processed(2, 1, 4);
 	put_unaligned_le16(4, at[2][1] - 2);	/* events */
-	ec_merge_frame(a, b, sent, len);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(at[1][1] - EC_DGRAM_HDR + 2), 8);
-	KUNIT_EXPECT_EQ(test, at[1][1][0], 0x0a);
+	ec_merge_frame(to, a, b, sent, len);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(at[3][1] - EC_DGRAM_HDR + 2), 8);
+	KUNIT_EXPECT_EQ(test, at[3][1][0], 0x0a);
 	KUNIT_EXPECT_EQ(test, merged(1), 7);
-	KUNIT_EXPECT_EQ(test, get_unaligned_le16(at[1][1] - 2), 4);
+	KUNIT_EXPECT_EQ(test, get_unaligned_le16(at[3][1] - 2), 4);
 }
 
 /* Bits of one byte from slaves of both sides, and a byte behind the last word of 8. */
@@ -82,13 +83,21 @@ static void merge_bits_are_of_their_side(struct kunit *test)
 	at[2][2][0] = 0x55;	/* high half */
 	at[1][2][1] = 0x11;
 	at[2][2][10] = 0x22;
+	at[2][2][40] = 0x33;	/* a piece that one side has changed, and one of the other */
+	at[1][2][64] = 0x44;
+	at[1][2][74] = 0x66;	/* behind the last piece */
+	at[2][2][73] = 0x77;
 	processed(1, 2, 3);
 	processed(2, 2, 6);
-	ec_merge_frame(a, b, sent, len);
+	ec_merge_frame(to, a, b, sent, len);
 	KUNIT_EXPECT_EQ(test, merged(2), 9);
-	KUNIT_EXPECT_EQ(test, at[1][2][1], 0x11);
-	KUNIT_EXPECT_EQ(test, at[1][2][10], 0x22);
-	KUNIT_EXPECT_EQ(test, at[1][2][2], 0xa5);
+	KUNIT_EXPECT_EQ(test, at[3][2][1], 0x11);
+	KUNIT_EXPECT_EQ(test, at[3][2][10], 0x22);
+	KUNIT_EXPECT_EQ(test, at[3][2][2], 0xa5);
+	KUNIT_EXPECT_EQ(test, at[3][2][40], 0x33);
+	KUNIT_EXPECT_EQ(test, at[3][2][64], 0x44);
+	KUNIT_EXPECT_EQ(test, at[3][2][73], 0x77);
+	KUNIT_EXPECT_EQ(test, at[3][2][74], 0x66);
 }
 
 /* A slave that both copies have reached has written the same. */
@@ -99,9 +108,9 @@ static void merge_same_change_of_both_sides_stays(struct kunit *test)
 	memset(at[2][3], 0x3c, 11);
 	processed(1, 3, 2);
 	processed(2, 3, 1);
-	ec_merge_frame(a, b, sent, len);
-	KUNIT_EXPECT_EQ(test, at[1][3][0], 0x3c);
-	KUNIT_EXPECT_EQ(test, at[1][3][10], 0x3c);
+	ec_merge_frame(to, a, b, sent, len);
+	KUNIT_EXPECT_EQ(test, at[3][3][0], 0x3c);
+	KUNIT_EXPECT_EQ(test, at[3][3][10], 0x3c);
 }
 
 /* Lengths that do not fit into the frame end the merge. */
@@ -110,9 +119,9 @@ static void merge_length_beyond_frame_ends_it(struct kunit *test)
 	merge_build();
 	put_unaligned_le16(0x7ff | EC_DGRAM_MORE, at[0][1] - EC_DGRAM_HDR + 6);
 	processed(2, 0, 1);
-	ec_merge_frame(a, b, sent, len);
+	ec_merge_frame(to, a, b, sent, len);
 	KUNIT_EXPECT_EQ(test, merged(0), 1);
-	ec_merge_frame(a, b, sent, 5);
+	ec_merge_frame(to, a, b, sent, 5);
 	KUNIT_EXPECT_EQ(test, merged(0), 1);
 }
 

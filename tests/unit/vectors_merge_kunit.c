@@ -29,11 +29,10 @@ static void vectors_merge_both_sides_of_break(struct kunit *test)
 		7, 5, 3, 0, 0x30, 1, 2, 0x80, 0, 0, 10, 0, 3, 0,
 		12, 5, 0, 0, 0, 1, 10, 0, 4, 0, 0x7f, 1, 2, 3, 4, 5, 6, 7, 8, 0xee, 6, 0,
 	};
-	u8 a[sizeof(first)];
+	u8 to[sizeof(first)];
 
-	memcpy(a, first, sizeof(a));
-	ec_merge_frame(a, backup, sent, sizeof(a));
-	KUNIT_EXPECT_MEMEQ(test, a, want, sizeof(want));
+	ec_merge_frame(to, first, backup, sent, sizeof(to));
+	KUNIT_EXPECT_MEMEQ(test, to, want, sizeof(want));
 }
 
 static struct kunit_case cases[] = {

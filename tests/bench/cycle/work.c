@@ -2,7 +2,7 @@
 /*
  * All work of a cycle: what the CPU executes in N cycles, of every thread and interrupt, as
  * bench_split.ko counts it. The simulator's part is apart: its thread, the threads of its
- * network card (eth1), the work that its driver puts off, and the interrupts that wake them. As a
+ * network cards (eth1, in a ring also eth3), the work that its driver puts off, and the interrupts that wake them. As a
  * check of that, all of it is also the time that has passed less the idle time.
  */
 #include "bench.h"
@@ -21,14 +21,15 @@
 
 static enum worker worker(const char *name)
 {
-	if (!strcmp(name, "ethercat-sim") || (!strncmp(name, "irq/", 4) && strstr(name, "eth1")))
+	if (!strcmp(name, "ethercat-sim") || (!strncmp(name, "irq/", 4) &&
+					      (strstr(name, "eth1") || strstr(name, "eth3"))))
 		return WORKER_SIMULATOR;
 	/* with the generic device it may be of either card */
 	if (!strcmp(name, "e1000e") && access("/sys/class/net/eth0", F_OK))
 		return WORKER_SIMULATOR;
 	if (!strcmp(name, "cycle-bench"))
 		return WORKER_APPLICATION;
-	if (!strncmp(name, "irq/", 4) && strstr(name, "eth0"))
+	if (!strncmp(name, "irq/", 4) && (strstr(name, "eth0") || strstr(name, "eth2")))
 		return WORKER_CARD;
 	if (!strcmp(name, BESIDE))
 		return WORKER_OTHER;
