@@ -2,8 +2,9 @@
 /*
  * All work of a cycle: what the CPU executes in N cycles, of every thread and interrupt, as
  * bench_split.ko counts it. The simulator's part is apart: its thread, the threads of its
- * network cards (eth1, in a ring also eth3), the work that its driver puts off, and the interrupts that wake them. As a
- * check of that, all of it is also the time that has passed less the idle time.
+ * network cards (eth1, in a ring also eth3), the work that their driver puts off, and the
+ * interrupts that wake them. As a check of that, all of it is also the time that has passed less
+ * the idle time.
  */
 #include "bench.h"
 
