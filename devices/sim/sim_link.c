@@ -53,14 +53,31 @@ static void deliver(struct ec_sim_wire *w, int port, const u8 *eth, size_t len)
 	rcu_read_unlock();
 }
 
-/* The segment runs while a master uses an end, and is polled while all of these poll. */
+/* The segment is polled while all ends that a master uses poll. */
+static void poll_anew(struct ec_sim_link *l)
+{
+	bool polled = false, idle = false;
+	unsigned int i;
+
+	lockdep_assert_held(&l->lock);
+	for (i = 0; i < EC_SIM_PORTS; i++) {
+		polled |= l->end[i].polled;
+		idle |= !l->end[i].polled && READ_ONCE(l->end[i].dev);
+	}
+	ec_sim_wire_set_polled(&l->wire, polled && !idle);
+}
+
+/* The segment runs while a master uses an end. */
 static void set_dev(struct end *e, struct ecdev *dev)
 {
 	struct ec_sim_link *l = e->link;
 	bool runs = false;
 	unsigned int i;
 
+	spin_lock_bh(&l->lock);
 	WRITE_ONCE(e->dev, dev);
+	poll_anew(l);
+	spin_unlock_bh(&l->lock);
 	/* a card that is off has no link: frames turn at the last slave */
 	if (e->port)
 		ec_sim_wire_card(&l->wire, e->port, dev);
@@ -103,11 +120,11 @@ static void link_poll(void *priv)
 
 static void link_cycle(void *priv, bool on)
 {
-	struct end *e = priv, *other = &e->link->end[!e->port];
+	struct end *e = priv;
 
 	spin_lock_bh(&e->link->lock);
 	e->polled = on;
-	ec_sim_wire_set_polled(&e->link->wire, on && (other->polled || !READ_ONCE(other->dev)));
+	poll_anew(e->link);
 	spin_unlock_bh(&e->link->lock);
 }
 

@@ -150,6 +150,21 @@ void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long
 				    READ_ONCE(slot->eth_len));
 }
 
+/* Return: whether the state of a link has changed; a device that is withdrawn leaves it down. */
+static bool has_changed(struct ec_link *link)
+{
+	struct rt_mutex *lock = &link->links->access.lock;
+	bool up, was;
+
+	ec_link_look(link);
+	rt_mutex_lock(lock);
+	up = ec_link_is_up(link);
+	was = link->up;
+	WRITE_ONCE(link->up, up);
+	rt_mutex_unlock(lock);
+	return up != was;
+}
+
 /**
  * ec_links_look() - read the physical state of the links; log changes
  * @l: links
@@ -159,19 +174,17 @@ void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long
  */
 bool ec_links_look(struct ec_links *l)
 {
-	unsigned int i;
+	struct ec_link *link;
 	bool any = false;
 
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		bool up = ec_link_look(&l->link[i]);
-
-		if (up != l->link[i].up) {
-			WRITE_ONCE(l->link[i].up, up);
+	ec_links_for_each(l, link) {
+		if (has_changed(link)) {
 			/* the way of all frames of a ring changes */
 			WRITE_ONCE(l->ring.news, !l->only);
-			ec_report(l->base, up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN, i);
+			ec_report(l->base, link->up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN,
+				  link->side);
 		}
-		any |= up;
+		any |= link->up;
 	}
 	return any;
 }
