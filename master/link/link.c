@@ -95,15 +95,12 @@ int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, 
  */
 static u8 live(const struct ec_links *l, u8 sides)
 {
-	unsigned long left = sides;
+	unsigned int i;
 	u8 up = 0;
 
-	for (; left; left &= left - 1) {
-		const struct ec_link *link = &l->link[__ffs(left)];
-
-		if (READ_ONCE(link->up) || ec_link_is_up(link))
-			up |= BIT(link->side);
-	}
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		if (sides & BIT(i) && (READ_ONCE(l->link[i].up) || ec_link_is_up(&l->link[i])))
+			up |= BIT(i);
 	return up ?: sides;
 }
 
@@ -126,15 +123,15 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
 	struct ecdev *dev[EC_MAX_LINKS];
 	u8 *buf[EC_MAX_LINKS], unsent = 0, full = 0;
-	unsigned long left;
-	int ret = -ENODEV;
+	int ret = -ENODEV, err;
+	unsigned int i;
 
 	sides = live(l, sides);
-	for (left = sides; left; left &= left - 1) {
-		unsigned int i = __ffs(left);
-
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (!(sides & BIT(i)))
+			continue;
 		buf[i] = ec_link_tx_get(&l->link[i], &dev[i]);
-		if (buf[i])
+		if (likely(buf[i]))
 			continue;
 		sides &= ~BIT(i);
 		if (!dev[i])
@@ -145,14 +142,13 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 	if (!sides)
 		return ret;
 	ec_slot_arm(&l->slots, slot, slot->frame, sides, now);
-	for (left = sides; left; left &= left - 1) {
-		unsigned int i = __ffs(left);
-		int err;
-
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (!(sides & BIT(i)))
+			continue;
 		memcpy(buf[i], slot->frame, ec_slot_padded(slot));
 		buf[i][7] |= i;
 		err = ec_link_send_buf(&l->link[i], dev[i], buf[i], ec_slot_padded(slot));
-		if (!err)
+		if (likely(!err))
 			continue;
 		unsent |= BIT(i);
 		if (err == -EBUSY)
@@ -162,7 +158,8 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 	/* a frame whose reply was received counts as sent */
 	if (unsent && ec_slot_disarm(slot, unsent))
 		return ret;
-	ec_links_count(l, full, tx_errors);
+	if (unlikely(full))
+		ec_links_count(l, full, tx_errors);
 	return 0;
 }
 
