@@ -142,6 +142,8 @@ static void ring(const struct ect_master *m)
 	number("slave", open, m->ring_slave);
 	number("port", open, m->ring_port);
 	number("next", open, m->ring_next);
+	out_bool("exchanged", m->ring_exchanged, NULL);
+	number("turned", m->ring_turned, m->ring_turned - 1);
 	out_end();
 	if (m->ring == ECT_RING_NONE)
 		return;
@@ -157,6 +159,11 @@ static void ring(const struct ect_master *m)
 	else if (open)
 		out_text(" and slave %u", m->ring_next);
 	out_text("\n");
+	if (m->ring_turned)
+		out_text("  Wrong way round: slave %u; let its port 0 lead towards the main device\n",
+			 m->ring_turned - 1);
+	if (m->ring_exchanged)
+		out_text("  Devices exchanged: the one configured as backup device is at port 0 of the first slave, and is the main device; exchange the cables or the two names\n");
 }
 
 /* a cycle of the kernel that is synchronized to the reference clock */

@@ -86,6 +86,8 @@ struct ect_master {
 	uint32_t ring_slave;	/* before the break; ECT_NONE32: the main device */
 	uint32_t ring_port;	/* its port there; ECT_NONE32: not known */
 	uint32_t ring_next;	/* behind the break; ECT_NONE32: the backup device */
+	uint32_t ring_exchanged;	/* the main device has the name of the backup device */
+	uint32_t ring_turned;	/* 1 + position of a slave that is the wrong way round; 0: none */
 };
 
 /* the main device of a master, or its backup device */

@@ -62,6 +62,9 @@
  */
 #define EC_EVENT_RING_OPEN	0x1c
 #define EC_EVENT_RING_CLOSED	0x1d	/* slaves */
+/* the devices of the ring are exchanged: 1: the one at the backup name is the main device */
+#define EC_EVENT_RING_EXCHANGED	0x1e
+#define EC_EVENT_RING_TURNED	0x1f	/* port 0 leads to the backup device */
 
 /*
  * as requested: AL state, before, slaves: this one and those after it, the lowest AL state in

@@ -118,7 +118,7 @@ struct ec_ioc_master {
 	__u32 no_cycle;		/* active, but the application sends no cyclic frames */
 	__u32 held;		/* the list of slaves is held, see ecrt_master_reserve() */
 	__u32 links_up;		/* bit n: device n has a link */
-	__u32 reserved;
+	__u32 ring_turned;	/* 1 + position of a slave that is the wrong way round; 0: none */
 	char owner[EC_UAPI_STRING];	/* application that has reserved the master, or empty */
 	__u32 left;		/* detached by EC_IOC_DETACH: EC_IOC_OUTPUT works */
 	__u32 ring;		/* EC_RING_* */
@@ -126,7 +126,7 @@ struct ec_ioc_master {
 	__u32 ring_slave;	/* before the break; EC_EVENT_NONE: the main device */
 	__u32 ring_port;	/* its port there; EC_EVENT_NONE: not known */
 	__u32 ring_next;	/* behind the break; EC_EVENT_NONE: the backup device */
-	__u32 reserved2;
+	__u32 ring_exchanged;	/* device 0 has the name of the backup device */
 };
 
 /* struct ec_ioc_master.ring */

@@ -58,6 +58,8 @@ static void convert_master(struct ect_master *to, struct ec_ioc_master *from)
 	COPY(ring_slave);
 	COPY(ring_port);
 	COPY(ring_next);
+	COPY(ring_exchanged);
+	COPY(ring_turned);
 	memcpy(to->owner, from->owner, sizeof(to->owner));
 }
 

@@ -87,6 +87,12 @@ void why_ring(struct why *w)
 	char before[2 * ECT_STRING] = "the main device", behind[2 * ECT_STRING] = "the backup device";
 	char name[ECT_STRING];
 
+	if (m->ring_turned && w->bus->n) {
+		why_slave_name(w, m->ring_turned - 1, name, sizeof(name));
+		why_add(w, RING_TURNED, name);
+	}
+	if (m->ring_exchanged)
+		why_add(w, RING_EXCHANGED, w->devices->n ? why_device(w, 0)->name : "");
 	if (m->ring != ECT_RING_OPEN || !w->bus->n)
 		return;
 	if (m->ring_slave != ECT_NONE32) {

@@ -37,6 +37,12 @@
 	X(RING_END, "ring_open", WARNING, "", \
 	  "check the cable of the device there; all slaves run on, but a break of the ring would stop some", \
 	  "ring open between %s and %s") \
+	X(RING_TURNED, "ring_turned", FAULT, "", \
+	  "exchange the cables of this slave, so that its port 0 leads towards the main device; until then no application is activated, as the order of the slaves changes when the ring opens", \
+	  "%s is connected the wrong way round in the ring") \
+	X(RING_EXCHANGED, "ring_exchanged", WARNING, "", \
+	  "exchange the cables of the two devices, or the names MASTER<n>_DEVICE and MASTER<n>_BACKUP", \
+	  "devices of the ring exchanged: %s, configured as backup device, is at port 0 of the first slave, and is used as main device") \
 	/* the cycle */ \
 	X(NO_CYCLE, "no_cycle", FAULT, "", \
 	  "let the application call ecrt_master_receive() and ecrt_master_send() in each cycle, or let the kernel run the cycle: ecrt_master_set_cycle()", \

@@ -14,6 +14,7 @@
 #include "../session/session_slave.h"
 #include "../session/takeover.h"
 #include "../bus/bus_list.h"
+#include "../bus/ring_ends.h"
 #include "../bus/slave.h"
 #include "../config/why.h"
 
@@ -442,6 +443,23 @@ static int take_over(struct ec_call *call)
 	return 0;
 }
 
+/* The order of the slaves would change with each break. */
+static int check_ring(struct ec_call *call)
+{
+	struct ec_bus *bus = &call->master->bus;
+	const struct ec_slave *s;
+	int ret = 0;
+
+	down_read(&bus->topo);
+	s = ec_ring_ends_turned(bus);
+	if (s)
+		ret = ec_refuse(call, -EINVAL,
+				"slave %u (%.24s) is connected the wrong way round in the ring, so the positions of slaves change when it opens: exchange the cables of this slave, so that its port 0 leads towards the main device",
+				s->position, ec_slave_label(s));
+	up_read(&bus->topo);
+	return ret;
+}
+
 static int activate(struct ec_call *call, struct ec_session *s, const void *preset, u32 size)
 {
 	char why[EC_UAPI_REASON];
@@ -460,6 +478,9 @@ static int activate(struct ec_call *call, struct ec_session *s, const void *pres
 	ret = ec_units_check(&s->wanted, s->cycle.setup.kernel.period_ns, why, sizeof(why));
 	if (ret)
 		return ec_refuse(call, ret, "%s", why);
+	ret = check_ring(call);
+	if (ret)
+		return ret;
 	s->preset = preset;
 	ret = ec_session_activate(s);
 	s->preset = NULL;

@@ -30,7 +30,7 @@ static int change(struct ec_call *call, const char *name)
 	unsigned int rival;
 	int ret, back;
 
-	ec_links_name(&m->links, 0, was, sizeof(was));
+	ec_links_name(&m->links, ec_links_named(&m->links, 0), was, sizeof(was));
 	ret = ec_device_release(&m->links, name, &rival);
 	if (ret == -EEXIST)
 		return 0;

@@ -22,6 +22,7 @@
 #include "../bus/ports.h"
 #include "../bus/slave.h"
 #include "../bus/ring_break.h"
+#include "../bus/ring_ends.h"
 #include "../config/why.h"
 
 #ifndef EC_RELEASE
@@ -161,6 +162,7 @@ int ec_ioc_master(struct ec_call *call)
 {
 	struct ec_master *m = call->master;
 	struct ec_ioc_master *i = call->arg;
+	const struct ec_slave *turned;
 	unsigned int l;
 	int ret;
 
@@ -188,6 +190,9 @@ int ec_ioc_master(struct ec_call *call)
 	if (m->sessions.session)
 		session_info(call, m->sessions.session, i);
 	ec_ring_break_show(&m->bus, &i->ring, &i->ring_slave, &i->ring_port, &i->ring_next);
+	turned = ec_ring_ends_turned(&m->bus);
+	i->ring_turned = turned ? turned->position + 1 : 0;
+	i->ring_exchanged = READ_ONCE(m->links.exchanged);
 	ec_show_end(&m->base->show);
 	i->phase = !ec_links_attached(&m->links) ? EC_PHASE_WAITING :
 		   i->active ? EC_PHASE_OPERATION : EC_PHASE_IDLE;

@@ -5,6 +5,7 @@
 #include "../base/limits.h"
 #include "../link/links.h"
 #include "../carry/xfer.h"
+#include "ring_ends.h"
 #include "scan_count.h"
 #include "scan_int.h"
 
@@ -53,6 +54,8 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 			return false;
 	/* the copy that the slaves of a closed ring have processed is missing */
 	if (dg->crossed && !dg->back)
+		return false;
+	if (!ec_ring_ends_fit(bus, dg))
 		return false;
 	ec_ring_set(&l->ring, dg->crossed, came(dg, EC_MAIN) ? dg->side_back[EC_MAIN] : 0);
 	return true;

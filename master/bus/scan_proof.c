@@ -10,6 +10,7 @@
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "graph.h"
+#include "ring_ends.h"
 #include "scan_count.h"
 #include "scan_int.h"
 #include "scan_proof.h"
@@ -327,5 +328,7 @@ int ec_scan_proof(struct scan *sc)
 		ret = prove(&p);
 	kvfree(p.r);
 	kvfree(p.dg);
-	return ret ?: sc->n_thrown && sc->n_thrown == sc->n_stretches ? -EAGAIN : 0;
+	if (!ret && sc->n_thrown && sc->n_thrown == sc->n_stretches)
+		ret = -EAGAIN;
+	return ret ?: ec_scan_is_partial(sc) ? 0 : ec_ring_ends_judge(sc);
 }

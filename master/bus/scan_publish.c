@@ -7,6 +7,7 @@
 #include "graph.h"
 #include "known.h"
 #include "ring_break.h"
+#include "ring_ends.h"
 #include "scan_count.h"
 #include "scan_int.h"
 #include "scan_lost.h"
@@ -242,6 +243,7 @@ static void set_list(struct scan *sc, struct list *l)
 	leave_places(sc);
 	take_ports(sc, l);
 	ec_known_update(bus, l->slaves, l->n, ec_scan_limit());
+	ec_ring_ends_note(sc, l->slaves, l->n);
 	note_aliases(sc, l);
 	WRITE_ONCE(bus->lists, bus->lists + 1);
 	for (i = 0; i < l->n; i++)
@@ -307,6 +309,7 @@ int ec_scan_publish(struct scan *sc)
 	ec_lost_report(bus, l.lost, l.n_lost);
 	ec_lost_report_found(sc, n_old);
 	ec_ring_break_report(bus);
+	ec_ring_ends_report(bus);
 	for (i = 0; i < n_old; i++)
 		ec_slave_unref(old[i]);
 	kvfree(old);

@@ -21,11 +21,11 @@ static LIST_HEAD(devices);
 static LIST_HEAD(masters);	/* &struct ec_links, in the order of their numbers */
 static BLOCKING_NOTIFIER_HEAD(changes);
 
-/* The device that a master waits for or has. */
+/* The device that a link waits for or has. */
 static const char *name_of(const struct ec_links *l, unsigned int side)
 {
 	lockdep_assert_held(&devices_lock);
-	if (side)
+	if (ec_links_named(l, side))
 		return l->backup;
 	return l->closed ? NULL : l->main;
 }
@@ -89,7 +89,7 @@ bool ecdev_waiting(unsigned int *index, unsigned int *master, char *name, size_t
 				continue;
 			strscpy(name, name_of(l, side), size);
 			*master = l->base->index;
-			*backup = side == EC_BACKUP;
+			*backup = ec_links_named(l, side) == EC_BACKUP;
 			*index = at + 1;
 			found = true;
 		}
@@ -279,7 +279,7 @@ static const struct ec_links *rival_of(const struct ec_links *l, const char *nam
 	list_for_each_entry(o, &masters, list)
 		for (side = o == l ? EC_BACKUP : EC_MAIN; side < EC_MAX_LINKS; side++) {
 			const char *spec = side ? o->backup : o->main;
-			const struct ecdev *dev = o->link[side].dev;
+			const struct ecdev *dev = o->link[ec_links_named(o, side)].dev;
 
 			if (spec && ec_spec_same(name, spec))
 				return o;
@@ -310,7 +310,7 @@ int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival)
 
 	rtnl_lock();
 	mutex_lock(&devices_lock);
-	dev = l->link[EC_MAIN].dev;
+	dev = l->link[ec_links_named(l, EC_MAIN)].dev;
 	other = rival_of(l, name);
 	if (other) {
 		*rival = other->base->index;
@@ -355,7 +355,56 @@ int ec_device_use(struct ec_links *l, const char *name)
 	rtnl_unlock();
 	/* drivers offer only devices that a master wants */
 	blocking_notifier_call_chain(&changes, 0, NULL);
-	return READ_ONCE(l->link[EC_MAIN].dev) ? 0 : -ENODEV;
+	return READ_ONCE(l->link[ec_links_named(l, EC_MAIN)].dev) ? 0 : -ENODEV;
+}
+
+/* What a link knows of its device, or by it. Frames in flight stay with the link. */
+static void exchange_devices(struct ec_link *a, struct ec_link *b)
+{
+	atomic64_t *x = (atomic64_t *)&a->stats, *y = (atomic64_t *)&b->stats;
+	struct ecdev *dev = a->dev;
+	bool up = a->up;
+	unsigned int i;
+
+	lockdep_assert_held(&devices_lock);
+	WRITE_ONCE(a->dev, b->dev);
+	WRITE_ONCE(b->dev, dev);
+	if (a->dev)
+		rcu_assign_pointer(a->dev->link, a);
+	if (b->dev)
+		rcu_assign_pointer(b->dev->link, b);
+	WRITE_ONCE(a->up, b->up);
+	WRITE_ONCE(b->up, up);
+	for (i = 0; i < sizeof(a->stats) / sizeof(*x); i++)
+		atomic64_set(&y[i], atomic64_xchg(&x[i], atomic64_read(&y[i])));
+	swap(a->rates, b->rates);
+}
+
+/**
+ * ec_device_exchange() - the links of a ring exchange their devices
+ * @l: links of a master with a backup device
+ *
+ * Frames in flight may count as received by the other end once. Counters stay with the device.
+ *
+ * Context: The monitor. May sleep.
+ * Return: false: a device comes or goes just now, which may wait for the monitor: try again.
+ */
+bool ec_device_exchange(struct ec_links *l)
+{
+	if (!mutex_trylock(&devices_lock))
+		return false;
+	rt_mutex_lock(&l->access.lock);
+	ec_access_shut(l);
+	raw_spin_lock(&l->main_lock);
+	WRITE_ONCE(l->exchanged, !l->exchanged);
+	raw_spin_unlock(&l->main_lock);
+	exchange_devices(&l->link[EC_MAIN], &l->link[EC_BACKUP]);
+	if (l->ops && l->ops->changed)
+		l->ops->changed(l);
+	ec_access_reopen(l);
+	rt_mutex_unlock(&l->access.lock);
+	mutex_unlock(&devices_lock);
+	return true;
 }
 
 /**

@@ -59,9 +59,9 @@ void ec_links_exit(struct ec_links *l)
 }
 
 /**
- * ec_links_name() - get the name of the device that a master is configured for
+ * ec_links_name() - get the name of the device that a link is configured for
  * @l: links
- * @i: 0: main device, 1: backup device
+ * @i: number of the link, 0: main device, 1: backup device
  * @buf: result: name, MAC address or PCI address as the user gave it; "": none
  * @size: of @buf
  *
@@ -70,12 +70,8 @@ void ec_links_exit(struct ec_links *l)
  */
 const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t size)
 {
-	if (i) {
-		strscpy(buf, l->backup ?: "", size);
-		return buf;
-	}
 	raw_spin_lock(&l->main_lock);
-	strscpy(buf, l->main, size);
+	strscpy(buf, ec_links_named(l, i) ? l->backup ?: "" : l->main, size);
 	raw_spin_unlock(&l->main_lock);
 	return buf;
 }

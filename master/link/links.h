@@ -47,6 +47,11 @@ struct ec_links {
 	raw_spinlock_t main_lock;
 	/** @backup: backup device at the other end of a ring, as the user names it, NULL: none */
 	const char *backup;
+	/**
+	 * @exchanged: the device at @backup is the main one of the ring, and that at @main the
+	 * backup one, since the cables are exchanged; changed as @main
+	 */
+	bool exchanged;
 	/** @closed: gets no main device, under the device lock */
 	bool closed;
 	/** @link: main and backup */
@@ -127,6 +132,12 @@ static inline bool ec_links_any_device(const struct ec_links *l)
 static inline unsigned int ec_links_n(const struct ec_links *l)
 {
 	return l->backup ? 2 : 1;
+}
+
+/* the link that has the device at one of the two names of the user, 0: that at the main one */
+static inline unsigned int ec_links_named(const struct ec_links *l, unsigned int name)
+{
+	return name ^ READ_ONCE(l->exchanged);
 }
 
 static inline const struct ec_link *ec_links_at(const struct ec_links *l, unsigned int i)

@@ -123,6 +123,18 @@ static void about_ring(struct ec_event_buf *t, const struct ec_event *e,
 	add(t, ": slaves run on, a second break is not covered; check the cable there");
 }
 
+static void about_ends(struct ec_event_buf *t, const struct ec_event *e,
+		       const struct ec_event_more *more)
+{
+	const char *name = more->detail ? more->detail : "the backup device";
+
+	if (e->arg[0])
+		add(t, "devices of the ring exchanged: %s is at port 0 of the first slave, and is the main device now; exchange the cables or the two names",
+		    name);
+	else
+		add(t, "devices of the ring connected as configured");
+}
+
 static void about_back(struct ec_event_buf *t, const struct ec_event *e,
 		       const struct ec_event_more *more)
 {
@@ -455,6 +467,7 @@ void ec_event_text_add(struct ec_event_buf *t, const struct ec_event *e,
 		{ EC_EVENT_MISSED, about_missed },
 		{ EC_EVENT_SLAVE_LOST, about_place },
 		{ EC_EVENT_RING_OPEN, about_ring },
+		{ EC_EVENT_RING_EXCHANGED, about_ends },
 		{ EC_EVENT_SLAVE_FOUND, about_place },
 		{ EC_EVENT_PORT_KEPT, about_port },
 		{ EC_EVENT_LINE_ERRORS, about_line },

@@ -11,18 +11,10 @@
 static const u8 mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x51, 0x00 };
 static const u8 second_mac[6] = { 0x02, 0x00, 0x00, 0xec, 0x52, 0x00 };
 
-/**
- * bus_new() - a master waiting for its device, and a segment
- * @test: case; its suite has bus_exit() as .exit
- * @text: description of the segment, or the name of a built-in one; a ring has a backup device
- *
- * Return: bus; the case fails when there is none.
- */
-struct bus *bus_new(struct kunit *test, const char *text)
+static struct bus *bus_make(struct kunit *test, const char *text, char *device, char *backup)
 {
 	struct bus *b = kzalloc(sizeof(*b), GFP_KERNEL);
 	struct ec_sim_error err = { 0 };
-	char *device = "bus0", *backup = "bus0b";
 	int ret;
 
 	KUNIT_ASSERT_NOT_NULL(test, b);
@@ -36,6 +28,30 @@ struct bus *bus_new(struct kunit *test, const char *text)
 	b->m = ec_cdev_master(0);
 	ec_file_init(&b->app, b->m, true);
 	return b;
+}
+
+/**
+ * bus_new() - a master waiting for its device, and a segment
+ * @test: case; its suite has bus_exit() as .exit
+ * @text: description of the segment, or the name of a built-in one; a ring has a backup device
+ *
+ * Return: bus; the case fails when there is none.
+ */
+struct bus *bus_new(struct kunit *test, const char *text)
+{
+	return bus_make(test, text, "bus0", "bus0b");
+}
+
+/**
+ * bus_new_exchanged() - bus_new() with the names of the two devices of a ring exchanged
+ * @test: as there
+ * @text: likewise
+ *
+ * Return: as there.
+ */
+struct bus *bus_new_exchanged(struct kunit *test, const char *text)
+{
+	return bus_make(test, text, "bus0b", "bus0");
 }
 
 /**

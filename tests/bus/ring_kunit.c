@@ -1,93 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Cable redundancy: a ring with a device at each end, which is cut, and heals. */
-#include "cyc.h"
+#include "ring.h"
 #include "devices/sim/esc_int.h"
 #include "master/bus/graph.h"
 #include "master/bus/ring_break.h"
 #include "master/mailbox/coe.h"
 
-#define SLAVES		8
 #define CUTS		(SLAVES + 1)	/* cables of the ring */
-#define MANY		50
 #define CLOCK_CYCLES	60000		/* with clocks on both sides of a break */
 #define EVENTS		1000		/* of the long run, half of them cuts */
-#define HISTORY		4
-#define ECHO		6	/* byte of the outputs of a drive that comes back in its inputs */
-
-static const char ring_text[] =
-	"segment seed=8 response=100us transition=1ms\n"
-	"repeat 8 slave d drive in=8 out=8 cable=50\n"
-	"wire d8.1 -> master.1 cable=50\n";
 
 static const char many_text[] =
 	"segment seed=9 response=100us transition=1ms\n"
 	"repeat 50 slave d drive in=8 out=8 cable=50\n"
 	"wire d50.1 -> master.1 cable=50\n";
-
-/**
- * struct ring - an application at a ring
- * @b: bus
- * @c: its cycle
- * @n: slaves
- * @in: where the value of each is in the image
- * @out: likewise
- * @value: outputs of all slaves in the last sends, the newest first
- * @disturbed: frames of the model that met an event, up to the last cycle
- * @late: cycles since then
- * @met: cycles whose frame, or the one before, met an event
- * @wrong: values that a slave never had
- * @lost: cycles in which a slave's value, or a working counter, was missing, without such a frame
- * @flown: likewise, with one
- * @left: cycles in which a slave was not in OP
- * @absent: mask of slaves that no frame reaches: their last inputs hold
- */
-struct ring {
-	struct bus *b;
-	struct cyc *c;
-	u32 n;
-	u8 *in[MANY];
-	u8 *out[MANY];
-	u8 value[HISTORY];
-	u64 disturbed;
-	u32 late;
-	u32 met;
-	u32 wrong;
-	u32 lost;
-	u32 flown;
-	u32 left;
-	u64 absent;
-};
-
-/* The drive copies outputs to inputs: LRW reads before it writes. */
-static void ring_look(struct cyc *c)
-{
-	struct ring *r = c->ctx;
-	bool missing = false;
-	u32 i, k;
-
-	ec_sim_advance(r->b->sim, ktime_get_ns());
-	r->late = r->b->sim->disturbed == r->disturbed ? r->late + 1 : 0;
-	r->disturbed = r->b->sim->disturbed;
-	r->met += r->late < 2;
-	for (i = 0; i < r->n; i++) {
-		u8 is = *r->in[i];
-
-		if (r->absent & BIT_ULL(i))
-			continue;
-		for (k = 0; k < HISTORY && is != r->value[k]; k++)
-			;
-		r->wrong += k == HISTORY;
-		missing |= is != r->value[1];
-		r->left += bus_esc(r->b, i)->mem[EC_REG_AL_STATUS] != EC_AL_OP;
-	}
-	missing |= cyc_state(c, 0)->wc_state != EC_STATUS_WC_COMPLETE;
-	r->lost += missing && r->late >= 2;
-	r->flown += missing && r->late < 2;
-	memmove(r->value + 1, r->value, HISTORY - 1);
-	r->value[0] = r->value[0] % 255 + 1;
-	for (i = 0; i < r->n; i++)
-		*r->out[i] = r->value[0];
-}
 
 /* a tool that reads an object of one slave after the other */
 struct talk {
@@ -139,78 +65,13 @@ static bool talk_end(struct talk *t)
 	return try_wait_for_completion(&t->end);
 }
 
-static struct ring *ring_new(struct kunit *test, struct bus *b)
-{
-	struct ring *r = kunit_kzalloc(test, sizeof(*r), GFP_KERNEL);
-
-	KUNIT_ASSERT_NOT_NULL(test, r);
-	r->b = b;
-	return r;
-}
-
-/* All @n slaves in OP, and the values are as expected for a while. */
-static void ring_run(struct ring *r, u32 n)
-{
-	u32 i;
-
-	r->c = cyc_in_op(r->b, 0, n);
-	r->n = n;
-	for (i = 0; i < n; i++) {
-		r->in[i] = cyc_pd(r->c, i, 3) + ECHO;
-		r->out[i] = cyc_pd(r->c, i, 2) + ECHO;
-	}
-	r->c->ctx = r;
-	r->c->each = ring_look;
-	cyc_run(r->c, 20);
-	r->wrong = r->lost = r->flown = r->left = r->met = 0;
-	cyc_run(r->c, 50);
-	KUNIT_EXPECT_EQ(r->b->test, r->lost, 0u);
-	KUNIT_EXPECT_EQ(r->b->test, r->wrong, 0u);
-}
-
-static void ring_expect(struct ring *r, const char *after)
-{
-	KUNIT_EXPECT_EQ_MSG(r->b->test, r->wrong, 0u, "after %s", after);
-	KUNIT_EXPECT_EQ_MSG(r->b->test, r->lost, 0u, "after %s", after);
-	KUNIT_EXPECT_EQ_MSG(r->b->test, r->left, 0u, "after %s", after);
-}
-
-/* Cable number @i of @n slaves: 0 at the main device, @n at the backup device. */
-static void cable_of(struct bus *b, bool cut, u32 i, u32 n, u32 after_ns)
-{
-	bus_fault_later(b, cut ? EC_SIM_FAULT_CUT : EC_SIM_FAULT_HEAL, min(i, n - 1), i == n,
-			after_ns);
-}
-
-static void cable(struct bus *b, bool cut, u32 i)
-{
-	cable_of(b, cut, i, SLAVES, 0);
-}
-
-static void expect_ring(struct bus *b, u8 state, u32 front, u32 n)
-{
-	KUNIT_EXPECT_EQ(b->test, bus_links(b)->ring.state, state);
-	KUNIT_EXPECT_EQ(b->test, bus_links(b)->ring.front, front);
-	KUNIT_EXPECT_EQ(b->test, bus_n_slaves(b), n);
-}
-
-static void expect_closed(struct bus *b, u32 n)
-{
-	expect_ring(b, EC_RING_CLOSED, n, n);
-}
-
-static void expect_open(struct bus *b, u32 front)
-{
-	expect_ring(b, EC_RING_OPEN, front, SLAVES);
-}
-
 static void ring_is_found(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	u32 i;
 
 	bus_idle(b);
-	expect_closed(b, SLAVES);
+	ring_closed(b, SLAVES);
 	for (i = 0; i < SLAVES; i++) {
 		KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, i), 0), i ? i - 1 : EC_UAPI_NONE16);
 		KUNIT_EXPECT_EQ(test, bus_next(bus_slave(b, i), 1),
@@ -222,7 +83,7 @@ static void ring_is_found(struct kunit *test)
 /* Nothing of it reaches the application: the same cable, cut while nothing runs. */
 static void ring_cut_at_rest(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	u16 station[SLAVES];
 	u32 i, k, at[4];
 
@@ -230,9 +91,9 @@ static void ring_cut_at_rest(struct kunit *test)
 	for (k = 0; k < SLAVES; k++)
 		station[k] = bus_slave(b, k)->station;
 	for (i = 0; i < CUTS; i++) {
-		cable(b, true, i);
+		ring_cable(b, true, i);
 		bus_idle(b);
-		expect_open(b, i);
+		ring_open(b, i);
 		ec_ring_break_show(bus_table(b), &at[0], &at[1], &at[2], &at[3]);
 		KUNIT_EXPECT_EQ(test, at[1], i ? i - 1 : EC_EVENT_NONE);
 		KUNIT_EXPECT_EQ(test, at[2], i ? 1 : EC_EVENT_NONE);
@@ -241,29 +102,29 @@ static void ring_cut_at_rest(struct kunit *test)
 			KUNIT_EXPECT_EQ(test, bus_slave(b, k)->station, station[k]);
 			KUNIT_EXPECT_FALSE(test, bus_slave(b, k)->graph.inconsistent);
 		}
-		cable(b, false, i);
+		ring_cable(b, false, i);
 		bus_idle(b);
-		expect_closed(b, SLAVES);
+		ring_closed(b, SLAVES);
 	}
 }
 
 static void ring_cut_in_op(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
 	u32 i;
 
 	ring_run(r, SLAVES);
 	for (i = 0; i < CUTS; i++) {
-		cable(b, true, i);
+		ring_cable(b, true, i);
 		cyc_run(r->c, 300);
-		expect_open(b, i);
+		ring_open(b, i);
 		ring_expect(r, "a cut");
 		/* with the last cable all slaves are before the break */
 		KUNIT_EXPECT_EQ(test, cyc_state(r->c, 0)->redundancy_active, i < SLAVES);
-		cable(b, false, i);
+		ring_cable(b, false, i);
 		cyc_run(r->c, 300);
-		expect_closed(b, SLAVES);
+		ring_closed(b, SLAVES);
 		ring_expect(r, "it has healed");
 		KUNIT_EXPECT_EQ(test, cyc_state(r->c, 0)->redundancy_active, 0);
 	}
@@ -275,71 +136,71 @@ static void ring_cut_in_op(struct kunit *test)
 /* The slaves are found from both ends, in the order that the closed ring would have. */
 static void ring_starts_open(struct kunit *test)
 {
-	struct bus *b = bus_new(test, ring_text);
+	struct bus *b = bus_new(test, ring_eight);
 	struct ring *r = ring_new(test, b);
 
-	cable(b, true, 3);
+	ring_cable(b, true, 3);
 	bus_plug_scanned(b, SLAVES, 5000);
-	expect_open(b, 3);
+	ring_open(b, 3);
 	ring_run(r, SLAVES);
 	cyc_run(r->c, 100);
-	cable(b, false, 3);
+	ring_cable(b, false, 3);
 	cyc_run(r->c, 300);
-	expect_closed(b, SLAVES);
+	ring_closed(b, SLAVES);
 	ring_expect(r, "it has healed");
 }
 
 /* Cuts and repairs at random places and instants, also while frames are on their way. */
 static void ring_random(struct kunit *test)
 {
-	struct bus *b = bus_up(test, many_text, MANY);
+	struct bus *b = bus_up(test, many_text, RING_MANY);
 	struct ring *r = ring_new(test, b);
 	struct rnd_state rnd;
 	u32 at = 0, i;
 
 	prandom_seed_state(&rnd, 37);
-	ring_run(r, MANY);
+	ring_run(r, RING_MANY);
 	for (i = 0; i < EVENTS; i++) {
-		at = i % 2 ? at : prandom_u32_state(&rnd) % (MANY + 1);
+		at = i % 2 ? at : prandom_u32_state(&rnd) % (RING_MANY + 1);
 		/* known before the frame sets out that it may meet */
-		cable_of(b, !(i % 2), at, MANY,
+		ring_cable_of(b, !(i % 2), at, RING_MANY,
 			 NSEC_PER_MSEC + prandom_u32_state(&rnd) % (NSEC_PER_MSEC / 4));
 		cyc_run(r->c, 2 + prandom_u32_state(&rnd) % 200);
 	}
 	cyc_run(r->c, 300);
 	ring_expect(r, "random events");
 	KUNIT_EXPECT_LE(test, r->flown, (u32)EVENTS);
-	expect_closed(b, MANY);
+	ring_closed(b, RING_MANY);
 	bus_figure("ring of %u slaves, %u random cuts and repairs: %llu cycles, %u wrong values, %u of cycles that met none without a value, %u of %u that met one",
-		   MANY, EVENTS, r->c->cycles, r->wrong, r->lost, r->flown, r->met);
+		   RING_MANY, EVENTS, r->c->cycles, r->wrong, r->lost, r->flown, r->met);
 }
 
 /* What is between two cuts stops; the others run on, and it comes back when one heals. */
 static void ring_second_cut(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
 	u32 i;
 
 	ring_run(r, SLAVES);
-	cable(b, true, 2);
+	ring_cable(b, true, 2);
 	cyc_run(r->c, 100);
 	r->absent = BIT(2) | BIT(3) | BIT(4);
-	cable(b, true, 5);
+	ring_cable(b, true, 5);
 	cyc_run(r->c, 500);
 	for (i = 0; i < SLAVES; i++)
 		KUNIT_EXPECT_EQ_MSG(test, bus_esc(b, i)->mem[EC_REG_AL_STATUS] == EC_AL_OP,
 				    i < 2 || i >= 5, "slave %u", i);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
-	expect_ring(b, EC_RING_OPEN, 2, SLAVES - 3);
-	cable(b, false, 2);
+	ring_state(b, EC_RING_OPEN, 2, SLAVES - 3);
+	ring_cable(b, false, 2);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 5000), ~0ull);
 	cyc_run(r->c, 200);
 	r->absent = 0;
-	expect_open(b, 5);
-	cable(b, false, 5);
+	ring_open(b, 5);
+	ring_cable(b, false, 5);
 	cyc_run(r->c, 200);
-	expect_closed(b, SLAVES);
+	ring_closed(b, SLAVES);
 	r->lost = r->left = 0;
 	cyc_run(r->c, 100);
 	ring_expect(r, "both have healed");
@@ -348,7 +209,7 @@ static void ring_second_cut(struct kunit *test)
 /* One without power is a break on both of its sides. */
 static void ring_power(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
 	u32 i;
 
@@ -360,12 +221,12 @@ static void ring_power(struct kunit *test)
 		if (i != 3)
 			KUNIT_EXPECT_EQ(test, bus_esc(b, i)->mem[EC_REG_AL_STATUS], EC_AL_OP);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
-	expect_ring(b, EC_RING_OPEN, 3, SLAVES - 1);
+	ring_state(b, EC_RING_OPEN, 3, SLAVES - 1);
 	bus_command(b, "on d4");
 	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 5000), ~0ull);
 	r->absent = 0;
 	cyc_run(r->c, 200);
-	expect_closed(b, SLAVES);
+	ring_closed(b, SLAVES);
 	r->lost = r->left = 0;
 	cyc_run(r->c, 100);
 	ring_expect(r, "it has power again");
@@ -374,23 +235,23 @@ static void ring_power(struct kunit *test)
 /* No link at all, then one, then both. */
 static void ring_both_ends(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
 
 	ring_run(r, SLAVES);
-	cable(b, true, 0);
+	ring_cable(b, true, 0);
 	cyc_run(r->c, 50);
 	r->absent = ~0ull;
-	cable(b, true, SLAVES);
+	ring_cable(b, true, SLAVES);
 	cyc_run(r->c, 300);
-	cable(b, false, SLAVES);
+	ring_cable(b, false, SLAVES);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 5000), ~0ull);
 	r->absent = 0;
 	cyc_run(r->c, 200);
-	expect_open(b, 0);
-	cable(b, false, 0);
+	ring_open(b, 0);
+	ring_cable(b, false, 0);
 	cyc_run(r->c, 200);
-	expect_closed(b, SLAVES);
+	ring_closed(b, SLAVES);
 	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
 	r->lost = r->left = 0;
 	cyc_run(r->c, 100);
@@ -400,27 +261,27 @@ static void ring_both_ends(struct kunit *test)
 /* A device that goes is as a link that goes; it may come back. */
 static void ring_device(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
 
 	ring_run(r, SLAVES);
 	ec_sim_link_second_withdraw(b->link);
 	cyc_run(r->c, 300);
-	expect_open(b, SLAVES);
+	ring_open(b, SLAVES);
 	/* with a frame that it had received */
 	KUNIT_EXPECT_LE(test, r->lost, 1u);
 	r->lost = 0;
 	ring_expect(r, "the backup device is gone");
 	bus_plug_second(b);
 	cyc_run(r->c, 300);
-	expect_closed(b, SLAVES);
+	ring_closed(b, SLAVES);
 	ring_expect(r, "it is back");
 }
 
 /* SDOs of slaves of both sides while cables are cut and mended: none fails. */
 static void ring_sdo(struct kunit *test)
 {
-	struct bus *b = bus_up(test, ring_text, SLAVES);
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
 	struct talk *t;
 	u32 i;
@@ -428,7 +289,7 @@ static void ring_sdo(struct kunit *test)
 	ring_run(r, SLAVES);
 	t = talk_begin(b, SLAVES);
 	for (i = 0; i < 4 * CUTS; i++) {
-		cable(b, !(i % 2), i / 2 % CUTS);
+		ring_cable(b, !(i % 2), i / 2 % CUTS);
 		cyc_run(r->c, 50);
 	}
 	while (!talk_end(t))
@@ -487,15 +348,15 @@ static void ring_clocks(struct kunit *test)
 	cyc_shake(c, 20000, 1000);
 	cyc_run(c, 5000);
 	before = apart(b, SLAVES);
-	cable(b, true, at);
+	ring_cable(b, true, at);
 	for (k = 0; k < 2000; k++) {
 		cyc_run(c, 1);
 		most = max(most, apart(b, SLAVES));
 	}
-	expect_open(b, at);
+	ring_open(b, at);
 	cyc_run(c, CLOCK_CYCLES);
 	end = apart(b, SLAVES);
-	cable(b, false, at);
+	ring_cable(b, false, at);
 	for (k = 0; k < 2000; k++) {
 		cyc_run(c, 1);
 		healed = max(healed, apart(b, SLAVES));

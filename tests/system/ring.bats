@@ -128,7 +128,8 @@ app_ends() {
 	virtual
 	tell cut i2.1
 	wait_for 20 ring "open between port 1 of slave 3 and slave 4"
-	json '.masters[0].ring == {"state": "open", "slave": 3, "port": 1, "next": 4}' master
+	json '.masters[0].ring == {"state": "open", "slave": 3, "port": 1, "next": 4,
+		"exchanged": false, "turned": null}' master
 	run ethercat slaves
 	echo "$output"
 	[ "${lines[4]}" = "xxx LINK FAILURE xxx" ]
@@ -227,6 +228,44 @@ app_ends() {
 	refused 'no driver offers sim5.*keeps sim0' device use sim5
 	wait_for 60 ring closed
 	wait_for 60 all_slaves_are PREOP $slaves
+}
+
+@test "the names of the two devices are exchanged: the ring works, and says so" {
+	master main_devices=sim0b backup_devices=sim0
+	simulator
+	wait_for 60 all_slaves_are PREOP $slaves
+	ring closed
+	ethercat master | grep -q '^  Devices exchanged: .* exchange the cables or the two names'
+	json '[.masters[0].devices[].interface] == ["sim0", "sim0b"]' master
+	json '.masters[0].ring.exchanged' master
+	json '.masters[0].findings[] | select(.cause == "ring_exchanged") | .level == "warning"' why
+	json '[.masters[0].events[] | select(.event == "ring_exchanged")] | length == 1' log
+	app_runs
+	tell cut o3.1
+	wait_for 20 ring "open between port 1 of slave 4 and slave 5"
+	goes_on 100
+	tell heal o3.1
+	wait_for 20 ring closed
+	goes_on 100
+	app_ends 4
+	refused 'sim0 is the device of master 0' device use sim0
+}
+
+@test "a slave is connected the wrong way round: no application is activated, and why says so" {
+	virtual
+	tell swap o3.0 o3.1
+	wait_for 20 json '.masters[0].ring.turned == 7' master
+	wait_for 60 all_slaves_are PREOP $slaves
+	ethercat master | grep -q '^  Wrong way round: slave 7; '
+	run ethercat why
+	[ "$status" = 1 ]
+	[[ $output == *"slave 7 (EL2008) is connected the wrong way round in the ring"* ]]
+	refused 'slave 7 .* is connected the wrong way round in the ring' run
+	tell swap o3.0 o3.1
+	wait_for 20 json '.masters[0].ring.turned == null' master
+	wait_for 20 ring closed
+	ethercat run
+	wait_for 60 all_slaves_are OP $slaves
 }
 
 # wire N M: a cable between vethN and vethM
