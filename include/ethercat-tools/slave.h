@@ -30,6 +30,7 @@ extern "C" {
 #define ECT_CAUSE_UNATTACHED	8	/* the one at @position matches and is not attached yet */
 #define ECT_CAUSE_NO_GROUP	9	/* its hot connect group is not connected */
 #define ECT_CAUSE_GROUP		10	/* the slave at @position keeps its group from use */
+#define ECT_CAUSE_RING		11	/* the ring is open: which slave is at @position? */
 /* the slave is connected, and the cause is not in the slave */
 #define ECT_CAUSE_INACTIVE	16	/* the application has not activated the master */
 #define ECT_CAUSE_REQUESTED	17	/* @state is requested, not OP */

@@ -21,6 +21,7 @@
 #define EC_CAUSE_UNATTACHED	8	/* the one at @position matches and is not attached yet */
 #define EC_CAUSE_NO_GROUP	9	/* its hot connect group is not connected */
 #define EC_CAUSE_GROUP		10	/* the slave at @position keeps its group from use */
+#define EC_CAUSE_RING		11	/* the ring is open: which slave is at @position? */
 /* it is connected, and the cause is not its own */
 #define EC_CAUSE_INACTIVE	16	/* the application has not activated the master */
 #define EC_CAUSE_REQUESTED	17	/* @state is requested, not OP */

@@ -358,6 +358,8 @@ static void other(struct why *w, struct ect_explained *c)
 
 	if (c->cause.kind == ECT_CAUSE_NO_SLAVE)
 		f = why_add(w, MISSING_ONE, c->text);
+	else if (c->cause.kind == ECT_CAUSE_RING)
+		f = why_add(w, RING_PLACE, c->text);
 	else if (c->cause.kind == ECT_CAUSE_UNATTACHED)
 		f = why_add(w, ATTACHING, c->text);
 	else
@@ -391,6 +393,7 @@ void why_absent(struct why *w)
 			group(w, c);
 			break;
 		case ECT_CAUSE_NO_SLAVE:
+		case ECT_CAUSE_RING:
 		case ECT_CAUSE_TAKEN:
 		case ECT_CAUSE_UNATTACHED:
 			other(w, c);

@@ -117,6 +117,8 @@
 	  "no slave has alias %u; %s is such a device, alias %u") \
 	X(ATTACHING, "attaching", UNDER_WAY, "", "repeat the command", "%s") \
 	X(TAKEN, "taken", FAULT, "", "connect the missing slave or restart the application", "%s") \
+	X(RING_PLACE, "ring_place", FAULT, "", \
+	  "close the ring, or restore the power of the slave that is missing at its break", "%s") \
 	X(GROUP_ABSENT, "group_absent", FAULT, "", \
 	  "connect the group, or configure it as optional", "%s") \
 	X(GROUP_WRONG, "group_not_started", FAULT, "", \

@@ -3,6 +3,7 @@
 #include <linux/slab.h>
 #include "absent.h"
 #include "known.h"
+#include "ring_place.h"
 #include "slave.h"
 
 #define NOWHERE	U64_MAX	/* root of a slave of whose place nothing is known */
@@ -120,6 +121,7 @@ void ec_absent_forget(struct ec_bus *bus)
 	list_for_each_entry(l, &bus->known.oldest, age)
 		l->forgotten = true;
 	bus->known.n_absent = 0;
+	ec_ring_places_forget(bus);
 	ec_show_change_end(&bus->base->show);
 	up_write(&bus->topo);
 }

@@ -15,6 +15,7 @@
 #include "doubt_state.h"
 #include "known_table.h"
 #include "line_watch.h"
+#include "ring_places.h"
 #include "workers.h"
 
 #define EC_MAX_BEGUN	16	/* interrupted changes of an alias that are remembered */
@@ -81,6 +82,8 @@ struct ec_bus {
 	u64 turned;
 	/** @turned_told: @turned as the log has it; the monitor's */
 	u64 turned_told;
+	/** @places: positions of the closed ring */
+	struct ec_ring_places places;
 	/** @known: device numbers */
 	struct ec_known known;
 	/** @border: ports at which not every device is let in */

@@ -2,6 +2,7 @@
 /* The list of slaves: one of it, all of it, and until they have settled. */
 #include "bus_list.h"
 #include "owed.h"
+#include "ring_place.h"
 #include "slave.h"
 #include "../link/links.h"
 
@@ -160,6 +161,7 @@ void ec_bus_exit(struct ec_bus *bus)
 	kvfree(bus->slaves);
 	bus->slaves = NULL;
 	WRITE_ONCE(bus->n_slaves, 0);
+	ec_ring_places_exit(&bus->places);
 	ec_known_exit(&bus->known);
 	ec_border_clear(&bus->border);
 	ec_owed_exit(bus);

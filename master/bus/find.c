@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include "find.h"
 #include "known.h"
+#include "ring_place.h"
 #include "slave.h"
 
 #define WALK	64	/* slaves to check without a pause */
@@ -133,8 +134,34 @@ bool ec_find_place(const struct ec_bus *bus, u16 alias, unsigned int alias_at, u
 	*place = position;
 	if (!alias)
 		return true;
-	*place += alias_at;
+	*place += ec_ring_places_of(bus, alias_at);
 	return alias_at < bus->n_slaves && bus->slaves[alias_at]->alias == alias;
+}
+
+/**
+ * ec_find_index() - the place in the list that alias and offset mean
+ * @bus: bus
+ * @alias: as for ec_find_place()
+ * @alias_at: likewise
+ * @position: likewise
+ * @total: slaves of a closed ring, as far as they are configured
+ *
+ * An offset counts slaves of the closed ring as well, so it matters whether the ring is open
+ * between the two.
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: index, also behind the end of the list; -ENOENT or -EAGAIN as ec_ring_places_find().
+ */
+int ec_find_index(const struct ec_bus *bus, u16 alias, unsigned int alias_at, u16 position,
+		  unsigned int total)
+{
+	unsigned int place;
+
+	if (!ec_find_place(bus, alias, alias_at, position, &place))
+		return -ENOENT;
+	if (alias && !ec_ring_places_open_between(bus, alias_at, alias_at + position))
+		return alias_at + position;
+	return ec_ring_places_find(bus, place, total);
 }
 
 /**
@@ -142,18 +169,21 @@ bool ec_find_place(const struct ec_bus *bus, u16 alias, unsigned int alias_at, u
  * @bus: bus
  * @alias: alias, 0: @position is that in the ring
  * @position: slaves after the one with the alias
+ * @total: as for ec_find_index()
  *
  * Context: Process, topo held.
- * Return: the slave, or NULL.
+ * Return: the slave, in a ring the one of that place of the list if that is not certain; or NULL.
  */
-struct ec_slave *ec_find_slave_at(const struct ec_bus *bus, u16 alias, u16 position)
+struct ec_slave *ec_find_slave_at(const struct ec_bus *bus, u16 alias, u16 position,
+				  unsigned int total)
 {
-	unsigned int place;
+	unsigned int alias_at = alias ? ec_find_alias(bus, alias) : 0;
+	int i = ec_find_index(bus, alias, alias_at, position, total);
 
 	lockdep_assert_held(&bus->topo);
-	if (!ec_find_place(bus, alias, alias ? ec_find_alias(bus, alias) : 0, position, &place))
-		return NULL;
-	return at(bus, place);
+	if (i == -EAGAIN)
+		i = alias_at + position;
+	return i < 0 ? NULL : at(bus, i);
 }
 
 /**

@@ -8,6 +8,7 @@
 #include "known.h"
 #include "ring_break.h"
 #include "ring_ends.h"
+#include "ring_place.h"
 #include "scan_count.h"
 #include "scan_int.h"
 #include "scan_lost.h"
@@ -244,6 +245,7 @@ static void set_list(struct scan *sc, struct list *l)
 	take_ports(sc, l);
 	ec_known_update(bus, l->slaves, l->n, ec_scan_limit());
 	ec_ring_ends_note(sc, l->slaves, l->n);
+	ec_ring_places_note(bus, l->slaves, l->n, !ec_scan_is_partial(sc));
 	note_aliases(sc, l);
 	WRITE_ONCE(bus->lists, bus->lists + 1);
 	for (i = 0; i < l->n; i++)

@@ -241,6 +241,10 @@ struct ec_wanted {
 	struct ec_config **configs;
 	/** @n_configs: entries in @configs */
 	unsigned int n_configs;
+	/** @certain: in an open ring a slave is attached only if its position is certain */
+	bool certain;
+	/** @n_places: ring positions up to the last one that a configuration means */
+	unsigned int n_places;
 	/** @domains: domains */
 	struct ec_domain *domains[EC_MAX_DOMAINS];
 	/** @n_domains: entries in @domains */

@@ -5,6 +5,7 @@
  * for those of a group that is connected behind one of them.
  */
 #include "../bus/graph.h"
+#include "../bus/ring_place.h"
 #include "../bus/slave.h"
 #include "config.h"
 #include "group.h"
@@ -118,6 +119,27 @@ void ec_groups_mark(struct ec_wanted *w)
 		g->host = NULL;
 }
 
+/* Slaves of no group before place @end of the list. */
+static u32 count_plain(const struct ec_bus *bus, u32 end)
+{
+	u32 i, n = 0;
+
+	for (i = 0; i < min(end, bus->n_slaves); i++)
+		n += !ec_setup_of(bus->slaves[i])->group;
+	return n;
+}
+
+/* Slaves of no group are missing at the break of a ring: how many others are before that one? */
+static int count_open(const struct ec_wanted *w, u32 at, u32 left)
+{
+	const struct ec_bus *bus = w->bus;
+	u32 place = count_plain(bus, at) + left;
+	int i = ec_ring_places_count(place, count_plain(bus, bus->places.front),
+				     count_plain(bus, bus->n_slaves), w->n_places);
+
+	return i == -EAGAIN && !w->certain ? (int)place : i;
+}
+
 /**
  * ec_groups_place() - the ring position that alias and offset mean between hot connect groups
  * @w: what an application configures, with groups; they are marked
@@ -128,7 +150,8 @@ void ec_groups_mark(struct ec_wanted *w)
  * Slaves of groups do not count: they come and go.
  *
  * Context: Process, lock of the session and topo held.
- * Return: ring position, also behind the end of the ring.
+ * Return: ring position, also behind the end of the ring; U32_MAX less the error of
+ * ec_ring_places_count(): in an open ring the slave is absent, or its position not certain.
  */
 u32 ec_groups_place(const struct ec_wanted *w, u16 alias, u16 position, u32 *alias_at)
 {
@@ -141,6 +164,14 @@ u32 ec_groups_place(const struct ec_wanted *w, u16 alias, u16 position, u32 *ali
 	       (bus->slaves[at]->alias != alias || ec_setup_of(bus->slaves[at])->group))
 		at++;
 	*alias_at = at;
+	if (at < bus->n_slaves && ec_ring_places_misses(bus) && at < bus->places.front) {
+		int i = count_open(w, at, left);
+
+		if (i < 0)
+			return U32_MAX + i;
+		left = i;
+		at = 0;
+	}
 	for (; at < bus->n_slaves; at++)
 		if (!ec_setup_of(bus->slaves[at])->group && !left--)
 			return at;

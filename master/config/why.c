@@ -14,7 +14,7 @@
 #define WALK		16	/* configurations to check without a pause */
 
 /**
- * ec_config_place() - the ring position that a configuration means
+ * ec_config_place() - the position in the closed ring that a configuration means
  * @c: configuration
  * @place: result, also when the ring ends before it
  *
@@ -36,6 +36,42 @@ bool ec_config_place(const struct ec_config *c, unsigned int *place)
 }
 
 /**
+ * ec_config_index() - where the slave is in the list that a configuration means
+ * @c: configuration
+ *
+ * That is its ring position, unless the ring is open and slaves are missing there.
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: index, also behind the end of the list; -ENOENT: it is absent, or as for
+ * ec_config_place(); -EAGAIN: it is not certain where it is, and struct ec_wanted.certain is set.
+ */
+int ec_config_index(const struct ec_config *c)
+{
+	const struct ec_wanted *w = c->wanted;
+	unsigned int place;
+	int i;
+
+	if (!ec_config_place(c, &place))
+		return -ENOENT;
+	if (w->n_groups)
+		return place <= EC_MAX_SLAVES * 2 ? (int)place : -(int)(U32_MAX - place);
+	i = ec_find_index(w->bus, c->alias, c->alias_at, c->position, w->n_places);
+	return i == -EAGAIN && !w->certain ? (c->alias ? c->alias_at : 0) + c->position : i;
+}
+
+/* So many slaves has the ring at least. */
+static void count_places(struct ec_config *c)
+{
+	struct ec_wanted *w = c->wanted;
+	unsigned int place = c->position;
+
+	lockdep_assert_held(w->lock);
+	if (c->group || (c->alias && (w->n_groups || !ec_config_place(c, &place))))
+		return;
+	w->n_places = max(w->n_places, place + 1);
+}
+
+/**
  * ec_config_locate() - look for the slaves by which the place of a configuration is known
  * @c: configuration
  *
@@ -51,6 +87,8 @@ void ec_config_locate(struct ec_config *c)
 	unsigned int i;
 
 	lockdep_assert_held(c->wanted->lock);
+	if (!c->alias)
+		count_places(c);
 	if (!c->alias && !c->lost.text[0] && !c->wanted->n_groups)
 		return;
 	down_read(&bus->topo);
@@ -58,6 +96,8 @@ void ec_config_locate(struct ec_config *c)
 		c->place = ec_groups_place(c->wanted, c->alias, c->position, &c->alias_at);
 	else if (c->alias)
 		c->alias_at = ec_find_alias(bus, c->alias);
+	if (c->alias)
+		count_places(c);
 	for (i = 0; c->lost.text[0] && i < bus->n_slaves &&
 	     bus->slaves[i]->station != c->lost.at.station; i++)
 		;
@@ -80,9 +120,7 @@ static struct ec_cause lost_at(const struct ec_config *c)
 /* Do both name the slave at @pos, which is not only where another one has been? */
 static bool twice(const struct ec_config *has, unsigned int pos)
 {
-	unsigned int p;
-
-	return ec_config_place(has, &p) && p == pos;
+	return ec_config_index(has) == (int)pos;
 }
 
 /* Without device or link there is no slave at all. */
@@ -120,7 +158,8 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 	const struct ec_config *has;
 	char why[EC_UAPI_REASON];
 	struct ec_slave *s;
-	unsigned int pos;
+	unsigned int place;
+	int pos;
 	size_t len = no_link(c->wanted->links, buf, size, cause);
 
 	ec_bus_assert_stays(c->wanted->bus);
@@ -133,36 +172,42 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 		return scnprintf(buf, size, "%s, last seen %llu s ago", c->lost.text,
 				 div_u64(ktime_get_ns() - c->lost.seen_ns, NSEC_PER_SEC));
 	*cause = *EC_CAUSE(NO_ALIAS);
-	if (!ec_config_place(c, &pos))
+	if (!ec_config_place(c, &place))
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
 				 bus->n_slaves, c->alias);
-	*cause = *EC_CAUSE(NO_SLAVE, .position = min_t(u32, pos, EC_UAPI_NONE16));
-	if (pos >= bus->n_slaves)
+	pos = ec_config_index(c);
+	*cause = *EC_CAUSE(RING, .position = min_t(u32, place, EC_UAPI_NONE16));
+	if (pos == -EAGAIN)
+		return scnprintf(buf, size,
+				 "ring position %u not certain: the ring is open, and a slave may be missing there (%u connected); close the ring once, configure all slaves, or use an alias",
+				 place, bus->n_slaves);
+	cause->kind = EC_CAUSE_NO_SLAVE;
+	if (pos < 0 || pos >= bus->n_slaves)
 		return scnprintf(buf, size, "no slave at ring position %u: %u slave(s) connected",
-				 pos, bus->n_slaves);
+				 place, bus->n_slaves);
 	s = bus->slaves[pos];
 	ec_slave_cause(s, cause);
 	cause->position = pos;
 	if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
-		return scnprintf(buf, size, "slave %u could not be read: %.160s", pos,
+		return scnprintf(buf, size, "slave %d could not be read: %.160s", pos,
 				 ec_slave_why(s, why, sizeof(why)));
 	*cause = *EC_CAUSE(DIFFERENT, .position = pos);
 	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return scnprintf(buf, size,
-				 "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
+				 "slave %d is 0x%08x/0x%08x, configured is 0x%08x/0x%08x",
 				 pos, s->info.vendor, s->info.product, c->vendor, c->product);
 	has = ec_config_of(s);
 	*cause = *EC_CAUSE(TAKEN, .position = pos, .code = has ? has->index : 0);
 	if (has && c->wanted->active && !twice(has, pos))
 		return scnprintf(buf, size,
-				 "no slave: position %u holds the slave attached to %s; this slave or one upstream is disconnected",
+				 "no slave: position %d holds the slave attached to %s; this slave or one upstream is disconnected",
 				 pos, has->name);
 	if (has)
 		return scnprintf(buf, size,
-				 "slave %u has another configuration, %s; use one of the two",
+				 "slave %d has another configuration, %s; use one of the two",
 				 pos, has->name);
 	*cause = *EC_CAUSE(UNATTACHED, .position = pos);
-	return scnprintf(buf, size, "slave %u matches and is not attached yet", pos);
+	return scnprintf(buf, size, "slave %d matches and is not attached yet", pos);
 }
 
 static size_t present(struct ec_slave *s, char *buf, size_t size, struct ec_cause *cause)
@@ -223,7 +268,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
 				     unsigned int *from)
 {
 	const struct ec_config *has = ec_config_of(slave);
-	unsigned int pos, end = min(w->n_configs, *from + WALK);
+	unsigned int end = min(w->n_configs, *from + WALK);
 
 	ec_wanted_assert_stays(w);
 	if (has && has->wanted == w)
@@ -231,7 +276,7 @@ const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_
 	while (*from < end) {
 		const struct ec_config *c = w->configs[(*from)++];
 
-		if (!c->slave && ec_config_place(c, &pos) && pos == slave->position)
+		if (!c->slave && ec_config_index(c) == slave->position)
 			return c;
 	}
 	return NULL;

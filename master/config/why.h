@@ -14,6 +14,7 @@ size_t ec_config_why(const struct ec_config *c, char *buf, size_t size, struct e
 const struct ec_config *ec_config_at(const struct ec_wanted *w, const struct ec_slave *slave,
 				     unsigned int *from);
 bool ec_config_place(const struct ec_config *c, unsigned int *place);
+int ec_config_index(const struct ec_config *c);
 void ec_config_locate(struct ec_config *c);
 bool ec_config_differs(const struct ec_config *c, const struct ec_slave *slave);
 bool ec_config_revision_text(const struct ec_config *c, const struct ec_slave *slave, char *buf,

@@ -167,6 +167,7 @@ int ec_session_activate(struct ec_session *s)
 	ec_for_each_domain(d, &s->wanted)
 		if (d->division > 1 && !s->cycle.setup.kernel.period_ns)
 			return -EOPNOTSUPP;
+	ec_session_settle_places(s);
 	bytes = ec_session_place(s);
 	if (bytes > EC_MAX_IMAGE)
 		return -EOVERFLOW;

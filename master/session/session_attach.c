@@ -30,7 +30,8 @@ struct ec_slave *ec_session_find(struct ec_session *s, const struct ec_ioc_slave
 		place = ec_groups_place(&s->wanted, i->alias, i->position, &alias_at);
 		slave = place < bus->n_slaves ? bus->slaves[place] : NULL;
 	} else {
-		slave = ec_find_slave_at(bus, i->alias, i->position);
+		slave = ec_find_slave_at(bus, i->alias, i->position,
+					 max(s->wanted.n_places, i->alias ? 0 : i->position + 1u));
 	}
 	if (slave && slave->info.vendor == i->vendor_id &&
 	    slave->info.product == i->product_code && !READ_ONCE(slave->stop.gone))
@@ -57,11 +58,12 @@ static struct ec_slave *find_at_place(const struct ec_session *s, const struct e
 {
 	struct ec_bus *bus = s->sessions->bus;
 	struct ec_slave *x = NULL;
-	unsigned int place;
+	int i;
 
 	down_read(&bus->topo);
-	if (ec_config_place(c, &place) && place < bus->n_slaves)
-		x = bus->slaves[place];
+	i = ec_config_index(c);
+	if (i >= 0 && i < bus->n_slaves)
+		x = bus->slaves[i];
 	if (x && (x->info.vendor != c->vendor || x->info.product != c->product ||
 		  READ_ONCE(x->stop.gone)))
 		x = NULL;
@@ -136,6 +138,7 @@ static void detach_lost(struct ec_session *s)
 static void locate(struct ec_session *s)
 {
 	ec_session_mark(s);
+	s->wanted.n_places = 0;
 	ec_for_each_config(c, &s->wanted)
 		ec_config_locate(c);
 }
@@ -171,6 +174,59 @@ static void reattach(struct ec_session *s)
 			alike);
 }
 
+/* Configurations that have to get another slave lose theirs first: these may be exchanged. */
+static void attach_again(struct ec_session *s)
+{
+	struct ec_slave *slave;
+
+	locate(s);
+	ec_for_each_config(c, &s->wanted) {
+		if (!c->slave || c->group)
+			continue;
+		slave = find_at_place(s, c);
+		if (slave != c->slave)
+			ec_session_detach(c);
+		if (slave)
+			ec_slave_unref(slave);
+	}
+	ec_for_each_config(c, &s->wanted)
+		attach_one(s, c);
+}
+
+/* Does the number of its configurations say where slaves behind a break are? */
+static bool counts_for_it(const struct ec_session *s)
+{
+	const struct ec_ring_places *p = &s->sessions->bus->places;
+	bool counts;
+
+	down_read(&s->sessions->bus->topo);
+	counts = p->open && !p->n && p->front < p->n_list && s->wanted.n_places >= p->n_list;
+	up_read(&s->sessions->bus->topo);
+	return counts;
+}
+
+/**
+ * ec_session_settle_places() - let slaves be attached only where their position is certain
+ * @s: session that is about to be activated
+ *
+ * In an open ring a slave may be missing where it is open: then others are not at the place in
+ * the list that their position says.
+ *
+ * Context: Process, session lock held. May sleep.
+ */
+void ec_session_settle_places(struct ec_session *s)
+{
+	lockdep_assert_held(s->wanted.lock);
+	if (s->sessions->links->only || s == s->sessions->candidate)
+		return;
+	s->wanted.certain = true;
+	attach_again(s);
+	if (counts_for_it(s))
+		ec_warn(s->sessions,
+			"the ring is open and was not seen closed: positions behind the break are counted for a ring of %u slaves, as configured; check that none is missing\n",
+			s->wanted.n_places);
+}
+
 /**
  * ec_session_begin_active() - prepare the configurations for slaves that get lost
  * @s: session that has just been activated
@@ -185,8 +241,11 @@ void ec_session_begin_active(struct ec_session *s)
 	lockdep_assert_held(s->wanted.lock);
 	down_read(&bus->topo);
 	ec_for_each_config(c, &s->wanted) {
-		/* slaves found before now do not replace a missing one */
-		c->lost.list = bus->lists + 1;
+		/*
+		 * Slaves found before now do not replace a missing one. One whose position is not
+		 * certain may get it when the ring closes.
+		 */
+		c->lost.list = ec_config_index(c) == -EAGAIN ? 0 : bus->lists + 1;
 		if (!c->alias || c->alias_at >= bus->n_slaves)
 			continue;
 		first = bus->slaves[c->alias_at];
@@ -224,7 +283,11 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 		return c;
 	ec_session_mark(s);
 	ec_config_locate(c);
-	attach_one(s, c);
+	/* so many slaves are not there: those behind the break are others than before */
+	if (!s->sessions->links->only && s->wanted.n_places > READ_ONCE(s->sessions->bus->n_slaves))
+		attach_again(s);
+	else
+		attach_one(s, c);
 	ret = ec_config_begin(c);
 	if (!ret) {
 		ec_replay_adopt(c);

@@ -8,6 +8,7 @@
 struct ec_group;
 
 struct ec_slave *ec_session_find(struct ec_session *s, const struct ec_ioc_slave_config *i);
+void ec_session_settle_places(struct ec_session *s);
 void ec_session_begin_active(struct ec_session *s);
 void ec_session_attach_all(struct ec_session *s);
 void ec_session_attach(struct ec_sessions *ss);

@@ -416,6 +416,8 @@ static void about_config(struct ec_event_buf *t, const struct ec_event *e,
 		add(t, "%s", more->detail);
 	else if (a[2] == EC_CAUSE_NO_ALIAS)
 		add(t, "no slave has alias %u", a[0]);
+	else if (a[2] == EC_CAUSE_RING)
+		add(t, "the ring is open: which slave is at its position is not certain");
 	else if (a[2] == EC_CAUSE_DIFFERENT)
 		add(t, "slave %u is 0x%08x/0x%08x, configured is 0x%08x/0x%08x", e->slave, a[5],
 		    a[6], a[3], a[4]);

@@ -5,6 +5,7 @@
 #include "master/bus/ring_ends.h"
 
 #define IO_BITS		8
+#define ALL		GENMASK(SLAVES - 1, 0)
 
 /* equal slaves */
 static const char equal_text[] =
@@ -24,38 +25,91 @@ static u32 outputs(struct bus *b, u32 slave)
 	return v;
 }
 
+/* An application for equal slaves; each has a value of its own. */
+struct equal {
+	struct cyc *c;
+	u32 n;
+	u32 wrong;	/* outputs of another slave, so far */
+};
+
 /* Slave @i of the closed ring is the one that is connected there, and has no outputs of others. */
 static void equal_look(struct cyc *c)
 {
-	u32 *wrong = c->ctx, i;
+	struct equal *e = c->ctx;
+	u32 i;
 
 	for (i = 0; i < SLAVES; i++) {
 		u32 is = outputs(c->b, i);
 
-		*wrong += is && is != i + 1;
+		e->wrong += is && is != i + 1;
+	}
+	for (i = 0; i < e->n; i++)
 		*cyc_pd(c, i, 0) = i + 1;
+}
+
+/* As a program does that knows its slaves: these may be absent. */
+static void equal_config(struct cyc *c, u16 alias, u32 position)
+{
+	const struct ec_slave *like = bus_slave(c->b, 0);
+	struct ec_ioc_slave_config sc = {
+		.alias = alias, .position = position, .vendor_id = like->info.vendor,
+		.product_code = like->info.product,
+	};
+	struct ec_ioc_sc_sync sync = { 0 };
+	u32 sm, i, k;
+
+	KUNIT_ASSERT_EQ_MSG(c->b->test, ec_ioc(&c->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0, "%s",
+			    c->b->app.reason);
+	for (sm = 0; sm < like->n_sms; sm++) {
+		const struct ec_pdo_list *l = &like->pdos.sm[sm];
+
+		if (!ec_pdo_list_bytes(l))
+			continue;
+		sync.sm = sm;
+		sync.dir = sm ? EC_CFG_DIR_INPUT : EC_CFG_DIR_OUTPUT;
+		sync.config = sc.index;
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_SYNC, &sync), 0);
+		cyc_pdo(c, sc.index, EC_SC_PDO_ASSIGN_CLEAR, sm, 0, 0);
+		for (i = 0; i < l->n; i++) {
+			cyc_pdo(c, sc.index, EC_SC_PDO_ASSIGN_ADD, sm, l->pdos[i].index, 0);
+			cyc_pdo(c, sc.index, EC_SC_PDO_MAP_CLEAR, sm, l->pdos[i].index, 0);
+			for (k = 0; k < l->pdos[i].n_entries; k++)
+				cyc_pdo(c, sc.index, EC_SC_PDO_MAP_ADD, sm, l->pdos[i].index,
+					ec_pdo_entry_value(&l->pdos[i].entries[k]));
+		}
+		cyc_map(c, sc.index, sm, 0);
 	}
 }
 
-/* An application for all of them, active, for 2 s; @got: mask of those that have their outputs. */
-static struct cyc *equal_run(struct bus *b, u32 *got)
+/* Configures @n slaves and is active. */
+static struct equal *equal_app(struct bus *b, u16 alias, u32 n)
 {
-	struct cyc *c;
-	u32 wrong = 0, i;
+	struct equal *e = kunit_kzalloc(b->test, sizeof(*e), GFP_KERNEL);
+	u32 i;
 
+	KUNIT_ASSERT_NOT_NULL(b->test, e);
 	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 0, SLAVES, 0);
-	c->each = equal_look;
-	c->ctx = &wrong;
-	cyc_activate(c);
-	cyc_run(c, 2000);
-	KUNIT_EXPECT_EQ(b->test, wrong, 0u);
-	for (*got = 0, i = 0; i < SLAVES; i++)
-		*got |= outputs(b, i) == i + 1 ? BIT(i) : 0;
-	c->each = NULL;
-	return c;
+	e->n = n;
+	e->c = cyc_new(b, 1000);
+	cyc_domain(e->c);
+	for (i = 0; i < n; i++)
+		equal_config(e->c, alias, i);
+	e->c->each = equal_look;
+	e->c->ctx = e;
+	cyc_activate(e->c);
+	return e;
+}
+
+/* After 2 s exactly the slaves of the mask @with have their outputs, and none those of another. */
+static void equal_run(struct equal *e, u32 with)
+{
+	u32 got = 0, i;
+
+	cyc_run(e->c, 2000);
+	for (i = 0; i < SLAVES; i++)
+		got |= outputs(e->c->b, i) == i + 1 ? BIT(i) : 0;
+	KUNIT_EXPECT_EQ(e->c->b->test, e->wrong, 0u);
+	KUNIT_EXPECT_EQ(e->c->b->test, got, with);
 }
 
 static void expect_order(struct bus *b, const u16 *station)
@@ -144,7 +198,7 @@ KUNIT_ARRAY_PARAM(place, places, place_desc);
 /* A slave that is the wrong way round, where @at is its number. */
 static void ring_slave_turned(struct kunit *test)
 {
-	u32 at = *(const u32 *)test->param_value % SLAVES, cut, got;
+	u32 at = *(const u32 *)test->param_value % SLAVES, cut;
 	struct ec_ioc_activate a = { 0 };
 	struct bus *b = bus_new(test, equal_text);
 	char text[48];
@@ -175,8 +229,7 @@ static void ring_slave_turned(struct kunit *test)
 	bus_command(b, text);
 	bus_idle(b);
 	ring_closed(b, SLAVES);
-	equal_run(b, &got);
-	KUNIT_EXPECT_EQ(test, got, 0xffu);
+	equal_run(equal_app(b, 0, SLAVES), ALL);
 }
 
 /* Likewise, in a ring that was never seen closed. */
@@ -201,11 +254,133 @@ static void ring_slave_turned_open(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_ACTIVATE, &a), -EINVAL);
 }
 
+/* One without power, and the application is started: others do not get its outputs. */
+static void ring_start_without(struct kunit *test)
+{
+	u32 at = *(const u32 *)test->param_value % SLAVES;
+	struct bus *b = bus_up(test, equal_text, SLAVES);
+	struct equal *e = equal_app(b, 0, SLAVES);
+	char text[16];
+
+	equal_run(e, ALL);
+	snprintf(text, sizeof(text), "off s%u", at + 1);
+	bus_command(b, text);
+	equal_run(e, ALL & ~BIT(at));
+	cyc_release(e->c);
+	e = equal_app(b, 0, SLAVES);
+	equal_run(e, ALL & ~BIT(at));
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), SLAVES - 1);
+	snprintf(text, sizeof(text), "on s%u", at + 1);
+	bus_command(b, text);
+	equal_run(e, ALL);
+	ring_closed(b, SLAVES);
+}
+
+/* Likewise after the start of the computer. */
+static void ring_first_start_without(struct kunit *test)
+{
+	u32 at = *(const u32 *)test->param_value % SLAVES;
+	struct bus *b = bus_new(test, equal_text);
+	struct equal *e;
+	char text[16];
+
+	snprintf(text, sizeof(text), "off s%u", at + 1);
+	bus_command(b, text);
+	bus_plug_scanned(b, SLAVES - 1, 5000);
+	e = equal_app(b, 0, SLAVES);
+	equal_run(e, ALL & ~BIT(at));
+	snprintf(text, sizeof(text), "on s%u", at + 1);
+	bus_command(b, text);
+	equal_run(e, ALL);
+	ring_closed(b, SLAVES);
+}
+
+/* Slaves between two cuts come in later. */
+static void ring_start_between_cuts(struct kunit *test)
+{
+	struct bus *b = bus_new(test, equal_text);
+	struct equal *e;
+
+	ring_cable(b, true, 2);
+	ring_cable(b, true, 5);
+	bus_plug_scanned(b, SLAVES - 3, 5000);
+	e = equal_app(b, 0, SLAVES);
+	equal_run(e, ALL & ~GENMASK(4, 2));
+	ring_cable(b, false, 5);
+	equal_run(e, ALL);
+	ring_open(b, 2);
+	ring_cable(b, false, 2);
+	equal_run(e, ALL);
+	ring_closed(b, SLAVES);
+}
+
+static u32 cause_of(struct bus *b, u32 config)
+{
+	struct ec_ioc_config_why w = { .index = config };
+
+	KUNIT_EXPECT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CONFIG_WHY, &w), 0);
+	return w.cause.kind;
+}
+
+/*
+ * An application that does not use the last slaves: the master cannot know whether one is missing.
+ * In front of the break all is certain, behind it all is once the ring has been closed.
+ */
+static void ring_start_not_certain(struct kunit *test)
+{
+	struct bus *b = bus_new(test, equal_text);
+	struct equal *e;
+
+	bus_command(b, "off s4");
+	bus_plug_scanned(b, SLAVES - 1, 5000);
+	e = equal_app(b, 0, 6);
+	equal_run(e, BIT(0) | BIT(1) | BIT(2));
+	KUNIT_EXPECT_EQ(test, cause_of(b, 2), EC_CAUSE_NONE);
+	KUNIT_EXPECT_EQ(test, cause_of(b, 3), EC_CAUSE_RING);
+	KUNIT_EXPECT_EQ(test, cause_of(b, 5), EC_CAUSE_RING);
+	bus_command(b, "on s4");
+	equal_run(e, GENMASK(5, 0));
+	cyc_release(e->c);
+	bus_command(b, "off s4");
+	e = equal_app(b, 0, 6);
+	equal_run(e, GENMASK(5, 0) & ~BIT(3));
+	KUNIT_EXPECT_EQ(test, cause_of(b, 3), EC_CAUSE_NO_SLAVE);
+}
+
+/* An offset from an alias counts slaves of the closed ring as well. */
+static void ring_start_alias(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "segment seed=8 response=100us transition=1ms\n"
+				"slave s1 io in=8 out=8 alias=7 cable=50\n"
+				"slave s2 io in=8 out=8 cable=50\n"
+				"slave s3 io in=8 out=8 cable=50\n"
+				"slave s4 io in=8 out=8 cable=50\n"
+				"slave s5 io in=8 out=8 cable=50\n"
+				"slave s6 io in=8 out=8 cable=50\n"
+				"slave s7 io in=8 out=8 cable=50\n"
+				"slave s8 io in=8 out=8 cable=50\n"
+				"wire s8.1 -> master.1 cable=50\n");
+	struct equal *e;
+
+	bus_command(b, "off s4");
+	bus_plug_scanned(b, SLAVES - 1, 5000);
+	e = equal_app(b, 7, SLAVES);
+	equal_run(e, ALL & ~BIT(3));
+	bus_command(b, "on s4");
+	equal_run(e, ALL);
+	ring_closed(b, SLAVES);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_names_exchanged),
 	KUNIT_CASE_PARAM(ring_names_exchanged_open, place_gen_params),
 	KUNIT_CASE_PARAM(ring_slave_turned, place_gen_params),
 	KUNIT_CASE_PARAM(ring_slave_turned_open, place_gen_params),
+	KUNIT_CASE_PARAM(ring_start_without, place_gen_params),
+	KUNIT_CASE_PARAM(ring_first_start_without, place_gen_params),
+	KUNIT_CASE(ring_start_between_cuts),
+	KUNIT_CASE(ring_start_not_certain),
+	KUNIT_CASE(ring_start_alias),
 	{}
 };
 

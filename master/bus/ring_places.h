@@ -1,0 +1,28 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* What is remembered of a closed ring; ring_place.c has the functions. */
+#ifndef EC_RING_PLACES_H
+#define EC_RING_PLACES_H
+
+#include <linux/types.h>
+
+/**
+ * struct ec_ring_places - positions of a ring, changed with topo and ec_show_change_begin()
+ * @open: the ring is open
+ * @front: slaves before the break
+ * @n_list: slaves of the list
+ * @n: slaves when it was closed, 0: it was not
+ * @device: their numbers
+ * @index: of an open ring: where the slave at each position is in the list, if that is certain
+ * @last: number given last when it was closed
+ */
+struct ec_ring_places {
+	bool open;
+	u32 front;
+	u32 n_list;
+	u32 n;
+	u64 *device;
+	u16 *index;
+	u64 last;
+};
+
+#endif
