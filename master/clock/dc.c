@@ -48,7 +48,7 @@ static void log_unreliable(const struct ec_dc_job *j)
 	unsigned int i, n = 0, first = 0;
 
 	for (i = j->n; i-- > 0;)
-		if (j->nodes[i].unreliable) {
+		if (j->nodes[i].unreliable && !j->nodes[i].other) {
 			first = i;
 			n++;
 		}
@@ -76,7 +76,9 @@ int ec_dc_measure(struct ec_dc *dc)
 		return ret;
 	mutex_lock(&dc->lock);
 	for (try = 0; try < j.n; try++)
-		ec_job_clock(&j, try)->measured = 0;
+		/* behind a break the delays of the closed ring stay */
+		if (!j.nodes[try].other)
+			ec_job_clock(&j, try)->measured = 0;
 	ret = -EAGAIN;
 	for (try = 0; j.ref < j.n && ret == -EAGAIN && try <= EC_DC_OUT_TRIES; try++) {
 		ret = ec_dc_get_delays(&j);

@@ -58,9 +58,9 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 	n->parent = up ? up->position : EC_DC_NONE;
 	n->entry = s->graph.upstream;
 	/* behind a break nothing can be measured */
+	n->other = ec_graph_is_reversed(s);
 	n->dc = dc_job_has_times(s) &&
-		(!ec_graph_is_reversed(s) ||
-		 (ec_clock_is_set(s) && ec_clock_of(s)->measured));
+		(!n->other || (ec_clock_is_set(s) && ec_clock_of(s)->measured));
 	n->parent_port = up ? s->graph.parent_port : 0;
 	n->open = ec_graph_open_ports(s->dl_status);
 	if (ec_graph_ring_exit(s) >= 0) {
@@ -85,7 +85,7 @@ bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who)
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 
 	if (who == EC_DC_TIMES)
-		return j->nodes[i].dc;
+		return j->nodes[i].dc && !j->nodes[i].other;
 	if (!is_clock(j, i) || who == EC_DC_CLOCKS)
 		return is_clock(j, i);
 	return !ec_clock_is_set(s) && (who == EC_DC_NEW || wide == (who == EC_DC_NEW_WIDE));
@@ -505,23 +505,31 @@ static bool delay_stays(const struct ec_dc_job *j, unsigned int i, u32 scan)
 {
 	const struct ec_clock *c = ec_job_clock(j, i);
 
-	return j->dc->links->only ? c->measured == scan :
-				    c->measured && c->measured_after == device_before(j, i);
+	if (j->dc->links->only)
+		return c->measured == scan;
+	return c->measured && (j->nodes[i].other || c->measured_after == device_before(j, i));
 }
 
-/* Delays measured since the last scan stay valid, counted from the present reference clock. */
+/* Delays that stay are counted from the present reference clock. */
+static void rebase(struct ec_dc_job *j, u32 scan)
+{
+	u32 zero = delay_stays(j, j->ref, scan) ? ec_job_clock(j, j->ref)->delay : 0;
+	unsigned int i;
+
+	/* also of excluded slaves: their clocks may be set again */
+	for (i = 0; i < j->n; i++)
+		if (delay_stays(j, i, scan))
+			ec_job_clock(j, i)->delay -= zero;
+}
+
+/* Do all delays stay valid? */
 static bool known(struct ec_dc_job *j, u32 scan)
 {
-	u32 zero = ec_job_clock(j, j->ref)->delay;
 	unsigned int i;
 
 	for (i = 0; i < j->n; i++)
 		if (j->nodes[i].dc && !delay_stays(j, i, scan))
 			return false;
-	/* also of excluded slaves: their clocks may be set again */
-	for (i = 0; i < j->n; i++)
-		if (delay_stays(j, i, scan))
-			ec_job_clock(j, i)->delay -= zero;
 	return true;
 }
 
@@ -542,13 +550,14 @@ int ec_dc_get_delays(struct ec_dc_job *j)
 	int ret;
 
 	lockdep_assert_held(&j->dc->lock);
+	rebase(j, scan);
 	if (known(j, scan))
 		return 0;
 	ret = dc_job_measure(j);
 	for (i = 0; i < j->n && !ret; i++) {
 		struct ec_clock *c = ec_job_clock(j, i);
 
-		if (!j->nodes[i].dc)
+		if (!ec_dc_chosen(j, i, EC_DC_TIMES))
 			continue;
 		c->delay = (u32)div_s64(j->sum[i], j->rounds);
 		c->prev_delay = j->nodes[i].hop;

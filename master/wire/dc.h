@@ -16,6 +16,7 @@
  * @entry: its own port towards the master
  * @open: bit per open port, @entry included
  * @dc: has receive times
+ * @other: behind the break of a ring: reached by frames of the other end
  * @recv: receive times at the ports, registers 0x0900-0x090F, all latched by
  *	the same frame
  * @delay: result: when a frame reaches its processing unit, counted from the reference clock,
@@ -36,6 +37,7 @@ struct ec_dc_node {
 	u8 entry;
 	u8 open;
 	bool dc;
+	bool other;
 	u32 recv[EC_DC_PORTS];
 	u32 delay;
 	u32 hop;

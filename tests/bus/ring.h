@@ -10,6 +10,7 @@
 #define RING_ECHO	6	/* byte of the outputs of a drive that comes back in its inputs */
 
 #define SLAVES		8	/* of ring_eight */
+#define CUTS		(SLAVES + 1)	/* its cables */
 extern const char ring_eight[];
 
 /**

@@ -6,8 +6,6 @@
 #include "master/bus/ring_break.h"
 #include "master/mailbox/coe.h"
 
-#define CUTS		(SLAVES + 1)	/* cables of the ring */
-#define CLOCK_CYCLES	60000		/* with clocks on both sides of a break */
 #define EVENTS		1000		/* of the long run, half of them cuts */
 
 static const char many_text[] =
@@ -301,83 +299,6 @@ static void ring_sdo(struct kunit *test)
 	ring_expect(r, "SDOs");
 }
 
-/* How far the clocks behind the break are from the reference clock, the worst of them, ns. */
-static s64 apart(struct bus *b, u32 n)
-{
-	u64 now = ktime_get_ns(), ref;
-	s64 most = 0;
-	u32 i;
-
-	ec_sim_advance(b->sim, now);
-	ref = ec_esc_system_time(bus_esc(b, 0), now);
-	for (i = 1; i < n; i++)
-		most = max_t(s64, most,
-			     abs((s64)(ec_esc_system_time(bus_esc(b, i), now) - ref)));
-	return most;
-}
-
-/* Clocks of up to 100 ppm on both sides of a break, and after it has healed. */
-static void ring_clocks(struct kunit *test)
-{
-	u32 at = *(const u32 *)test->param_value, k;
-	char *text = kunit_kzalloc(test, 4096, GFP_KERNEL);
-	s64 before, most = 0, end, healed = 0;
-	struct rnd_state rnd;
-	struct bus *b;
-	struct cyc *c;
-	int len;
-
-	KUNIT_ASSERT_NOT_NULL(test, text);
-	prandom_seed_state(&rnd, 5);
-	len = scnprintf(text, 4096, "segment seed=8 response=100us transition=1ms\n");
-	for (k = 1; k <= SLAVES; k++)
-		len += scnprintf(text + len, 4096 - len,
-				 "slave d%u drive in=8 out=8 cable=50 drift=%dppb clock=%ums\n", k,
-				 (int)(prandom_u32_state(&rnd) % 200001) - 100000 - 50000,
-				 prandom_u32_state(&rnd));
-	scnprintf(text + len, 4096 - len, "wire d8.1 -> master.1 cable=50\n");
-	b = bus_up(test, text, SLAVES);
-	bus_idle(b);
-	c = cyc_new(b, 1000);
-	cyc_domain(c);
-	cyc_map_all(c, 0, SLAVES, 0);
-	cyc_sync0(c, SLAVES);
-	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR;
-	cyc_activate(c);
-	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 20000), ~0ull);
-	cyc_shake(c, 20000, 1000);
-	cyc_run(c, 5000);
-	before = apart(b, SLAVES);
-	ring_cable(b, true, at);
-	for (k = 0; k < 2000; k++) {
-		cyc_run(c, 1);
-		most = max(most, apart(b, SLAVES));
-	}
-	ring_open(b, at);
-	cyc_run(c, CLOCK_CYCLES);
-	end = apart(b, SLAVES);
-	ring_cable(b, false, at);
-	for (k = 0; k < 2000; k++) {
-		cyc_run(c, 1);
-		healed = max(healed, apart(b, SLAVES));
-	}
-	bus_figure("ring cut before slave %u: clocks apart %lld ns before, at most %lld in 2 s after it, %lld after %u s, at most %lld in 2 s after it has healed",
-		   at, before, most, end, CLOCK_CYCLES / 1000, healed);
-	KUNIT_EXPECT_TRUE(test, cyc_all_op(c));
-	KUNIT_EXPECT_LE(test, most, 1000);
-	KUNIT_EXPECT_LE(test, end, 1000);
-	KUNIT_EXPECT_LE(test, healed, 1000);
-}
-
-static const u32 clock_cuts[] = { 0, 1, 4, 7 };
-
-static void cut_desc(const u32 *at, char *desc)
-{
-	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "before slave %u", *at);
-}
-
-KUNIT_ARRAY_PARAM(clock_cut, clock_cuts, cut_desc);
-
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_is_found),
 	KUNIT_CASE(ring_cut_at_rest),
@@ -389,7 +310,6 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_both_ends),
 	KUNIT_CASE(ring_device),
 	KUNIT_CASE(ring_sdo),
-	KUNIT_CASE_PARAM(ring_clocks, clock_cut_gen_params),
 	{}
 };
 
