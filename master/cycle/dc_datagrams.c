@@ -193,10 +193,10 @@ static void learn_rate(struct ec_dc_datagrams *k)
 	k->then_ns = k->time_ns;
 }
 
-static u64 clock_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 sent_ns)
+static u64 clock_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, s32 shift, u64 sent_ns)
 {
-	u64 t = len == 8 ? get_unaligned_le64(data) :
-			   ec_dc_extend32(k->dc, get_unaligned_le32(data), sent_ns);
+	u64 t = len == 8 ? get_unaligned_le64(data) - shift :
+			   ec_dc_extend32(k->dc, get_unaligned_le32(data) - shift, sent_ns);
 
 	ec_dc_clock(k->dc, t, sent_ns);
 	return t;
@@ -204,8 +204,7 @@ static u64 clock_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 se
 
 static void take_time(struct ec_dc_datagrams *k, const u8 *data, u16 len, u64 sent_ns)
 {
-
-	k->time = clock_time(k, data, len, sent_ns);
+	k->time = clock_time(k, data, len, 0, sent_ns);
 	k->time_ns = sent_ns;
 	k->back |= SYNC_SLAVES;
 	learn_rate(k);
@@ -252,6 +251,11 @@ static u8 sync_command(const struct ec_dc_datagrams *k, u16 *adp)
 	return EC_CMD_FPRD;
 }
 
+static void add_monitor(struct ec_frame_buf *fb, u8 index)
+{
+	put_unaligned_le32(0, ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4));
+}
+
 /**
  * ec_dc_datagrams_fill() - add the clock datagrams to an empty frame
  * @k: of the active cycle
@@ -291,31 +295,100 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memset(p, 0, time_bytes(dc));
 	}
-	if (dc & MONITOR) {
-		p = ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4);
-		put_unaligned_le32(0, p);
-	}
+	if (dc & MONITOR)
+		add_monitor(fb, index);
 }
 
 /**
- * ec_dc_datagrams_fill_behind() - add the datagram for clocks behind the break of a ring
+ * ec_dc_datagrams_behind() - clock datagrams of this send for clocks behind the break of a ring
+ * @k: of the active cycle
+ * @dc: as from ec_dc_datagrams_wanted()
+ *
+ * Those to the reference clock only if it is one of them.
+ *
+ * Context: The cycle owner. RT-safe.
+ * Return: likewise, with EC_DC_BEHIND; 0: none.
+ */
+u32 ec_dc_datagrams_behind(struct ec_dc_datagrams *k, u32 dc)
+{
+	bool ref;
+
+	if (!ec_ring_clock_wanted(&k->ring, k->dc))
+		return 0;
+	ref = READ_ONCE(k->dc->behind.ref);
+	if (!ref)
+		dc &= ~(SYNC_REF | REF_TIME);
+	/* the time there is not known yet */
+	if (!ec_ring_clock_knows(&k->ring))
+		dc &= SYNC_SLAVES | MONITOR;
+	dc &= ~WIDE;
+	if (READ_ONCE(k->dc->ref_wide))
+		dc |= WIDE;
+	return dc & EC_CYC_CLOCKS ? dc | EC_DC_BEHIND : 0;
+}
+
+/**
+ * ec_dc_datagrams_fill_behind() - add the datagrams for clocks behind the break of a ring
  * @k: of the active cycle
  * @fb: empty frame, for the backup link
  * @index: of its slot
+ * @dc: as from ec_dc_datagrams_behind()
  * @now: time of the send (ktime)
  * @f: result
+ *
+ * As ec_dc_datagrams_fill(). What depends on the way has the time that a frame of the main link
+ * would need less or more.
  *
  * Context: The cycle owner. RT-safe.
  */
 void ec_dc_datagrams_fill_behind(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index,
-				 u64 now, struct ec_ring_clock_flight *f)
+				 u32 dc, u64 now, struct ec_ring_clock_flight *f)
 {
-	ec_ring_clock_fill(&k->ring, k->dc, fb, index, predicted(k, now), k->path_held, f);
+	u16 ref = READ_ONCE(k->dc->ref_station);
+	unsigned int i;
+	u8 *p;
+
+	for (i = 0; i < refs(dc); i++) {
+		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
+		put_unaligned_le32((u32)(now + k->lead + k->ring.shift), p);
+	}
+	for (i = 0; i < syncs(dc); i++)
+		ec_ring_clock_fill(&k->ring, k->dc, fb, index, predicted(k, now), k->path_held, f);
+	if (dc & REF_TIME) {
+		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
+		memset(p, 0, time_bytes(dc));
+	}
+	if (dc & MONITOR)
+		add_monitor(fb, index);
 }
 
 static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
 {
 	return data + len + EC_DGRAM_OVERHEAD;
+}
+
+/* Results of the datagrams that only read; @shift: of the time, ns. */
+static const u8 *take_reads(struct ec_dc_datagrams *k, u32 dc, s32 shift, u64 sent_ns,
+			    const u8 *data)
+{
+	u16 len = time_bytes(dc);
+
+	if (dc & REF_TIME) {
+		if (get_unaligned_le16(data + len)) {
+			k->time64 = clock_time(k, data, len, shift, sent_ns);
+			k->back |= REF_TIME;
+		}
+		data = dc_datagrams_skip(data, len);
+	}
+	if (dc & MONITOR) {
+		if (get_unaligned_le16(data + 4)) {
+			/* of the clocks on both sides of a break */
+			k->diff = (k->back & MONITOR ? k->diff : 0) | get_unaligned_le32(data);
+			k->back |= MONITOR;
+		}
+		data = dc_datagrams_skip(data, 4);
+	}
+	return data;
 }
 
 /**
@@ -343,42 +416,35 @@ const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_fli
 		for (i = 0; i < syncs(dc); i++)
 			data = dc_datagrams_skip(data, len);
 	}
-	if (dc & REF_TIME) {
-		if (get_unaligned_le16(data + len)) {
-			k->time64 = clock_time(k, data, len, sent_ns);
-			k->back |= REF_TIME;
-		}
-		data = dc_datagrams_skip(data, len);
-	}
-	if (dc & MONITOR) {
-		if (get_unaligned_le16(data + 4)) {
-			k->diff = get_unaligned_le32(data);
-			k->back |= MONITOR;
-		}
-		data = dc_datagrams_skip(data, 4);
-	}
-	return data;
+	return take_reads(k, dc, 0, sent_ns, data);
 }
 
 /**
- * ec_dc_datagrams_take_behind() - result of the datagram for clocks behind the break of a ring
+ * ec_dc_datagrams_take_behind() - results of the datagrams for clocks behind the break of a ring
  * @k: of the active cycle
  * @f: what was sent in that frame
  * @sent_ns: when it was sent (ktime)
- * @data: of the datagram, matched against what was sent
+ * @data: data of the first datagram, matched against what was sent
  *
  * Context: The cycle owner. RT-safe.
  */
-void ec_dc_datagrams_take_behind(struct ec_dc_datagrams *k, const struct ec_ring_clock_flight *f,
+void ec_dc_datagrams_take_behind(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 				 u64 sent_ns, const u8 *data)
 {
-	u8 time[8];
-	u64 t;
+	unsigned int i;
+	u8 time[4];
+	u32 t;
 
-	if (!ec_ring_clock_take(&k->ring, k->dc, f, data, &t))
-		return;
-	put_unaligned_le64(t, time);
-	take_time(k, time, READ_ONCE(k->dc->ref_wide) ? 8 : 4, sent_ns);
+	for (i = 0; i < refs(f->dgrams); i++)
+		data = dc_datagrams_skip(data, 4);
+	for (i = 0; i < syncs(f->dgrams); i++) {
+		/* of several the first one, as on the main link */
+		if (!ec_ring_clock_take(&k->ring, k->dc, &f->behind, &data, &t) || i)
+			continue;
+		put_unaligned_le32(t, time);
+		take_time(k, time, sizeof(time), sent_ns);
+	}
+	take_reads(k, f->dgrams, k->ring.shift, sent_ns, data);
 }
 
 /**

@@ -11,7 +11,7 @@ struct ec_access;
 struct ec_dc;
 struct ec_frame_buf;
 
-/* a frame with the datagram for clocks behind the break of a ring, and nothing else */
+/* a frame with datagrams for clocks behind the break of a ring, and nothing else */
 #define EC_DC_BEHIND	0x4000
 
 /* flags of a send that make datagrams */
@@ -68,7 +68,7 @@ struct ec_dc_datagrams {
 
 /** struct ec_dc_flight - the clock datagrams of a frame in flight */
 struct ec_dc_flight {
-	/** @dgrams: as from ec_dc_datagrams_wanted(), or EC_DC_BEHIND */
+	/** @dgrams: as from ec_dc_datagrams_wanted(), or with EC_DC_BEHIND */
 	u32 dgrams;
 	/** @time: time that was sent in them, ns */
 	u64 time;
@@ -80,9 +80,10 @@ u32 ec_dc_datagrams_reserve_ns(const struct ec_dc_datagrams *k);
 u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags);
 void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index, u32 dc,
 			  u64 now);
+u32 ec_dc_datagrams_behind(struct ec_dc_datagrams *k, u32 dc);
 void ec_dc_datagrams_fill_behind(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8 index,
-				 u64 now, struct ec_ring_clock_flight *f);
-void ec_dc_datagrams_take_behind(struct ec_dc_datagrams *k, const struct ec_ring_clock_flight *f,
+				 u32 dc, u64 now, struct ec_ring_clock_flight *f);
+void ec_dc_datagrams_take_behind(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 				 u64 sent_ns, const u8 *data);
 const u8 *ec_dc_datagrams_take(struct ec_dc_datagrams *k, const struct ec_dc_flight *f,
 			       u64 sent_ns, const u8 *data);

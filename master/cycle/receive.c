@@ -135,8 +135,8 @@ static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 	unsigned int i;
 	u16 irq = 0;
 
-	if (f->clocks.dgrams == EC_DC_BEHIND) {
-		ec_dc_datagrams_take_behind(&c->clock, &f->clocks.behind, f->slot->sent_ns, data);
+	if (unlikely(f->clocks.dgrams & EC_DC_BEHIND)) {
+		ec_dc_datagrams_take_behind(&c->clock, &f->clocks, f->slot->sent_ns, data);
 		return get_unaligned_le16(data - 2);
 	}
 	if (f->clocks.dgrams)

@@ -12,6 +12,8 @@
 #include "ring_clock.h"
 
 #define EC_RING_SAMPLES	64
+/* of a time: before the reference clock delays are negative, of 32 bits */
+#define EC_RING_BYTES	4
 
 /**
  * ec_ring_clock_wanted() - is a clock datagram to be sent on the backup link?
@@ -32,7 +34,19 @@ bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc)
 }
 
 /**
- * ec_ring_clock_fill() - add the clock datagram to an empty frame
+ * ec_ring_clock_knows() - is the way of frames of the backup link known?
+ * @r: of the active cycle, after ec_ring_clock_wanted()
+ *
+ * Context: The cycle owner. RT-safe.
+ * Return: whether clocks may get a time.
+ */
+bool ec_ring_clock_knows(const struct ec_ring_clock *r)
+{
+	return r->samples == EC_RING_SAMPLES;
+}
+
+/**
+ * ec_ring_clock_fill() - add a clock datagram to a frame
  * @r: of the active cycle, after ec_ring_clock_wanted()
  * @dc: clocks
  * @fb: frame
@@ -49,16 +63,16 @@ void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
 			struct ec_frame_buf *fb, u8 index, u64 time, bool unsure,
 			struct ec_ring_clock_flight *f)
 {
-	bool reads = unsure || r->samples < EC_RING_SAMPLES;
+	bool reads = unsure || !ec_ring_clock_knows(r);
 	u16 station = reads ? READ_ONCE(dc->behind.station) : READ_ONCE(dc->ref_station);
 	u8 *p = ec_frame_add(fb, reads ? EC_CMD_FPRD : EC_CMD_FRMW, index, station,
-			     EC_REG_DC_SYSTIME, 8);
+			     EC_REG_DC_SYSTIME, EC_RING_BYTES);
 
-	put_unaligned_le64(reads ? 0 : time + r->shift, p);
-	*f = (struct ec_ring_clock_flight){
-		.reads = reads && !unsure, .gives = !reads,
-		.break_seen = r->break_seen, .time = time,
-	};
+	put_unaligned_le32(reads ? 0 : (u32)time + r->shift, p);
+	f->reads = reads && !unsure;
+	f->gives = !reads;
+	f->break_seen = r->break_seen;
+	f->time = (u32)time;
 }
 
 /**
@@ -66,29 +80,29 @@ void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
  * @r: of the active cycle
  * @dc: clocks
  * @f: what was sent in that frame
- * @data: of the datagram, matched against what was sent
- *
+ * @data: of the datagram, matched against what was sent; moved to that of the next one
  * @time: result: time of the reference clock, as a frame of the main link would have brought it, ns
  *
  * Context: The cycle owner. RT-safe.
  * Return: whether the reference clock is behind the break, and has replied.
  */
 bool ec_ring_clock_take(struct ec_ring_clock *r, const struct ec_dc *dc,
-			const struct ec_ring_clock_flight *f, const u8 *data, u64 *time)
+			const struct ec_ring_clock_flight *f, const u8 **data, u32 *time)
 {
-	u16 wkc = get_unaligned_le16(data + 8);
+	u32 is = get_unaligned_le32(*data);
+	u16 wkc = get_unaligned_le16(*data + EC_RING_BYTES);
 
+	*data += EC_RING_BYTES + EC_DGRAM_OVERHEAD;
 	if (!wkc || f->break_seen != r->break_seen)
 		return false;
 	if (f->gives) {
-		*time = get_unaligned_le64(data) - r->shift;
+		*time = is - r->shift;
 		/* without a reply of the clock it is the time that was sent */
 		return READ_ONCE(dc->behind.ref) && *time != f->time;
 	}
-	if (!f->reads || r->samples == EC_RING_SAMPLES)
+	if (!f->reads || ec_ring_clock_knows(r))
 		return false;
-	/* clocks of 32 bits as well */
-	r->sum += (s32)(get_unaligned_le32(data) - (u32)f->time - READ_ONCE(dc->behind.delay));
+	r->sum += (s32)(is - f->time - READ_ONCE(dc->behind.delay));
 	if (++r->samples == EC_RING_SAMPLES)
 		r->shift = (s32)div_s64(r->sum, EC_RING_SAMPLES);
 	return false;

@@ -20,7 +20,7 @@ struct ec_ring_clock {
 	s32 shift;
 };
 
-/** struct ec_ring_clock_flight - the clock datagram of a frame behind the break */
+/** struct ec_ring_clock_flight - the clock datagrams of a frame behind the break */
 struct ec_ring_clock_flight {
 	/** @reads: it reads the time of a clock */
 	bool reads;
@@ -29,14 +29,15 @@ struct ec_ring_clock_flight {
 	/** @break_seen: as struct ec_ring_clock.break_seen, when it was sent */
 	u32 break_seen;
 	/** @time: expected of the reference clock when a frame of the main link reaches it, ns */
-	u64 time;
+	u32 time;
 };
 
 bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc);
+bool ec_ring_clock_knows(const struct ec_ring_clock *r);
 void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
 			struct ec_frame_buf *fb, u8 index, u64 time, bool unsure,
 			struct ec_ring_clock_flight *f);
 bool ec_ring_clock_take(struct ec_ring_clock *r, const struct ec_dc *dc,
-			const struct ec_ring_clock_flight *f, const u8 *data, u64 *time);
+			const struct ec_ring_clock_flight *f, const u8 **data, u32 *time);
 
 #endif

@@ -163,25 +163,25 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	return g + count;
 }
 
-/* The time for the clocks behind the break of a ring. */
+/* Clock datagrams behind the break of a ring. */
 static noinline void send_behind(struct ec_cycle *c, struct send *send)
 {
 	struct ec_links *l = c->links;
-	struct ec_ring_clock_flight behind;
+	u32 dc = send->dc, there = ec_dc_datagrams_behind(&c->clock, dc);
+	struct ec_ring_clock_flight behind = { 0 };
 	struct ec_slot *slot = NULL;
 	struct ec_frame_buf fb;
-	u32 dc = send->dc;
 	struct ec_tx tx;
 	u8 *frame;
 	int ret;
 
-	if (ec_ring_clock_wanted(&c->clock.ring, c->dc) && make_room(c, send->now))
+	if (there && make_room(c, send->now))
 		slot = ec_slot_get(&l->slots, true, send->now);
 	if (!slot)
 		return;
 	frame = ec_links_tx_get(l, BIT(EC_BACKUP), &tx) ?: slot->frame;
 	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
-	ec_dc_datagrams_fill_behind(&c->clock, &fb, slot->index, send->now, &behind);
+	ec_dc_datagrams_fill_behind(&c->clock, &fb, slot->index, there, send->now, &behind);
 	slot->eth_len = EC_ETH_HDR + ec_frame_end(&fb);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	ret = ec_links_transmit(l, slot, frame, &tx, send->now);
@@ -189,10 +189,9 @@ static noinline void send_behind(struct ec_cycle *c, struct send *send)
 		ec_slot_put(slot);
 		return;
 	}
-	send->dc = 0;
+	send->dc = there;
 	send->riding.mask = 0;
 	note_flight(c, slot, c->layout.n_dgrams, 0, send);
-	c->flight[c->n_flight - 1].clocks.dgrams = EC_DC_BEHIND;
 	c->flight[c->n_flight - 1].clocks.behind = behind;
 	send->dc = dc;
 }
@@ -259,7 +258,7 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
 	/* first, so that its delay after the send is constant */
-	if (unlikely(!l->only) && what->flags & EC_SEND_FLAG_SYNC_SLAVES)
+	if (unlikely(!l->only) && send.dc)
 		send_behind(c, &send);
 	/* frames that are repeated go behind all others: a disturbance may last a while */
 	do {

@@ -7,12 +7,14 @@
 #define TEXT	4096
 #define GOAL_NS	1000	/* of every running clock from the line of the reference clock */
 #define LOST_NS	2000	/* likewise, while the reference clock is lost */
+#define LATE_NS	20000	/* cycles, on average */
 
 /**
  * struct clocks - an application with SYNC0 at a ring of clocks of up to 100 ppm
  * @b: bus
  * @c: its cycle
  * @leads: the reference clock is synchronized to its time
+ * @off: how far it was ahead of that, ns, 0: not known yet
  * @ref: index of the reference clock
  * @absent: mask of slaves that no frame reaches
  * @lost: the reference clock is one of them: its line is continued
@@ -25,6 +27,7 @@ struct clocks {
 	struct bus *b;
 	struct cyc *c;
 	bool leads;
+	s64 off;
 	u32 ref;
 	u32 absent;
 	bool lost;
@@ -127,9 +130,28 @@ static struct clocks *clocks_start(struct bus *b, u32 ref, bool leads)
 	k->c->each = clocks_look;
 	cyc_activate(k->c);
 	KUNIT_ASSERT_NE(b->test, cyc_wait_op(k->c, 20000), ~0ull);
-	cyc_shake(k->c, 20000, 1000);
+	cyc_shake(k->c, LATE_NS, 1000);
 	cyc_run(k->c, 5000);
 	return k;
+}
+
+/* What the application gets of the reference clock, wherever that is. */
+static void expect_led(struct clocks *k, const char *when)
+{
+	const struct ec_status *st = bus_status(k->b);
+	u64 now = ktime_get_ns();
+	s64 off;
+
+	ec_sim_advance(k->b->sim, now);
+	KUNIT_EXPECT_NE_MSG(k->b->test, st->dc_monitor, ~0u, "%s", when);
+	if (!k->leads)
+		return;
+	KUNIT_EXPECT_TRUE_MSG(k->b->test, st->dc_time64_valid, "%s", when);
+	off = clock_of(k, k->ref, now) - now + LATE_NS;
+	/* it gets the time when the frame reaches it */
+	k->off = k->off ?: off;
+	off = abs(off - k->off);
+	KUNIT_EXPECT_LE_MSG(k->b->test, off, (s64)GOAL_NS, "%s", when);
 }
 
 /* one cut: where, and the reference clock */
@@ -159,12 +181,15 @@ static void clocks_cut(struct kunit *test)
 	struct clocks *k = clocks_start(clocks_bus(test), p->ref, p->leads);
 	s64 before = clocks_run(k, 1000), most, end, healed;
 
+	expect_led(k, "with a closed ring");
 	cable(k->b, true, p->at);
 	most = clocks_run(k, 1500);
 	expect_open(k->b, p->at);
 	end = clocks_run(k, 500);
+	expect_led(k, "with an open ring");
 	cable(k->b, false, p->at);
 	healed = clocks_run(k, 2000);
+	expect_led(k, "when it has healed");
 	expect_closed(k->b, SLAVES);
 	bus_figure("ring cut before slave %u, reference slave %u%s: clocks apart %lld ns before, at most %lld in 1.5 s after it, then %lld, at most %lld in 2 s after it has healed",
 		   p->at, p->ref, p->leads ? " synchronized to the application" : "", before, most,
