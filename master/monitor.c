@@ -29,6 +29,7 @@
 #include "session/session_status.h"
 #include "clock/dc.h"
 #include "clock/dc_armw.h"
+#include "clock/dc_behind.h"
 
 #define PERIOD_MS	20
 #define SLACK_MS	4	/* by which a look may be earlier while all is well */
@@ -403,7 +404,8 @@ static void monitor_note_ports(struct watch *w)
 		due = PORTS_NS;
 	else if (event && READ_ONCE(w->m->bus.guarded))
 		due = UNASKED_NS;
-	if (!due || !w->scanned || w->held || now - w->ports_ns < due)
+	if (!due || !w->scanned || w->held || now - w->ports_ns < due ||
+	    READ_ONCE(w->m->links.ring.measured))
 		return;
 	w->dl_stays += event;
 	w->ports_ns = now;
@@ -582,7 +584,7 @@ static void maybe_scan(struct watch *w)
 	} else {
 		w->same = 0;
 	}
-	ec_dc_look_behind(&m->dc);
+	ec_dc_look_behind(&m->dc, NULL);
 	w->survey_ns = 0;
 	WRITE_ONCE(m->bus.scan_busy, false);
 	ec_bus_settled(&m->bus);

@@ -181,20 +181,6 @@ int ec_graph_free_port(const struct ec_slave *s)
 }
 
 /**
- * ec_graph_ring_exit() - by which port does a closed ring leave a slave for the backup device?
- * @s: slave of the list
- *
- * Context: The monitor thread, or as for ec_bus_assert_stays().
- * Return: port, or -1: by none.
- */
-int ec_graph_ring_exit(const struct ec_slave *s)
-{
-	if (READ_ONCE(s->bus->links->ring.state) != EC_RING_CLOSED)
-		return -1;
-	return ec_graph_free_port(s);
-}
-
-/**
  * ec_graph_next_arrival() - where does a frame arrive next?
  * @slave: slave of the list at which it arrives; the next one
  * @port: by this port; the next one

@@ -16,7 +16,6 @@ bool ec_graph_is_open(const struct ec_slave *s, unsigned int port);
 struct ec_slave *ec_graph_parent(const struct ec_slave *s);
 bool ec_graph_is_reversed(const struct ec_slave *s);
 int ec_graph_free_port(const struct ec_slave *s);
-int ec_graph_ring_exit(const struct ec_slave *s);
 bool ec_graph_next_arrival(struct ec_slave **slave, unsigned int *port);
 void ec_graph_leave(struct ec_slave *s);
 void ec_graph_note_ports(struct ec_slave *s);

@@ -52,6 +52,9 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 	ec_links_for_each(l, link)
 		if (!came(dg, link->side) && !last && ec_link_is_up(link))
 			return false;
+	if (READ_ONCE(l->ring.measured) && came(dg, EC_MAIN) &&
+	    dg->side_back[EC_MAIN] == bus->n_slaves)
+		return true;
 	/* the copy that the slaves of a closed ring have processed is missing */
 	if (dg->crossed && !dg->back)
 		return false;

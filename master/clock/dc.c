@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
  * Distributed clocks: when they are set, by which reference clock, and again after a failure.
- * dc_job.c measures, dc_set.c sets and compensates.
+ * dc_delays.c measures, dc_set.c sets and compensates.
  */
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include "dc.h"
 #include "dc_app.h"
+#include "dc_behind.h"
+#include "dc_delays.h"
 #include "dc_job.h"
 #include "dc_set.h"
 #include "dc_sync.h"
 #include "dc_watch.h"
 #include "../base/once64.h"
-#include "../bus/graph.h"
 #include "../base/report.h"
 
 #define EXTRA_DGRAMS	16000	/* of drift compensation by the cycle */
@@ -48,7 +49,7 @@ static void log_unreliable(const struct ec_dc_job *j)
 	unsigned int i, n = 0, first = 0;
 
 	for (i = j->n; i-- > 0;)
-		if (j->nodes[i].unreliable && !j->nodes[i].other) {
+		if (j->nodes[i].unreliable) {
 			first = i;
 			n++;
 		}
@@ -76,8 +77,8 @@ int ec_dc_measure(struct ec_dc *dc)
 		return ret;
 	mutex_lock(&dc->lock);
 	for (try = 0; try < j.n; try++)
-		/* behind a break the delays of the closed ring stay */
-		if (!j.nodes[try].other)
+		/* those of the closed ring stay where no reference clock is on the way */
+		if (j.ref == j.n || (!j.nodes[try].other && !j.nodes[j.ref].other))
 			ec_job_clock(&j, try)->measured = 0;
 	ret = -EAGAIN;
 	for (try = 0; j.ref < j.n && ret == -EAGAIN && try <= EC_DC_OUT_TRIES; try++) {
@@ -95,57 +96,6 @@ int ec_dc_measure(struct ec_dc *dc)
 	mutex_unlock(&dc->lock);
 	ec_dc_job_free(&j);
 	return ret;
-}
-
-/* The first clock behind the break that is set. */
-static const struct ec_slave *first_behind(const struct ec_bus *bus)
-{
-	ec_for_each_slave(s, bus)
-		if (ec_graph_is_reversed(s) && ec_clock_is_set(s))
-			return s;
-	return NULL;
-}
-
-/**
- * ec_dc_look_behind() - which clocks are behind the break of a ring?
- * @dc: clocks
- *
- * Context: The monitor thread, after a scan.
- */
-void ec_dc_look_behind(struct ec_dc *dc)
-{
-	struct ec_dc_behind *b = &dc->behind;
-	u32 front = dc->bus->front, delay = 0;
-	const struct ec_slave *first = NULL;
-	u16 station = 0;
-	bool ref = false;
-
-	if (dc->bus->links->only)
-		return;
-	/* the worker of the clocks may choose another reference clock */
-	down_read(&dc->bus->topo);
-	if (dc->bus->links->ring.state == EC_RING_OPEN && dc->ref) {
-		if (ec_graph_is_reversed(dc->ref))
-			first = dc->ref;
-		else
-			first = first_behind(dc->bus);
-	}
-	if (first) {
-		station = first->station;
-		delay = ec_clock_of(first)->delay;
-		ref = first == dc->ref;
-	}
-	up_read(&dc->bus->topo);
-	if (b->station == station && b->front == front && b->ref == ref)
-		return;
-	/* the cycle begins again when it has seen the number */
-	WRITE_ONCE(b->station, 0);
-	WRITE_ONCE(b->delay, delay);
-	WRITE_ONCE(b->ref, ref);
-	WRITE_ONCE(b->front, front);
-	WRITE_ONCE(b->station, station);
-	/* pairs with ec_ring_clock_wanted() */
-	smp_store_release(&b->number, b->number + 1);
 }
 
 /**
@@ -228,6 +178,7 @@ static void change_ref(struct ec_dc_job *j, bool found)
 		set_ref(j);
 	else	/* until it replies or the session ends; it is still on the bus */
 		WRITE_ONCE(dc->ref_station, 0);
+	ec_dc_look_behind(dc, found && j->given ? &j->shift_behind : NULL);
 	now = READ_ONCE(dc->ref_station);
 	if (!j->first && before != now)
 		log_ref(j, lost);
@@ -406,6 +357,7 @@ void ec_dc_begin(struct ec_dc *dc, u16 choice)
 	if (all) {
 		ec_dc_app_set(dc, 0, false);
 		dc->window_logged = false;
+		dc->guessed = false;
 		/* the reference clock of the session before has no meaning in this one */
 		if (!ec_dc_can_be(dc, choice))
 			WRITE_ONCE(dc->ref_station, 0);

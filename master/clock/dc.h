@@ -9,7 +9,6 @@ void ec_dc_init(struct ec_dc *dc, struct ec_base *base, struct ec_links *links, 
 		struct workqueue_struct *service);
 void ec_dc_exit(struct ec_dc *dc);
 int ec_dc_measure(struct ec_dc *dc);
-void ec_dc_look_behind(struct ec_dc *dc);
 bool ec_dc_is_contradicted(const struct ec_dc *dc);
 void ec_dc_begin(struct ec_dc *dc, u16 choice);
 void ec_dc_end(struct ec_dc *dc);

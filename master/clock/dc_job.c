@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-only
-/* The slaves whose clocks are set, the reference clock, and the propagation delays. */
+/* The slaves whose clocks are set, the reference clock, and latches of their times. */
 #include <linux/delay.h>
 #include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "../bus/graph.h"
 #include "dc_job.h"
-
-#define ROUNDS		16	/* latches; the times have 10 ns of noise */
-#define HELD_ROUNDS	8	/* while clocks that are set wait for the delays */
-#define TOGETHER	4	/* latches in a row while clocks that are set drift apart */
-#define CORRECT_CYCLES	8	/* then the cycle compensates them, so many cycles */
-#define CORRECT_MS	20	/* or so long */
-#define LOST		16	/* lost latches, then the measurement fails */
-#define EXIT_NS		(300 * NSEC_PER_MSEC)	/* a port closed for a second is closed again */
 
 /**
  * ec_dc_job_free() - end a job
@@ -53,20 +45,53 @@ static void fill_node(struct ec_dc_job *j, unsigned int i)
 {
 	const struct ec_slave *s = j->slaves[i], *up = ec_graph_parent(s);
 	struct ec_dc_node *n = &j->nodes[i];
+	int exit = j->ring == EC_RING_CLOSED ? ec_graph_free_port(s) : -1;
 
 	lockdep_assert_held(&j->dc->bus->topo);
 	n->parent = up ? up->position : EC_DC_NONE;
 	n->entry = s->graph.upstream;
-	/* behind a break nothing can be measured */
 	n->other = ec_graph_is_reversed(s);
-	n->dc = dc_job_has_times(s) &&
-		(!n->other || (ec_clock_is_set(s) && ec_clock_of(s)->measured));
+	n->dc = dc_job_has_times(s);
 	n->parent_port = up ? s->graph.parent_port : 0;
 	n->open = ec_graph_open_ports(s->dl_status);
-	if (ec_graph_ring_exit(s) >= 0) {
+	if (exit >= 0) {
 		j->exit = i;
-		j->exit_port = ec_graph_ring_exit(s);
-		n->open &= ~BIT(j->exit_port);
+		j->exit_port = exit;
+		n->open &= ~BIT(exit);
+	}
+}
+
+/*
+ * Behind a break frames come from the backup device: by a port that leads to no slave, and from
+ * there on to the first slave behind the break.
+ */
+static void dc_job_turn(struct ec_dc_job *j)
+{
+	s32 parent = EC_DC_NONE;
+	int entry = -1, at = 0;
+	const struct ec_slave *s;
+	unsigned int i;
+
+	lockdep_assert_held(&j->dc->bus->topo);
+	for (i = j->n; i && j->nodes[i - 1].other && entry < 0; i--)
+		entry = ec_graph_free_port(j->slaves[i - 1]);
+	if (entry < 0) {
+		/* without such a port nothing can be measured there */
+		for (i = 0; i < j->n; i++)
+			j->nodes[i].dc &= !j->nodes[i].other ||
+					  (ec_clock_is_set(j->slaves[i]) &&
+					   ec_job_clock(j, i)->measured);
+		return;
+	}
+	for (s = j->slaves[i]; s; s = ec_graph_parent(s)) {
+		struct ec_dc_node *n = &j->nodes[s->position];
+
+		n->entry = entry;
+		n->parent = parent;
+		n->parent_port = at;
+		parent = s->position;
+		at = s->graph.upstream;
+		entry = s->graph.parent_port;
 	}
 }
 
@@ -85,7 +110,7 @@ bool ec_dc_chosen(const struct ec_dc_job *j, unsigned int i, enum ec_dc_who who)
 	bool wide = ec_slave_features(s) & EC_FEAT_DC64;
 
 	if (who == EC_DC_TIMES)
-		return j->nodes[i].dc && !j->nodes[i].other;
+		return j->nodes[i].dc;
 	if (!is_clock(j, i) || who == EC_DC_CLOCKS)
 		return is_clock(j, i);
 	return !ec_clock_is_set(s) && (who == EC_DC_NEW || wide == (who == EC_DC_NEW_WIDE));
@@ -187,6 +212,8 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends)
 
 	*j = (struct ec_dc_job){ .dc = dc };
 	j->path = READ_ONCE(dc->path_scanned);
+	/* the monitor may change it at any time */
+	j->ring = READ_ONCE(dc->links->ring.state);
 	down_read(&dc->bus->topo);
 	j->n = dc->bus->n_slaves;
 	j->exit = j->n;
@@ -196,6 +223,8 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends)
 		j->slaves[i] = ec_slave_ref(dc->bus->slaves[i]);
 	for (i = 0; j->slaves && j->nodes && i < j->n; i++)
 		fill_node(j, i);
+	if (j->slaves && j->nodes)
+		dc_job_turn(j);
 	if (dc->ref && ec_clock_is_set(dc->ref) && !READ_ONCE(dc->ref->stop.gone))
 		j->followed = dc->ref->station;
 	up_read(&dc->bus->topo);
@@ -305,8 +334,16 @@ void ec_dc_leave_out(struct ec_dc_job *j)
 	}
 }
 
-/* Only a job of the worker: that of the monitor needs no session. */
-static bool ended(const struct ec_dc_job *j)
+/**
+ * ec_dc_job_ended() - is a job to end early?
+ * @j: job
+ *
+ * Only one of the worker: that of the monitor needs no session.
+ *
+ * Context: Process.
+ * Return: whether it is.
+ */
+bool ec_dc_job_ended(const struct ec_dc_job *j)
 {
 	return j->worker && READ_ONCE(j->dc->stop);
 }
@@ -329,13 +366,21 @@ void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_m
 
 	/* a poll: the cycle wakes no thread of the master */
 	WRITE_ONCE(j->dc->mode, j->compensated ? EC_DC_COMPENSATE : EC_DC_IDLE);
-	for (ms = 0; ms < limit_ms && !ended(j) &&
+	for (ms = 0; ms < limit_ms && !ec_dc_job_ended(j) &&
 	     READ_ONCE(j->dc->links->access.polls) - polls < cycles; ms++)
 		usleep_range(1000, 1100);
 	WRITE_ONCE(j->dc->mode, EC_DC_IDLE);
 }
 
-static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
+/**
+ * ec_dc_add_latch() - add the datagram by which all slaves latch their times
+ * @j: job
+ * @n: datagrams of the transfer so far
+ *
+ * Context: Process.
+ * Return: datagrams of the transfer.
+ */
+unsigned int ec_dc_add_latch(struct ec_dc_job *j, unsigned int n)
 {
 	static u8 any[4];
 
@@ -343,8 +388,15 @@ static unsigned int add_latch(struct ec_dc_job *j, unsigned int n)
 	return n + 1;
 }
 
-/* A repeated datagram would belong to another latch. */
-static int once(struct ec_dc_job *j, unsigned int n)
+/**
+ * ec_dc_once() - a transfer with a latch: a repeated datagram would belong to another one
+ * @j: job
+ * @n: datagrams
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer().
+ */
+int ec_dc_once(struct ec_dc_job *j, unsigned int n)
 {
 	unsigned int i;
 
@@ -366,7 +418,7 @@ static int once(struct ec_dc_job *j, unsigned int n)
 int ec_dc_latch(struct ec_dc_job *j)
 {
 	static u8 none[14];
-	unsigned int i, first, n = add_latch(j, 0);
+	unsigned int i, first, n = ec_dc_add_latch(j, 0);
 	int ret;
 
 	memset(j->silent, 0, j->n * sizeof(*j->silent));
@@ -376,7 +428,7 @@ int ec_dc_latch(struct ec_dc_job *j)
 	first = n;
 	n = ec_dc_add(j, n, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_RECV_PU, sizeof(j->unit[0]),
 		      j->unit[0], sizeof(j->unit[0]));
-	ret = once(j, n) ?: ec_dc_answers(j, first, EC_DC_CLOCKS);
+	ret = ec_dc_once(j, n) ?: ec_dc_answers(j, first, EC_DC_CLOCKS);
 	j->latch_ns = j->dg[0].sent_ns;
 	return ret;
 }
@@ -397,175 +449,24 @@ void ec_dc_compute(struct ec_dc_job *j)
 	ec_dc_delays(j->nodes, j->n, j->ref);
 }
 
-static void sum_up(struct ec_dc_job *j)
-{
-	unsigned int i;
-
-	ec_dc_compute(j);
-	for (i = 0; i < j->n; i++)
-		j->sum[i] += (s32)j->nodes[i].delay;
-}
-
-/*
- * In a closed ring no frame returns to the ports through which it has left. So while delays are
- * measured the last port before the backup device is closed: frames turn there. The setting is
- * temporary: if the ring breaks meanwhile, no frame reaches this slave before the port has opened
- * itself. The read of the ports clears their event, which would cause another scan.
- */
-static void close_exit(struct ec_dc_job *j, bool close)
-{
-	const struct ec_slave *s;
-	u8 control[2], dl[2];
-	struct ec_dg dg[2];
-
-	if (j->exit == j->n)
-		return;
-	s = j->slaves[j->exit];
-	control[0] = s->ports.control & ~EC_DL_TEMPORARY;
-	control[1] = s->ports.loops;
-	if (close) {
-		control[0] |= EC_DL_TEMPORARY;
-		control[1] |= EC_LOOP_CLOSED << 2 * j->exit_port;
-	}
-	dg[0] = EC_FPWR(s->station, EC_REG_DL_CONTROL, sizeof(control), control);
-	dg[1] = EC_FPRD(s->station, EC_REG_DL_STATUS, sizeof(dl), dl);
-	ec_xfer(j->dc->links, dg, 2);
-	j->exit_ns = ktime_get_ns();
-}
-
-/* before it opens itself */
-static void keep_exit_closed(struct ec_dc_job *j)
-{
-	if (j->exit < j->n && ktime_get_ns() - j->exit_ns > EXIT_NS)
-		close_exit(j, true);
-}
-
-/*
- * The receive times of a latch are read in the transfer of the next one: by then the frame has
- * passed all ports.
- */
-static int measure_rounds(struct ec_dc_job *j)
-{
-	unsigned int rounds = 0, lost = 0, n;
-	bool latched = false;
-	int ret;
-
-	j->rounds = j->compensated && ec_dc_path_changed(j->dc) ? HELD_ROUNDS : ROUNDS;
-	memset(j->sum, 0, j->n * sizeof(*j->sum));
-	memset(j->silent, 0, j->n * sizeof(*j->silent));
-	while (rounds < j->rounds) {
-		if (ended(j))
-			return -ECANCELED;
-		keep_exit_closed(j);
-		n = latched ? ec_dc_add(j, 0, EC_DC_TIMES, EC_CMD_FPRD, EC_REG_DC_RECV(0),
-					sizeof(j->recv[0]), j->recv[0], sizeof(j->recv[0])) : 0;
-		n = add_latch(j, n);
-		ret = once(j, n);
-		if (ret && ret != -ETIMEDOUT && ret != -EBUSY)
-			return ret;
-		if (ret && ++lost > LOST)
-			return ret;
-		if (latched)
-			ret = ec_dc_answers(j, 0, EC_DC_TIMES);
-		if (ret == -EAGAIN)
-			return ret;
-		if (latched && !ret) {
-			sum_up(j);
-			rounds++;
-			if (j->compensated && rounds < j->rounds && rounds % TOGETHER == 0 &&
-			    !ec_dc_path_changed(j->dc))
-				ec_dc_correct_between(j, CORRECT_CYCLES, CORRECT_MS);
-		}
-		latched = !j->dg[n - 1].err;
-	}
-	return 0;
-}
-
-static int dc_job_measure(struct ec_dc_job *j)
-{
-	int ret;
-
-	close_exit(j, true);
-	ret = measure_rounds(j);
-	close_exit(j, false);
-	return ret;
-}
-
-static u64 device_before(const struct ec_dc_job *j, unsigned int i)
-{
-	return i ? j->slaves[i - 1]->device : 0;
-}
-
-/*
- * Does a delay stay valid? A ring that opens and closes changes no way in it, and cannot be
- * measured while it runs without opening it: there a delay is valid as long as the slave is behind
- * the same one.
- */
-static bool delay_stays(const struct ec_dc_job *j, unsigned int i, u32 scan)
-{
-	const struct ec_clock *c = ec_job_clock(j, i);
-
-	if (j->dc->links->only)
-		return c->measured == scan;
-	return c->measured && (j->nodes[i].other || c->measured_after == device_before(j, i));
-}
-
-/* Delays that stay are counted from the present reference clock. */
-static void rebase(struct ec_dc_job *j, u32 scan)
-{
-	u32 zero = delay_stays(j, j->ref, scan) ? ec_job_clock(j, j->ref)->delay : 0;
-	unsigned int i;
-
-	/* also of excluded slaves: their clocks may be set again */
-	for (i = 0; i < j->n; i++)
-		if (delay_stays(j, i, scan))
-			ec_job_clock(j, i)->delay -= zero;
-}
-
-/* Do all delays stay valid? */
-static bool known(struct ec_dc_job *j, u32 scan)
-{
-	unsigned int i;
-
-	for (i = 0; i < j->n; i++)
-		if (j->nodes[i].dc && !delay_stays(j, i, scan))
-			return false;
-	return true;
-}
-
 /**
- * ec_dc_get_delays() - get the propagation delays of all slaves
- * @j: job with a reference clock
+ * ec_dc_has_clocks() - has an end of the ring clocks?
+ * @j: job
+ * @other: behind the break
+ * @set: that are set
  *
- * They are measured once after each scan.
- *
- * Context: Process, dc.lock held. Waits for bus traffic.
- * Return: 0; -EAGAIN when slaves do not answer; -ECANCELED when the worker is to stop; or as
- * ec_xfer().
+ * Context: Process.
+ * Return: whether it has.
  */
-int ec_dc_get_delays(struct ec_dc_job *j)
+bool ec_dc_has_clocks(const struct ec_dc_job *j, bool other, bool set)
 {
-	u32 scan = ec_dc_scan(j);
 	unsigned int i;
-	int ret;
 
-	lockdep_assert_held(&j->dc->lock);
-	rebase(j, scan);
-	if (known(j, scan))
-		return 0;
-	ret = dc_job_measure(j);
-	for (i = 0; i < j->n && !ret; i++) {
-		struct ec_clock *c = ec_job_clock(j, i);
-
-		if (!ec_dc_chosen(j, i, EC_DC_TIMES))
-			continue;
-		c->delay = (u32)div_s64(j->sum[i], j->rounds);
-		c->prev_delay = j->nodes[i].hop;
-		c->measured = scan;
-		c->measured_after = device_before(j, i);
-		WRITE_ONCE(c->delay_unreliable, j->nodes[i].unreliable);
-	}
-	return ret;
+	for (i = 0; i < j->n; i++)
+		if (is_clock(j, i) && j->nodes[i].other == other &&
+		    (!set || ec_clock_is_set(j->slaves[i])))
+			return true;
+	return false;
 }
 
 /**

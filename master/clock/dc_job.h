@@ -27,6 +27,13 @@
  * @silent: slaves without a valid reply in the last transfer
  * @followed: station address of the clock that the others are synchronized to, or 0
  * @ref: index of the reference clock, @n: none
+ * @ring: EC_RING_* at the begin of the job
+ * @shift: how much later a frame reaches the clocks on the other side of a break than the
+ *	reference clock, beyond their delays, ns
+ * @shifted: @shift is known
+ * @given: the clocks behind a break are set without one that was set there before
+ * @guessed: and by the time of sending alone
+ * @shift_behind: then as struct ec_ring_clock.shift
  * @exit: index of the slave at which a closed ring leads to the backup device, @n: none
  * @exit_port: its port there
  * @exit_ns: when it was closed (ktime)
@@ -51,8 +58,14 @@ struct ec_dc_job {
 	bool *silent;
 	u16 followed;
 	unsigned int ref;
+	u8 ring;
+	s32 shift;
+	bool shifted;
+	bool given;
+	bool guessed;
+	s32 shift_behind;
 	unsigned int exit;
-	u8 exit_port;
+	int exit_port;
 	u64 exit_ns;
 	u64 latch_ns;
 	u32 path;
@@ -87,7 +100,10 @@ int ec_dc_answers(struct ec_dc_job *j, unsigned int at, enum ec_dc_who who);
 void ec_dc_leave_out(struct ec_dc_job *j);
 int ec_dc_latch(struct ec_dc_job *j);
 void ec_dc_compute(struct ec_dc_job *j);
-int ec_dc_get_delays(struct ec_dc_job *j);
+bool ec_dc_job_ended(const struct ec_dc_job *j);
+unsigned int ec_dc_add_latch(struct ec_dc_job *j, unsigned int n);
+int ec_dc_once(struct ec_dc_job *j, unsigned int n);
+bool ec_dc_has_clocks(const struct ec_dc_job *j, bool other, bool set);
 void ec_dc_correct_between(struct ec_dc_job *j, u32 cycles, unsigned int limit_ms);
 bool ec_dc_has_upstream(const struct ec_dc_job *j);
 

@@ -24,27 +24,72 @@
 #define LAST_FRAMES	17	/* of which so many are enough */
 #define CYCLE_DGRAMS	12000	/* extra datagrams when the cycle alone compensates */
 #define CYCLE_WAIT_MS	3000
+#define CYCLE_ROUNDS	3	/* of them, until the clocks are near each other */
 
 /*
- * System time at the reference clock at the last latch, by a clock that is set already, so that
- * set clocks continue when others connect.
+ * System time at the reference clock at the last latch, by a clock that is set already on this side
+ * of a break, so that set clocks continue when others connect. Returns whether there is one.
  */
-static u64 latch_time(const struct ec_dc_job *j)
+static bool set_time(const struct ec_dc_job *j, bool other, u64 *t)
 {
-	u64 t = ec_dc_app_at(j->dc, j->latch_ns);
-	unsigned int i, set = j->ref;
+	unsigned int i, set = j->n;
 
-	for (i = 0; !ec_clock_is_set(j->slaves[set]) && i < j->n; i++)
-		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && ec_clock_is_set(j->slaves[i]))
+	for (i = 0; i < j->n; i++)
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && j->nodes[i].other == other &&
+		    ec_clock_is_set(j->slaves[i]) && (set == j->n || i == j->ref))
 			set = i;
-	if (ec_clock_is_set(j->slaves[set])) {
-		t = get_unaligned_le64(j->unit[set]) + ec_job_clock(j, set)->offset -
-		    (s64)(s32)ec_job_clock(j, set)->delay;
-		if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
-			t = ec_dc_extend32(j->dc, (u32)t, j->latch_ns);
+	if (set == j->n)
+		return false;
+	*t = get_unaligned_le64(j->unit[set]) + ec_job_clock(j, set)->offset -
+	     (s64)(s32)ec_job_clock(j, set)->delay;
+	if (!(ec_slave_features(j->slaves[set]) & EC_FEAT_DC64))
+		*t = ec_dc_extend32(j->dc, (u32)*t, j->latch_ns);
+	return true;
+}
+
+/* That time on both sides of a break, [1]: behind it. */
+static void latch_time(struct ec_dc_job *j, u64 t[2])
+{
+	bool at = j->nodes[j->ref].other, here = set_time(j, at, &t[at]);
+	bool there = set_time(j, !at, &t[!at]);
+
+	if (!here)
+		t[at] = there ? t[!at] - j->shift : ec_dc_app_at(j->dc, j->latch_ns);
+	if (!there)
+		t[!at] = t[at] + j->shift;
+	/* clocks behind the break that are all new have it from here */
+	j->given = !(at ? here : there) && ec_dc_has_clocks(j, true, false);
+	j->shift_behind = t[1] - t[0];
+	/* and maybe without a measurement */
+	j->guessed = j->given && j->shifted;
+	ec_dc_clock(j->dc, t[0], j->latch_ns);
+}
+
+/* Clocks that were set without a measurement, as the ring was open, show what was wrong. */
+static void report_guess(struct ec_dc_job *j, u64 t)
+{
+	struct ec_dc *dc = j->dc;
+	unsigned int i;
+	s32 most = 0;
+
+	if (j->guessed && !dc->guessed)
+		ec_warn(dc,
+			"ring open: clocks behind the break set by the time of sending; they may differ by some us until it is closed, if cables or cards of the two ends do\n");
+	dc->guessed |= j->guessed;
+	if (!dc->guessed || j->ring != EC_RING_CLOSED)
+		return;
+	for (i = 0; i < j->n; i++) {
+		const struct ec_clock *c = ec_job_clock(j, i);
+		s32 off = (u32)get_unaligned_le64(j->unit[i]) + (u32)c->offset - c->delay - (u32)t;
+
+		if (ec_dc_chosen(j, i, EC_DC_CLOCKS) && ec_clock_is_set(j->slaves[i]) &&
+		    abs(off) > abs(most))
+			most = off;
 	}
-	ec_dc_clock(j->dc, t, j->latch_ns);
-	return t;
+	dc->guessed = false;
+	ec_info(dc,
+		"ring closed: clocks that were set behind its break are off by up to %d ns, which is compensated now\n",
+		most);
 }
 
 /* written to a slave: offset and delay, in the order of the registers */
@@ -53,7 +98,7 @@ struct values {
 	u8 delay[4];
 };
 
-static struct values *compute(struct ec_dc_job *j, u64 t)
+static struct values *compute(struct ec_dc_job *j, const u64 t[2])
 {
 	struct values *v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
 	unsigned int i;
@@ -65,7 +110,8 @@ static struct values *compute(struct ec_dc_job *j, u64 t)
 		put_unaligned_le32(c->delay, v[i].delay);
 		if (!ec_dc_chosen(j, i, EC_DC_NEW))
 			continue;
-		c->offset = ec_dc_offset(t, c->delay, get_unaligned_le64(j->unit[i]));
+		c->offset = ec_dc_offset(t[j->nodes[i].other], c->delay,
+					 get_unaligned_le64(j->unit[i]));
 		put_unaligned_le64(c->offset, v[i].offset);
 	}
 	return v;
@@ -134,11 +180,12 @@ int ec_dc_write(struct ec_dc_job *j)
 {
 	struct values *v;
 	unsigned int i;
+	u64 t[2];
 	int ret;
-	u64 t;
 
 	lockdep_assert_held(&j->dc->lock);
-	t = latch_time(j);
+	latch_time(j, t);
+	report_guess(j, t[0]);
 	v = compute(j, t);
 	if (!v)
 		return -ENOMEM;
@@ -147,7 +194,7 @@ int ec_dc_write(struct ec_dc_job *j)
 		if (ec_dc_chosen(j, i, EC_DC_CLOCKS))
 			ec_clock_event(ec_job_clock(j, i), EC_CLOCK_ON_SET);
 	if (!ret)
-		ec_dc_app_set(j->dc, t - j->latch_ns, true);
+		ec_dc_app_set(j->dc, t[0] - j->latch_ns, true);
 	kvfree(v);
 	return ret;
 }
@@ -272,7 +319,7 @@ static int by_frames(struct ec_dc_job *j, u8 (*v)[4])
 }
 
 /* A poll: the cycle wakes no thread of the master. */
-static int by_cycle(struct ec_dc *dc)
+static int cycle_once(struct ec_dc *dc)
 {
 	unsigned int ms;
 
@@ -285,12 +332,30 @@ static int by_cycle(struct ec_dc *dc)
 	return 0;
 }
 
+static int by_cycle(struct ec_dc_job *j, u8 (*v)[4])
+{
+	u32 max = U32_MAX;
+	unsigned int i, n;
+	int ret = 0;
+
+	for (i = 0; i < CYCLE_ROUNDS && max > NEAR_NS && !ret; i++) {
+		ret = cycle_once(j->dc);
+		if (ret)
+			break;
+		n = ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0],
+			      sizeof(v[0]));
+		ret = tolerate(ec_xfer_clock(j->dc->links, j->dg, n));
+		max = worst(j, 0, v);
+	}
+	return ret;
+}
+
 /**
  * ec_dc_near() - compensate the drift until the clocks may be used
  * @j: job whose clocks are set
  *
- * With clocks upstream of the reference only the cycle compensates: they take the time that was
- * sent, which it predicts.
+ * With clocks upstream of the reference or behind the break of a ring only the cycle compensates:
+ * they take the time that was sent, which it predicts.
  *
  * Context: Process, dc.lock held. Waits for bus traffic.
  * Return: 0; -ECANCELED; -ENOMEM; or as ec_xfer().
@@ -304,12 +369,13 @@ int ec_dc_near(struct ec_dc_job *j)
 	/* a single clock has no other to be synchronized to */
 	if (ec_dc_count(j, EC_DC_CLOCKS) < 2)
 		return 0;
-	if (READ_ONCE(j->dc->clocks_upstream))
-		return by_cycle(j->dc);
 	v = kvcalloc(j->n + 1, sizeof(*v), GFP_KERNEL);
 	if (!v)
 		return -ENOMEM;
-	ret = by_frames(j, v);
+	if (READ_ONCE(j->dc->clocks_upstream) || ec_dc_has_clocks(j, true, false))
+		ret = by_cycle(j, v);
+	else
+		ret = by_frames(j, v);
 	kvfree(v);
 	return ret;
 }

@@ -207,6 +207,12 @@ struct ec_dc_behind {
 	u32 delay;
 	/** @front: slaves before the break */
 	u32 front;
+	/** @slaves: all */
+	u32 slaves;
+	/** @given: @shift is valid; else it is seen by the clocks there */
+	bool given;
+	/** @shift: as struct ec_ring_clock.shift */
+	s32 shift;
 };
 
 /**
@@ -256,8 +262,10 @@ struct ec_dc {
 	struct ec_slave *ref;
 	/** @ref_station: its station address for the cycle, 0: none */
 	u16 ref_station;
-	/** @behind: clocks behind the break of a ring; written by the monitor */
+	/** @behind: clocks behind the break of a ring; written with bus->topo */
 	struct ec_dc_behind behind;
+	/** @guessed: those were set without a measurement, as the ring was open; under @lock */
+	bool guessed;
 	/** @ref_wide: it has 64 bits */
 	bool ref_wide;
 	/**

@@ -367,9 +367,9 @@ static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
 	return data + len + EC_DGRAM_OVERHEAD;
 }
 
-/* Results of the datagrams that only read; @shift: of the time, ns. */
-static const u8 *take_reads(struct ec_dc_datagrams *k, u32 dc, s32 shift, u64 sent_ns,
-			    const u8 *data)
+/* Results of the datagrams that only read; @shift: of the time, ns, 0 on all but a second link. */
+static __always_inline const u8 *take_reads(struct ec_dc_datagrams *k, u32 dc, s32 shift,
+					    u64 sent_ns, const u8 *data)
 {
 	u16 len = time_bytes(dc);
 

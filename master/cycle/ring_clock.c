@@ -29,7 +29,10 @@ bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc)
 	u32 number = smp_load_acquire(&dc->behind.number);
 
 	if (r->break_seen != number)
-		*r = (struct ec_ring_clock){ .break_seen = number };
+		*r = (struct ec_ring_clock){
+			.break_seen = number, .shift = READ_ONCE(dc->behind.shift),
+			.samples = READ_ONCE(dc->behind.given) ? EC_RING_SAMPLES : 0,
+		};
 	return READ_ONCE(dc->behind.station) && READ_ONCE(dc->mode) == EC_DC_COMPENSATE;
 }
 

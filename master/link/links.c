@@ -137,6 +137,9 @@ void ec_links_count_at(struct ec_links *l, unsigned long sides, size_t counter)
  */
 void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long sides)
 {
+	/* a copy that cannot return while delays are measured */
+	if (READ_ONCE(l->ring.measured))
+		sides &= ~BIT(EC_BACKUP);
 	ec_links_count(l, sides, lost);
 	if (!trace_ec_frame_lost_enabled())
 		return;

@@ -49,7 +49,8 @@ bool ec_ring_note(struct ec_ring *r, const struct ec_slot *slot)
 {
 	bool closed = slot->crossed;
 
-	if (likely(closed == (READ_ONCE(r->state) == EC_RING_CLOSED)) || READ_ONCE(r->news))
+	if (likely(closed == (READ_ONCE(r->state) == EC_RING_CLOSED)) || READ_ONCE(r->news) ||
+	    READ_ONCE(r->measured))
 		return false;
 	WRITE_ONCE(r->news, true);
 	return true;

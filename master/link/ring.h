@@ -24,6 +24,8 @@ struct ec_ring {
 	 * the break, on the backup link; written by the monitor
 	 */
 	u32 front;
+	/** @measured: the exit of the ring is closed to measure delays: it looks open */
+	bool measured;
 	/** @news: the cycle has received a copy that contradicts @state; the monitor clears it */
 	bool news;
 };

@@ -165,7 +165,7 @@ static s32 place_behind(struct ec_dc_node *nodes, struct ec_dc_node *a, s32 last
  *
  * Register 0x0928 of a slave is compared with a datagram that has been through
  * all branches before it, so their round trips count as well. Cables are taken as
- * symmetric.
+ * symmetric; frames of both ends of an open ring reach their first slave at the same time.
  *
  * Context: Any. RT-safe: O(@n), no sleep, no allocation.
  */
@@ -173,10 +173,14 @@ void ec_dc_delays(struct ec_dc_node *nodes, u32 n, u32 ref)
 {
 	u32 i, zero, at = 0;
 	s32 last, b, top = link_up(nodes, n, &last), top_end = last;
-	bool at_top = true;
+	bool at_top = true, other = false;
 
 	/* so far when a frame comes in; the list grows on the way */
 	for (b = top; b != EC_DC_NONE; b = nodes[b].next) {
+		if (at_top && nodes[b].other && !other) {
+			other = true;
+			at = 0;
+		}
 		if (at_top) {
 			nodes[b].hop = 0;
 			nodes[b].delay = at;

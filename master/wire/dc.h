@@ -16,7 +16,8 @@
  * @entry: its own port towards the master
  * @open: bit per open port, @entry included
  * @dc: has receive times
- * @other: behind the break of a ring: reached by frames of the other end
+ * @other: behind the break of a ring: reached by frames of the other end; all of them after
+ *	those that are not
  * @recv: receive times at the ports, registers 0x0900-0x090F, all latched by
  *	the same frame
  * @delay: result: when a frame reaches its processing unit, counted from the reference clock,

@@ -27,6 +27,27 @@ static void dc_delays_of_tree(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, ec_dc_offset(1000000000, n[3].delay, 123456), 999878544ull);
 }
 
+/* behind the break of a ring: a frame comes by port 1 of the last slave, at the same time */
+static void dc_delays_of_open_ring(struct kunit *test)
+{
+	struct ec_dc_node n[] = {
+		{ .parent = EC_DC_NONE, .open = P(0) | P(1), .dc = true, .recv = { 0, 1000 } },
+		{ .parent = 0, .parent_port = 1, .open = P(0), .dc = true, .recv = { 7 } },
+		{ .parent = 3, .entry = 1, .open = P(1), .dc = true, .other = true,
+		  .recv = { 99999, 50 } },
+		{ .parent = EC_DC_NONE, .entry = 1, .open = P(0) | P(1), .dc = true, .other = true,
+		  .recv = { 4600, 4000 } },
+	};
+
+	ec_dc_delays(n, ARRAY_SIZE(n), 0);
+	KUNIT_EXPECT_EQ(test, n[1].delay, 500u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, 300u);
+	KUNIT_EXPECT_EQ(test, n[3].delay, 600u);
+	ec_dc_delays(n, ARRAY_SIZE(n), 3);
+	KUNIT_EXPECT_EQ(test, n[0].delay, -600u);
+	KUNIT_EXPECT_EQ(test, n[2].delay, -300u);
+}
+
 /* receive times that wrap between two ports */
 static void dc_delays_across_wrap(struct kunit *test)
 {
@@ -303,6 +324,7 @@ static void dc_sync_fits_multiples(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(dc_delays_of_tree),
+	KUNIT_CASE(dc_delays_of_open_ring),
 	KUNIT_CASE(dc_delays_across_wrap),
 	KUNIT_CASE(dc_delays_through_slave_without_clock),
 	KUNIT_CASE(dc_delays_behind_branch_without_clock),
