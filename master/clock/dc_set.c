@@ -24,7 +24,6 @@
 #define LAST_FRAMES	17	/* of which so many are enough */
 #define CYCLE_DGRAMS	12000	/* extra datagrams when the cycle alone compensates */
 #define CYCLE_WAIT_MS	3000
-#define CYCLE_ROUNDS	3	/* of them, until the clocks are near each other */
 
 /*
  * System time at the reference clock at the last latch, by a clock that is set already on this side
@@ -318,13 +317,11 @@ static int by_frames(struct ec_dc_job *j, u8 (*v)[4])
 	return ret;
 }
 
-/* A poll: the cycle wakes no thread of the master. */
-static int cycle_once(struct ec_dc *dc)
+/* A poll: the cycle wakes no thread of the master. Returns when @ms has reached the limit. */
+static int cycle_once(struct ec_dc *dc, unsigned int *ms)
 {
-	unsigned int ms;
-
 	WRITE_ONCE(dc->extra_dgrams, CYCLE_DGRAMS);
-	for (ms = 0; ms < CYCLE_WAIT_MS && READ_ONCE(dc->extra_dgrams); ms++) {
+	for (; *ms < CYCLE_WAIT_MS && READ_ONCE(dc->extra_dgrams); ++*ms) {
 		if (READ_ONCE(dc->stop))
 			return -ECANCELED;
 		usleep_range(1000, 1100);
@@ -334,12 +331,12 @@ static int cycle_once(struct ec_dc *dc)
 
 static int by_cycle(struct ec_dc_job *j, u8 (*v)[4])
 {
+	unsigned int ms = 0, n;
 	u32 max = U32_MAX;
-	unsigned int i, n;
 	int ret = 0;
 
-	for (i = 0; i < CYCLE_ROUNDS && max > NEAR_NS && !ret; i++) {
-		ret = cycle_once(j->dc);
+	while (ms < CYCLE_WAIT_MS && max > NEAR_NS && !ret) {
+		ret = cycle_once(j->dc, &ms);
 		if (ret)
 			break;
 		n = ec_dc_add(j, 0, EC_DC_CLOCKS, EC_CMD_FPRD, EC_REG_DC_DIFF, 4, v[0],

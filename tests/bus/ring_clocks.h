@@ -1,0 +1,66 @@
+/* SPDX-License-Identifier: GPL-2.0-only */
+/* An application with SYNC0 at a ring of clocks. */
+#ifndef EC_TEST_RING_CLOCKS_H
+#define EC_TEST_RING_CLOCKS_H
+
+#include "ring.h"
+#include "devices/sim/esc_int.h"
+#include "master/clock/dc_state.h"
+
+#define GOAL_NS	1000	/* of every running clock from the line of the reference clock */
+#define LATE_NS	20000	/* cycles, on average */
+
+/**
+ * struct clocks - an application with SYNC0 at a ring of clocks of up to 100 ppm
+ * @b: bus
+ * @c: its cycle
+ * @leads: the reference clock is synchronized to its time
+ * @off: how far it was ahead of that, ns, 0: not known yet
+ * @ref: index of the reference clock
+ * @absent: mask of slaves that no frame reaches
+ * @none: mask of slaves without a clock
+ * @lost: the reference clock is one of them: its line is continued
+ * @then_ns: when its line was noted (ktime)
+ * @then: its time then
+ * @ppb: how much faster it was than ktime, 1e-9
+ * @most: largest difference from that line, ns
+ * @was: difference of each clock in the last cycle, ns
+ * @jump: largest change of one in a cycle, ns
+ * @open: the ring is open
+ * @opened: how often it was opened
+ */
+struct clocks {
+	struct bus *b;
+	struct cyc *c;
+	bool leads;
+	s64 off;
+	u32 ref;
+	u32 absent;
+	u32 none;
+	bool lost;
+	u64 then_ns;
+	u64 then;
+	s64 ppb;
+	s64 most;
+	s64 was[SLAVES];
+	s64 jump;
+	bool open;
+	u32 opened;
+};
+
+/* masks of slaves whose clock has 32 bits, and without one */
+struct kinds {
+	u32 narrow;
+	u32 none;
+};
+
+u64 clock_of(const struct clocks *k, u32 i, u64 now);
+s64 clocks_run(struct clocks *k, u32 cycles);
+struct bus *clocks_bus_of(struct kunit *test, u32 back_ns, struct kinds kinds);
+struct bus *clocks_bus(struct kunit *test);
+void clocks_activate(struct clocks *k, u32 ref);
+struct clocks *clocks_start_at(struct bus *b, u32 ref, bool leads, u32 none);
+struct clocks *clocks_start(struct bus *b, u32 ref, bool leads);
+void clocks_power(struct clocks *k, u32 i, bool on);
+
+#endif

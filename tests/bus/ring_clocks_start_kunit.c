@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-2.0-only
+/* Clocks that are set while a ring is open, and delays that are measured there. */
+#include "ring_clocks.h"
+
+#define JUMP_NS	100	/* of a clock in a cycle */
+
+/* a start with an open ring */
+struct start {
+	u32 at;
+	u32 ref;
+	u32 back_ns;	/* cable to the backup device */
+	struct kinds kinds;
+};
+
+static const struct start starts[] = {
+	{ 0, 0, 250 }, { 1, 0, 250 }, { 3, 0, 250 }, { 7, 0, 250 }, { 8, 0, 250 }, { 2, 3, 250 },
+	{ 5, 3, 250 }, { 3, 0, 2250 }, { 3, 0, 250, { 0x55 } }, { 3, 5, 250, { 0xff } },
+	{ 4, 1, 250, { 0, 0x99 } }, { 3, 5, 250, { 0x20, 0x98 } },
+};
+
+static void start_desc(const struct start *p, char *desc)
+{
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE,
+		 "open before %u, reference %u, %u ns, 0x%x narrow, 0x%x none", p->at, p->ref,
+		 p->back_ns, p->kinds.narrow, p->kinds.none);
+}
+
+KUNIT_ARRAY_PARAM(start, starts, start_desc);
+
+/* The ring is open from the start, closes, and opens again. */
+static void clocks_start_open(struct kunit *test)
+{
+	const struct start *p = test->param_value;
+	struct bus *b = clocks_bus_of(test, p->back_ns, p->kinds);
+	s64 limit = GOAL_NS + abs((int)p->back_ns - 250), most, healed, end, again;
+	struct clocks *k;
+
+	ring_cable(b, true, p->at);
+	k = clocks_start_at(b, p->ref, false, p->kinds.none);
+	ring_open(b, p->at);
+	most = clocks_run(k, 2000);
+	ring_cable(b, false, p->at);
+	healed = clocks_run(k, 3000);
+	ring_closed(b, SLAVES);
+	KUNIT_EXPECT_LE(test, k->jump, JUMP_NS);
+	end = clocks_run(k, 1000);
+	ring_cable(b, true, p->at);
+	again = clocks_run(k, 2000);
+	KUNIT_EXPECT_TRUE(test, cyc_all_op(k->c));
+	bus_figure("ring open before slave %u at the start, reference slave %u, cable to the backup device of %u ns: clocks apart at most %lld ns, %lld in 3 s after it has closed, then %lld; %lld when it opens again",
+		   p->at, p->ref, p->back_ns, most, healed, end, again);
+	KUNIT_EXPECT_LE(test, most, limit);
+	KUNIT_EXPECT_LE(test, healed, limit);
+	KUNIT_EXPECT_LE(test, end, GOAL_NS);
+	KUNIT_EXPECT_LE(test, again, GOAL_NS);
+}
+
+/* The application ends and begins again while the ring is open; then it closes. */
+static void clocks_restart(struct kunit *test)
+{
+	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	s64 most, healed, end;
+
+	ring_cable(k->b, true, 3);
+	clocks_run(k, 1000);
+	cyc_release(k->c);
+	msleep(3000);
+	clocks_activate(k, 0);
+	ring_open(k->b, 3);
+	most = clocks_run(k, 2000);
+	ring_cable(k->b, false, 3);
+	healed = clocks_run(k, 3000);
+	end = clocks_run(k, 1000);
+	bus_figure("application restarted while the ring is open: clocks apart at most %lld ns, %lld in 3 s after it has closed, then %lld",
+		   most, healed, end);
+	KUNIT_EXPECT_LE(test, most, GOAL_NS);
+	KUNIT_EXPECT_LE(test, healed, GOAL_NS);
+	KUNIT_EXPECT_LE(test, end, GOAL_NS);
+}
+
+/* A slave that lost its power comes back behind the break. */
+static void clocks_join(struct kunit *test)
+{
+	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	s64 most, end, healed;
+
+	k->absent = BIT(3);
+	clocks_power(k, 3, false);
+	ring_cable(k->b, true, 3);
+	clocks_run(k, 2000);
+	clocks_power(k, 3, true);
+	most = clocks_run(k, 100);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(k->c, 20000), ~0ull);
+	most = max(most, k->most);
+	ring_open(k->b, 3);
+	k->absent = 0;
+	clocks_run(k, 3000);
+	end = clocks_run(k, 500);
+	ring_cable(k->b, false, 3);
+	healed = clocks_run(k, 3000);
+	bus_figure("a slave joins those behind the break: the others apart at most %lld ns, all %lld then, %lld when it closes",
+		   most, end, healed);
+	KUNIT_EXPECT_LE(test, most, GOAL_NS);
+	KUNIT_EXPECT_LE(test, end, GOAL_NS);
+	KUNIT_EXPECT_LE(test, healed, GOAL_NS);
+}
+
+static void expect_near(struct kunit *test, s32 is, s32 goal, s32 noise)
+{
+	s32 off = abs(is - goal);
+
+	KUNIT_EXPECT_LE_MSG(test, off, noise, "%d, expected %d", is, goal);
+}
+
+/* At rest: the delays stay behind a break, and are measured again when it has healed. */
+static void clocks_at_rest(struct kunit *test)
+{
+	struct bus *b = clocks_bus(test);
+	u32 delay[SLAVES], i, k;
+
+	bus_plug_scanned(b, SLAVES, 5000);
+	bus_idle(b);
+	for (k = 0; k < SLAVES; k++)
+		delay[k] = ec_clock_of(bus_slave(b, k))->delay;
+	expect_near(test, delay[SLAVES - 1], 3850, 50);
+	for (i = 0; i <= SLAVES; i++) {
+		ring_cable(b, true, i);
+		bus_idle(b);
+		ring_open(b, i);
+		for (k = 0; k < SLAVES; k++)
+			expect_near(test, ec_clock_of(bus_slave(b, k))->delay, delay[k], 20);
+		ring_cable(b, false, i);
+		bus_idle(b);
+		for (k = 0; k < SLAVES; k++)
+			expect_near(test, ec_clock_of(bus_slave(b, k))->delay, delay[k], 20);
+	}
+}
+
+/* Nothing is measured while the exit of a closed ring is not known. */
+static void clocks_no_exit(struct kunit *test)
+{
+	struct bus *b = clocks_bus(test);
+	u32 k;
+
+	bus_fault(b, EC_SIM_FAULT_DEAD, SLAVES - 1, 0, 1, 0);
+	bus_plug_scanned(b, SLAVES, 5000);
+	bus_idle(b);
+	ring_closed(b, SLAVES);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, SLAVES - 1)->note.error, EC_SLAVE_SCAN_FAILED);
+	for (k = 0; k < SLAVES; k++)
+		KUNIT_EXPECT_EQ(test, ec_clock_of(bus_slave(b, k))->measured, 0u);
+	bus_fault(b, EC_SIM_FAULT_DEAD, SLAVES - 1, 0, 0, 0);
+	for (k = 0; k < 100 && bus_slave(b, SLAVES - 1)->note.error; k++)
+		msleep(100);
+	bus_idle(b);
+	expect_near(test, ec_clock_of(bus_slave(b, SLAVES - 1))->delay, 3850, 50);
+}
+
+/* The exit opens itself after a second: receive times of a later latch do not count. */
+static void clocks_slow_cycle(struct kunit *test)
+{
+	struct bus *b = clocks_bus(test);
+	struct cyc *c;
+	u32 i;
+
+	bus_plug_scanned(b, SLAVES, 5000);
+	bus_idle(b);
+	c = cyc_new(b, 800000);
+	cyc_domain(c);
+	cyc_map_all(c, 0, SLAVES, 0);
+	cyc_sync0(c, SLAVES);
+	c->flags = EC_SEND_FLAG_SYNC_SLAVES;
+	for (i = 0; i < SLAVES; i++)
+		ec_clock_of(bus_slave(b, i))->measured = 0;
+	cyc_activate(c);
+	for (i = 0; i < 200 && !ec_clock_of(bus_slave(b, SLAVES - 1))->measured; i++)
+		cyc_run(c, 1);
+	for (i = 0; i < SLAVES; i++)
+		expect_near(test, ec_clock_of(bus_slave(b, i))->delay, 550 * i, 50);
+}
+
+static struct kunit_case cases[] = {
+	KUNIT_CASE_PARAM(clocks_start_open, start_gen_params),
+	KUNIT_CASE(clocks_restart),
+	KUNIT_CASE(clocks_join),
+	KUNIT_CASE(clocks_at_rest),
+	KUNIT_CASE(clocks_no_exit),
+	KUNIT_CASE(clocks_slow_cycle),
+	{}
+};
+
+static struct kunit_suite suite = {
+	.name = "bus_ring_clocks_start", .exit = bus_exit, .test_cases = cases,
+};
+
+kunit_test_suite(suite);
+MODULE_LICENSE("GPL");
