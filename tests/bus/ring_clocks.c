@@ -60,7 +60,13 @@ s64 clocks_run(struct clocks *k, u32 cycles)
 {
 	k->most = 0;
 	k->jump = 0;
-	cyc_run(k->c, cycles);
+	if (!k->kernel)
+		cyc_run(k->c, cycles);
+	else
+		while (cycles--) {
+			usleep_range(1000, 1001);
+			clocks_look(k->c);
+		}
 	return k->most;
 }
 
@@ -107,7 +113,12 @@ static void clocks_sync0(struct clocks *k)
 /* An application at the ring; @ref is the reference clock. All slaves are in OP then. */
 void clocks_activate(struct clocks *k, u32 ref)
 {
+	struct ec_ioc_cycle cycle = {
+		.period_ns = NSEC_PER_MSEC, .phase_ns = 300000, .cpu = -1,
+		.dc = EC_SEND_FLAG_SYNC_SLAVES | EC_CYCLE_DC_FOLLOW,
+	};
 	struct bus *b = k->b;
+	u32 ms;
 
 	k->ref = ref;
 	bus_idle(b);
@@ -122,28 +133,32 @@ void clocks_activate(struct clocks *k, u32 ref)
 	}
 	k->c->ctx = k;
 	k->c->each = clocks_look;
+	if (k->kernel)
+		KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &cycle), 0);
 	cyc_activate(k->c);
-	KUNIT_ASSERT_NE(b->test, cyc_wait_op(k->c, 20000), ~0ull);
+	for (ms = 0; ms < 20000 && !cyc_all_op(k->c); ms++)
+		clocks_run(k, 1);
+	KUNIT_ASSERT_TRUE(b->test, cyc_all_op(k->c));
 	cyc_shake(k->c, LATE_NS, 1000);
-	cyc_run(k->c, 5000);
+	clocks_run(k, 5000);
 }
 
-struct clocks *clocks_start_at(struct bus *b, u32 ref, bool leads, u32 none)
+struct clocks *clocks_new(struct bus *b)
 {
 	struct clocks *k = kunit_kzalloc(b->test, sizeof(*k), GFP_KERNEL);
 
 	KUNIT_ASSERT_NOT_NULL(b->test, k);
 	k->b = b;
-	k->leads = leads;
-	k->none = none;
-	bus_plug_scanned(b, SLAVES, 5000);
-	clocks_activate(k, ref);
 	return k;
 }
 
-struct clocks *clocks_start(struct bus *b, u32 ref, bool leads)
+struct clocks *clocks_start(struct bus *b, u32 ref)
 {
-	return clocks_start_at(b, ref, leads, 0);
+	struct clocks *k = clocks_new(b);
+
+	bus_plug_scanned(b, SLAVES, 5000);
+	clocks_activate(k, ref);
+	return k;
 }
 
 void clocks_power(struct clocks *k, u32 i, bool on)

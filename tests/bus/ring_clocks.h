@@ -14,6 +14,7 @@
  * struct clocks - an application with SYNC0 at a ring of clocks of up to 100 ppm
  * @b: bus
  * @c: its cycle
+ * @kernel: the kernel runs it, phase-locked to the reference clock
  * @leads: the reference clock is synchronized to its time
  * @off: how far it was ahead of that, ns, 0: not known yet
  * @ref: index of the reference clock
@@ -32,6 +33,7 @@
 struct clocks {
 	struct bus *b;
 	struct cyc *c;
+	bool kernel;
 	bool leads;
 	s64 off;
 	u32 ref;
@@ -59,8 +61,8 @@ s64 clocks_run(struct clocks *k, u32 cycles);
 struct bus *clocks_bus_of(struct kunit *test, u32 back_ns, struct kinds kinds);
 struct bus *clocks_bus(struct kunit *test);
 void clocks_activate(struct clocks *k, u32 ref);
-struct clocks *clocks_start_at(struct bus *b, u32 ref, bool leads, u32 none);
-struct clocks *clocks_start(struct bus *b, u32 ref, bool leads);
+struct clocks *clocks_new(struct bus *b);
+struct clocks *clocks_start(struct bus *b, u32 ref);
 void clocks_power(struct clocks *k, u32 i, bool on);
 
 #endif

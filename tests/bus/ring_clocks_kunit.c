@@ -13,6 +13,11 @@ static void expect_led(struct clocks *k, const char *when)
 	s64 off;
 
 	ec_sim_advance(k->b->sim, now);
+	if (k->kernel) {
+		KUNIT_EXPECT_EQ_MSG(k->b->test, st->kernel.lock, EC_CYCLE_LOCK_LOCKED, "%s", when);
+		KUNIT_EXPECT_EQ_MSG(k->b->test, st->kernel.lock_losses, 0u, "%s", when);
+		return;
+	}
 	KUNIT_EXPECT_NE_MSG(k->b->test, st->dc_monitor, ~0u, "%s", when);
 	if (!k->leads)
 		return;
@@ -30,6 +35,7 @@ struct cut {
 	u32 ref;
 	bool leads;
 	struct kinds kinds;
+	bool kernel;
 };
 
 static const struct cut cuts[] = {
@@ -41,12 +47,15 @@ static const struct cut cuts[] = {
 	{ 2, 3, true, { 0xff } },
 	/* some without a clock, beside the break and at the ends */
 	{ 4, 1, false, { 0, 0x99 } }, { 3, 5, false, { 0x20, 0x98 } },
+	{ 0, 0, false, { 0 }, true }, { 4, 0, false, { 0 }, true }, { 2, 3, false, { 0 }, true },
 };
 
 static void cut_desc(const struct cut *p, char *desc)
 {
-	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "before %u, reference %u%s, 0x%x narrow, 0x%x none",
-		 p->at, p->ref, p->leads ? " led" : "", p->kinds.narrow, p->kinds.none);
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE,
+		 "before %u, reference %u%s, 0x%x narrow, 0x%x none%s", p->at, p->ref,
+		 p->leads ? " led" : "", p->kinds.narrow, p->kinds.none,
+		 p->kernel ? ", kernel's cycle" : "");
 }
 
 KUNIT_ARRAY_PARAM(cut, cuts, cut_desc);
@@ -54,10 +63,15 @@ KUNIT_ARRAY_PARAM(cut, cuts, cut_desc);
 static void clocks_cut(struct kunit *test)
 {
 	const struct cut *p = test->param_value;
-	struct clocks *k = clocks_start_at(clocks_bus_of(test, 250, p->kinds), p->ref, p->leads,
-					   p->kinds.none);
-	s64 before = clocks_run(k, 1000), most, end, healed;
+	struct clocks *k = clocks_new(clocks_bus_of(test, 250, p->kinds));
+	s64 before, most, end, healed;
 
+	k->leads = p->leads;
+	k->kernel = p->kernel;
+	k->none = p->kinds.none;
+	bus_plug_scanned(k->b, SLAVES, 5000);
+	clocks_activate(k, p->ref);
+	before = clocks_run(k, 1000);
 	expect_led(k, "with a closed ring");
 	ring_cable(k->b, true, p->at);
 	most = clocks_run(k, 1500);
@@ -81,7 +95,7 @@ static void clocks_cut(struct kunit *test)
 /* Cuts and repairs at random cables and instants, also while frames are on their way. */
 static void clocks_random(struct kunit *test)
 {
-	struct clocks *k = clocks_start(clocks_bus(test), 3, false);
+	struct clocks *k = clocks_start(clocks_bus(test), 3);
 	struct rnd_state rnd;
 	u32 at = 0, i;
 	s64 most = 0;
@@ -103,7 +117,7 @@ static void clocks_random(struct kunit *test)
 /* Minutes with an open ring. */
 static void clocks_stay(struct kunit *test)
 {
-	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	struct clocks *k = clocks_start(clocks_bus(test), 0);
 	s64 most;
 
 	ring_cable(k->b, true, 4);
@@ -138,7 +152,7 @@ static void expect_delays(struct clocks *k, const s32 *delay, u32 from, const ch
 /* A slave with a clock loses its power, and has it again. */
 static void clocks_power_off(struct kunit *test)
 {
-	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	struct clocks *k = clocks_start(clocks_bus(test), 0);
 	s64 most, back, end;
 	s32 delay[SLAVES];
 
@@ -217,7 +231,7 @@ KUNIT_ARRAY_PARAM(loss, losses, loss_desc);
 static void clocks_lose_ref(struct kunit *test)
 {
 	const struct loss *p = test->param_value;
-	struct clocks *k = clocks_start(clocks_bus(test), p->ref, false);
+	struct clocks *k = clocks_start(clocks_bus(test), p->ref);
 	s64 most, back, end;
 
 	if (p->at >= 0) {
@@ -253,7 +267,7 @@ static void clocks_lose_ref(struct kunit *test)
 /* What is between two cuts stops; the clocks of the others go on. */
 static void clocks_second_cut(struct kunit *test)
 {
-	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	struct clocks *k = clocks_start(clocks_bus(test), 0);
 	s64 most, second, back, end;
 	s32 delay[SLAVES];
 

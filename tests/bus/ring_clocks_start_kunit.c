@@ -36,7 +36,10 @@ static void clocks_start_open(struct kunit *test)
 	struct clocks *k;
 
 	ring_cable(b, true, p->at);
-	k = clocks_start_at(b, p->ref, false, p->kinds.none);
+	k = clocks_new(b);
+	k->none = p->kinds.none;
+	bus_plug_scanned(b, SLAVES, 5000);
+	clocks_activate(k, p->ref);
 	ring_open(b, p->at);
 	most = clocks_run(k, 2000);
 	ring_cable(b, false, p->at);
@@ -58,7 +61,7 @@ static void clocks_start_open(struct kunit *test)
 /* The application ends and begins again while the ring is open; then it closes. */
 static void clocks_restart(struct kunit *test)
 {
-	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	struct clocks *k = clocks_start(clocks_bus(test), 0);
 	s64 most, healed, end;
 
 	ring_cable(k->b, true, 3);
@@ -81,7 +84,7 @@ static void clocks_restart(struct kunit *test)
 /* A slave that lost its power comes back behind the break. */
 static void clocks_join(struct kunit *test)
 {
-	struct clocks *k = clocks_start(clocks_bus(test), 0, false);
+	struct clocks *k = clocks_start(clocks_bus(test), 0);
 	s64 most, end, healed;
 
 	k->absent = BIT(3);
