@@ -297,17 +297,19 @@ static bool is_overdue(const struct ec_cycle *c, const struct ec_cyc_flight *f, 
 
 /*
  * Of several copies the last one is awaited until the first receive after the next send, which
- * takes the data of the others. One of a link that was missing the last time is not awaited, but
- * not if only the copy is there that passes a closed ring the other way.
+ * takes the data of the others. One of a link that was missing the last time is not awaited, nor
+ * that of the backup link while delays are measured, but not if only the copy is there that passes
+ * a closed ring the other way.
  */
 static noinline bool has_copies(const struct ec_cycle *c, const struct ec_cyc_flight *f,
 				struct ec_slot *slot, u64 *now)
 {
+	u8 mute = c->mute | (READ_ONCE(c->links->ring.measured) ? BIT(EC_BACKUP) : 0);
 	u8 back = READ_ONCE(slot->back);
 
 	return back &&
 	       (f->send != c->send || is_overdue(c, f, now) ||
-		(!(slot->sides & ~back & ~c->mute) && back & ~READ_ONCE(slot->blank))) &&
+		(!(slot->sides & ~back & ~mute) && back & ~READ_ONCE(slot->blank))) &&
 	       ec_slot_settle(slot);
 }
 

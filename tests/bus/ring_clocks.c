@@ -47,6 +47,7 @@ static void clocks_look(struct cyc *c)
 	k->most = max(k->most, apart(k));
 	k->opened += open && !k->open;
 	k->open = open;
+	k->empty += !k->kernel && !cyc_state(c, 0)->working_counter;
 	c->flags = EC_SEND_FLAG_SYNC_SLAVES | EC_SEND_FLAG_MONITOR;
 	if (!k->leads)
 		return;

@@ -29,6 +29,7 @@
  * @jump: largest change of one in a cycle, ns
  * @open: the ring is open
  * @opened: how often it was opened
+ * @empty: cycles without a reply of a slave
  */
 struct clocks {
 	struct bus *b;
@@ -48,6 +49,7 @@ struct clocks {
 	s64 jump;
 	bool open;
 	u32 opened;
+	u32 empty;
 };
 
 /* masks of slaves whose clock has 32 bits, and without one */

@@ -163,12 +163,14 @@ static void clocks_power_off(struct kunit *test)
 	ring_state(k->b, EC_RING_OPEN, 3, SLAVES - 1);
 	expect_delays(k, delay, 4, "a slave has no power");
 	bus_command(k->b, "on d4");
+	k->empty = 0;
 	back = clocks_run(k, 100);
 	KUNIT_EXPECT_NE(test, cyc_wait_op(k->c, 20000), ~0ull);
 	back = max(back, k->most);
 	ring_closed(k->b, SLAVES);
 	/* the delays of the one that is back were measured meanwhile */
 	KUNIT_EXPECT_EQ(test, k->opened, 1u);
+	KUNIT_EXPECT_EQ(test, k->empty, 0u);
 	k->absent = 0;
 	clocks_run(k, 3000);
 	end = clocks_run(k, 500);
