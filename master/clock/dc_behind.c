@@ -55,8 +55,9 @@ void ec_dc_look_behind(struct ec_dc *dc, const s32 *shift)
 	ref = s && s == dc->ref;
 	if (b->station != station || b->delay != delay || b->front != front || b->ref != ref ||
 	    b->slaves != slaves || shift) {
-		/* the cycle begins again when it has seen the number */
-		WRITE_ONCE(b->station, 0);
+		/* odd: the cycle uses none of it; pairs with ec_ring_clock_wanted() */
+		WRITE_ONCE(b->number, b->number + 1);
+		smp_wmb();
 		WRITE_ONCE(b->delay, delay);
 		WRITE_ONCE(b->ref, ref);
 		WRITE_ONCE(b->front, front);
@@ -64,7 +65,7 @@ void ec_dc_look_behind(struct ec_dc *dc, const s32 *shift)
 		WRITE_ONCE(b->given, shift);
 		WRITE_ONCE(b->shift, shift ? *shift : 0);
 		WRITE_ONCE(b->station, station);
-		/* pairs with ec_ring_clock_wanted() */
+		/* it begins again when it has seen the number */
 		smp_store_release(&b->number, b->number + 1);
 	}
 	up_write(&dc->bus->topo);

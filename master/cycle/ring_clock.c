@@ -25,15 +25,21 @@
  */
 bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc)
 {
-	/* the number before the clock; pairs with ec_dc_look_behind() */
+	/* the number before and behind the rest; pairs with ec_dc_look_behind() */
 	u32 number = smp_load_acquire(&dc->behind.number);
 
+	if (number % 2)
+		return false;
 	if (r->break_seen != number)
 		*r = (struct ec_ring_clock){
 			.break_seen = number, .shift = READ_ONCE(dc->behind.shift),
 			.samples = READ_ONCE(dc->behind.given) ? EC_RING_SAMPLES : 0,
 		};
-	return READ_ONCE(dc->behind.station) && READ_ONCE(dc->mode) == EC_DC_COMPENSATE;
+	r->station = READ_ONCE(dc->behind.station);
+	smp_rmb();
+	/* else another break: it begins with the next cycle */
+	return READ_ONCE(dc->behind.number) == number && r->station &&
+	       READ_ONCE(dc->mode) == EC_DC_COMPENSATE;
 }
 
 /**
@@ -67,7 +73,7 @@ void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
 			struct ec_ring_clock_flight *f)
 {
 	bool reads = unsure || !ec_ring_clock_knows(r);
-	u16 station = reads ? READ_ONCE(dc->behind.station) : READ_ONCE(dc->ref_station);
+	u16 station = reads ? r->station : READ_ONCE(dc->ref_station);
 	u8 *p = ec_frame_add(fb, reads ? EC_CMD_FPRD : EC_CMD_FRMW, index, station,
 			     EC_REG_DC_SYSTIME, EC_RING_BYTES);
 

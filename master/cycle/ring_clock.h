@@ -12,6 +12,8 @@ struct ec_frame_buf;
 struct ec_ring_clock {
 	/** @break_seen: struct ec_dc_behind.number of the break that the members below are for */
 	u32 break_seen;
+	/** @station: a clock behind the break */
+	u16 station;
 	/** @samples: times that were read behind the break so far, up to EC_RING_SAMPLES */
 	u32 samples;
 	/** @sum: of their differences from the time that the reference clock had, ns */

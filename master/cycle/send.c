@@ -167,7 +167,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 static noinline void send_behind(struct ec_cycle *c, struct send *send)
 {
 	struct ec_links *l = c->links;
-	u32 dc = send->dc, there = ec_dc_datagrams_behind(&c->clock, dc);
+	u32 there = ec_dc_datagrams_behind(&c->clock, send->dc), dc;
 	struct ec_ring_clock_flight behind = { 0 };
 	struct ec_slot *slot = NULL;
 	struct ec_frame_buf fb;
@@ -175,10 +175,14 @@ static noinline void send_behind(struct ec_cycle *c, struct send *send)
 	u8 *frame;
 	int ret;
 
+	/* those of the main link would be refused, each an error */
+	if (!READ_ONCE(l->link[EC_MAIN].up) && !ec_link_is_up(&l->link[EC_MAIN]))
+		send->dc = 0;
 	if (there && make_room(c, send->now))
 		slot = ec_slot_get(&l->slots, true, send->now);
 	if (!slot)
 		return;
+	dc = send->dc;
 	frame = ec_links_tx_get(l, BIT(EC_BACKUP), &tx) ?: slot->frame;
 	ec_frame_begin(&fb, frame + EC_ETH_HDR, EC_FRAME_HDR + EC_FRAME_BODY_MAX);
 	ec_dc_datagrams_fill_behind(&c->clock, &fb, slot->index, there, send->now, &behind);
