@@ -17,6 +17,7 @@
 #include "bus/mailboxes.h"
 #include "bus/owed.h"
 #include "bus/ports.h"
+#include "bus/ring_exit.h"
 #include "bus/slave.h"
 #include "bus/survey.h"
 #include "bus/swallowed.h"
@@ -294,6 +295,8 @@ static void ask_slaves(struct watch *w)
 		w->irq = dg.irq;
 		break;
 	}
+	if (lost && w->link_up && ec_ring_exit_close(&m->bus))
+		return;
 	/* frames that do not return say nothing of the slaves, unless that lasts */
 	w->lost_ns = !lost ? 0 : w->lost_ns ?: ktime_get_ns();
 	if (lost && READ_ONCE(m->bus.guarded) && w->link_up &&
@@ -301,6 +304,7 @@ static void ask_slaves(struct watch *w)
 		ec_swallowed(&m->bus);
 		return;
 	}
+	ec_scan_look_at_mute(&m->bus);
 	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
 		if (w->scanned)

@@ -263,7 +263,7 @@ struct ec_ioc_slave {
 	__u8 device_index;	/* 0 main, 1 backup */
 	__u16 dl_status;
 	__u16 features;		/* register 0x0008 */
-	__u16 reserved;
+	__u16 missing_before;	/* slaves of the closed ring that are missing before this one */
 	__u32 transmission_delay;
 	__u32 sii_words;
 	__u32 differs;		/* identity differs from @config */

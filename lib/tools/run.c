@@ -45,7 +45,7 @@ static int add_sm(struct ect_handle *h, unsigned int config, unsigned int sm, un
 int ect_run_add(struct ect_handle *h, const struct ect_slave *s)
 {
 	struct ec_ioc_slave_config c = {
-		.position = s->position, .vendor_id = s->vendor_id,
+		.position = (u16)(s->position + s->missing_before), .vendor_id = s->vendor_id,
 		.product_code = s->product_code,
 	};
 	int ret = ect_command(h, EC_IOC_SLAVE_CONFIG, &c);

@@ -51,6 +51,7 @@ static void convert_mailbox(struct ect_slave *to, const struct ec_ioc_slave *fro
 static void convert_slave(struct ect_slave *to, const struct ec_ioc_slave *from)
 {
 	COPY(position);
+	COPY(missing_before);
 	COPY(station);
 	COPY(device);
 	COPY(alias);

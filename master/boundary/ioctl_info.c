@@ -23,6 +23,7 @@
 #include "../bus/slave.h"
 #include "../bus/ring_break.h"
 #include "../bus/ring_ends.h"
+#include "../bus/ring_place.h"
 #include "../config/why.h"
 
 #ifndef EC_RELEASE
@@ -350,6 +351,7 @@ int ec_ioc_slave(struct ec_call *call)
 
 	i->device = s->device;
 	i->position = s->position;
+	i->missing_before = ec_ring_places_of(s->bus, s->position) - s->position;
 	i->device_index = s->bus->links->ring.state == EC_RING_OPEN && ec_graph_is_reversed(s);
 	i->station = s->station;
 	i->alias = s->alias;

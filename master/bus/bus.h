@@ -78,6 +78,10 @@ struct ec_bus {
 	u32 break_at[2];
 	/** @ring_told: state and front of the ring as the log has them; the monitor's */
 	u32 ring_told[2];
+	/** @exit: the monitor's */
+	struct ec_ring_exit exit;
+	/** @probe_ns: last probe of mute links (ktime); the monitor's */
+	u64 probe_ns;
 	/** @turned: device number of a slave of a ring that is the wrong way round, 0: none */
 	u64 turned;
 	/** @turned_told: @turned as the log has it; the monitor's */

@@ -144,7 +144,7 @@ bool ec_find_place(const struct ec_bus *bus, u16 alias, unsigned int alias_at, u
  * @alias: as for ec_find_place()
  * @alias_at: likewise
  * @position: likewise
- * @total: slaves of a closed ring, as far as they are configured
+ * @total: slaves of a closed ring, by its configurations
  *
  * An offset counts slaves of the closed ring as well, so it matters whether the ring is open
  * between the two.
@@ -157,6 +157,7 @@ int ec_find_index(const struct ec_bus *bus, u16 alias, unsigned int alias_at, u1
 {
 	unsigned int place;
 
+	ec_bus_assert_stays(bus);
 	if (!ec_find_place(bus, alias, alias_at, position, &place))
 		return -ENOENT;
 	if (alias && !ec_ring_places_open_between(bus, alias_at, alias_at + position))

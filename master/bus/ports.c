@@ -9,6 +9,7 @@
 #include "border.h"
 #include "graph.h"
 #include "ports.h"
+#include "ring_exit.h"
 #include "slave.h"
 #include "trial.h"
 
@@ -117,10 +118,10 @@ static u8 wanted_loops(const struct ec_slave *s)
 	u8 loops = 0;
 
 	if (!ec_ports_are_guarded(s->bus) || s->ports.fixed)
-		return 0;
+		return ec_ring_exit_loops(s, 0);
 	for (p = 0; p < EC_MAX_PORT; p++)
 		loops |= wanted_loop(s, p) << 2 * p;
-	return loops;
+	return ec_ring_exit_loops(s, loops);
 }
 
 static bool may_write(const struct ec_slave *s)
@@ -387,6 +388,7 @@ static enum ec_ports_result work_at_doors(struct ec_bus *bus)
  */
 enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned)
 {
+	ec_ring_exit_look(bus);
 	write_loops(bus);
 	bus->lost_look_ns = ktime_get_ns();
 	if (xchg(&bus->retry, false))
@@ -509,5 +511,6 @@ void ec_ports_set_fast(struct ec_slave *s, u8 ports)
 void ec_ports_open_all(struct ec_bus *bus)
 {
 	WRITE_ONCE(bus->guarded, false);
+	bus->exit.device = 0;
 	write_loops(bus);
 }

@@ -21,6 +21,35 @@ static void note_exit(struct ec_bus *bus)
 	}
 }
 
+/* Where @s is in the list; @n: it is not. */
+static unsigned int index_of(struct ec_slave **slaves, unsigned int n, const struct ec_slave *s)
+{
+	unsigned int i = 0;
+
+	while (i < n && slaves[i] != s)
+		i++;
+	return i;
+}
+
+/*
+ * The port at which the slave behind the break hung so far, or slaves before it that are missing
+ * now. Returns whether it is known: then @at is set.
+ */
+static bool find_place(u32 *at, struct ec_slave **slaves, unsigned int front,
+		       const struct ec_slave *next)
+{
+	const struct ec_slave *up;
+	unsigned int i = front;
+
+	while (i == front && (up = ec_graph_parent(next))) {
+		i = index_of(slaves, front, up);
+		at[1] = next->graph.parent_port;
+		next = up;
+	}
+	at[0] = i;
+	return i < front;
+}
+
 /**
  * ec_ring_break_note() - the list of slaves changes: where will the ring be open?
  * @bus: bus, @front set; the graph is that of the list before
@@ -33,24 +62,16 @@ static void note_exit(struct ec_bus *bus)
  */
 void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
 {
-	const struct ec_slave *next = bus->front < n ? slaves[bus->front] : NULL, *up;
-	u32 *at = bus->break_at;
+	u32 *at = bus->break_at, front = min(bus->front, n), was[2] = { at[0], at[1] };
+	bool told = bus->ring_told[0] == EC_RING_OPEN;
 
 	lockdep_assert_held_write(&bus->topo);
-	if (!ring_is_open(bus))
+	if (!ring_is_open(bus) || (front < n && find_place(at, slaves, front, slaves[front])))
 		return;
-	up = next ? ec_graph_parent(next) : NULL;
-	if (up) {
-		at[0] = up->position;
-		at[1] = next->graph.parent_port;
-	} else if (!bus->front) {
-		at[0] = at[1] = EC_EVENT_NONE;
-	} else if (at[0] != bus->front - 1 || bus->ring_told[0] != EC_RING_OPEN) {
-		at[0] = min(bus->front, n) - 1;
-		at[1] = EC_EVENT_NONE;
-		if (!next && bus->ring_told[0] == EC_RING_CLOSED)
-			note_exit(bus);
-	}
+	at[0] = front ? front - 1 : EC_EVENT_NONE;
+	at[1] = front && told && was[0] == at[0] ? was[1] : EC_EVENT_NONE;
+	if (front && front == n && bus->ring_told[0] == EC_RING_CLOSED)
+		note_exit(bus);
 }
 
 /**

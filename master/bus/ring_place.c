@@ -64,7 +64,7 @@ static void find_all(const struct ec_bus *bus, struct ec_ring_places *p, struct 
 		if (at == i)
 			p->index[i] = s->position;
 	}
-	/* a device that was not there may have replaced one that is absent, and no other */
+	/* a device that is new may have replaced one that is absent, and no other */
 	for (i = 0; i < n && n <= p->n; i++) {
 		at = i < p->front ? i : i + p->n - n;
 		if (p->index[at] == ABSENT && slaves[i]->device > p->last)
@@ -117,7 +117,7 @@ void ec_ring_places_forget(struct ec_bus *bus)
  * @place: position in the closed ring
  * @front: slaves before the break
  * @n: slaves
- * @total: slaves of the closed ring, as far as they are configured
+ * @total: slaves of the closed ring, by its configurations
  *
  * Context: Any.
  * Return: the place among the @n slaves; -ENOENT: a slave that is absent; -EAGAIN: not certain: a
@@ -138,7 +138,7 @@ int ec_ring_places_count(u32 place, u32 front, u32 n, u32 total)
  * ec_ring_places_find() - the slave at a position of the closed ring
  * @bus: bus
  * @place: that position
- * @total: slaves of the closed ring, as far as they are configured
+ * @total: slaves of the closed ring, by its configurations
  *
  * Context: Topo held, or after ec_show_begin().
  * Return: where it is in the list, also behind its end; or as ec_ring_places_count().
@@ -164,7 +164,7 @@ int ec_ring_places_find(const struct ec_bus *bus, u32 place, u32 total)
  * @bus: bus
  *
  * Context: Topo held, or after ec_show_begin().
- * Return: whether it is open, and not all slaves are there that it had when it was closed.
+ * Return: whether it is open, and it has not all slaves that it had when it was closed.
  */
 bool ec_ring_places_misses(const struct ec_bus *bus)
 {

@@ -25,4 +25,16 @@ struct ec_ring_places {
 	u64 last;
 };
 
+/**
+ * struct ec_ring_exit - the port towards the backup device, if the master has closed it
+ * @device: number of its slave, 0: it has not
+ * @port: port
+ * @tried_ns: the last attempt (ktime)
+ */
+struct ec_ring_exit {
+	u64 device;
+	u8 port;
+	u64 tried_ns;
+};
+
 #endif

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* What the monitor asks before a scan: the number of slaves, and whether ports have changed. */
+#include <linux/ktime.h>
 #include <linux/mm.h>
 #include <linux/slab.h>
 #include "../base/limits.h"
+#include "../base/report.h"
 #include "../link/links.h"
 #include "../carry/xfer.h"
 #include "ring_ends.h"
 #include "scan_count.h"
 #include "scan_int.h"
+
+#define PROBE_NS	NSEC_PER_SEC	/* between probes of a mute link */
 
 /**
  * ec_scan_count() - count the slaves
@@ -32,6 +36,53 @@ static bool came(const struct ec_dg *dg, unsigned int side)
 	return dg->side_wkc[side] != EC_DG_NO_COPY;
 }
 
+/* A link whose copies never return although it is up is not used until one does. */
+static void note_copies(struct ec_bus *bus, const struct ec_dg *dg)
+{
+	struct ec_link *link;
+
+	ec_links_for_each(bus->links, link) {
+		if (came(dg, link->side))
+			ec_link_hears(link);
+		else if (ec_link_is_up(link) && ec_link_missed(link))
+			ec_warn(bus,
+				"%s link up, but no frame returns: not used until one does; check that its cable leads to a slave of the ring, without a switch\n",
+				link->side ? "backup" : "main");
+	}
+}
+
+/* Has a mute link a slave again? The next look sends on both links. */
+static void probe(struct ec_bus *bus)
+{
+	u64 now = ktime_get_ns();
+	struct ec_link *link;
+	u8 type[1];
+
+	if (now - bus->probe_ns < PROBE_NS)
+		return;
+	bus->probe_ns = now;
+	ec_links_for_each(bus->links, link) {
+		struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
+
+		if (!READ_ONCE(link->mute) || ec_xfer_probe(bus->links, &dg, link->side))
+			continue;
+		ec_link_hears(link);
+		WRITE_ONCE(bus->links->ring.news, true);
+	}
+}
+
+/**
+ * ec_scan_look_at_mute() - probe a mute link of a ring
+ * @bus: bus
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ */
+void ec_scan_look_at_mute(struct ec_bus *bus)
+{
+	if (!bus->links->only)
+		probe(bus);
+}
+
 /**
  * ec_scan_see_ring() - take the state of the ring from the copies of a broadcast
  * @bus: bus
@@ -50,7 +101,7 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 	if (l->only)
 		return true;
 	ec_links_for_each(l, link)
-		if (!came(dg, link->side) && !last && ec_link_is_up(link))
+		if (!came(dg, link->side) && !last && !READ_ONCE(link->mute) && ec_link_is_up(link))
 			return false;
 	if (READ_ONCE(l->ring.measured) && came(dg, EC_MAIN) &&
 	    dg->side_back[EC_MAIN] == bus->n_slaves)
@@ -60,6 +111,7 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 		return false;
 	if (!ec_ring_ends_fit(bus, dg))
 		return false;
+	note_copies(bus, dg);
 	ec_ring_set(&l->ring, dg->crossed, came(dg, EC_MAIN) ? dg->side_back[EC_MAIN] : 0);
 	return true;
 }

@@ -9,6 +9,7 @@ struct ec_bus;
 struct ec_dg;
 
 int ec_scan_count(struct ec_bus *bus);
+void ec_scan_look_at_mute(struct ec_bus *bus);
 bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last);
 bool ec_scan_worth(struct ec_bus *bus, bool event);
 unsigned int ec_scan_limit(void);

@@ -30,6 +30,7 @@ struct batch {
 	unsigned int n;
 	enum ec_post_class class;
 	unsigned int most;	/* posts of a half */
+	u8 sides;		/* mask of the links, 0: as their way is */
 	struct half half[2];
 	int err;	/* why the other datagrams are not sent */
 };
@@ -125,6 +126,7 @@ static unsigned int send_half(struct batch *b, struct half *h, unsigned int firs
 		post->class = b->class;
 		post->dg = &b->dg[first];
 		way = ec_ring_way(b->c->links, post->dg->cmd, post->dg->adp);
+		way.sides = b->sides ?: way.sides;
 		post->n = xfer_count(b, first, way);
 		post->sides = way.sides;
 		post->shift = way.shift;
@@ -238,10 +240,12 @@ static int xfer_link_error(const struct ec_links *l)
 	return ec_access_is_cyclic(&l->access) && !ec_links_is_up(l) ? -ENETDOWN : 0;
 }
 
-static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum ec_post_class class)
+static int transfer_on(struct ec_links *l, struct ec_dg *dg, unsigned int n,
+		       enum ec_post_class class, u8 sides)
 {
 	struct batch b = {
 		.c = l->carry, .dg = dg, .n = n, .class = class, .err = xfer_link_error(l),
+		.sides = sides,
 	};
 	unsigned int i, try, window = class == EC_POST_CLOCK ? EC_CLOCK_WINDOW : EC_XFER_WINDOW;
 	struct ec_post few[FEW], *more = NULL;
@@ -271,6 +275,26 @@ static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum e
 		exchange(&b);
 	kfree(more);
 	return result(&b);
+}
+
+static int transfer(struct ec_links *l, struct ec_dg *dg, unsigned int n, enum ec_post_class class)
+{
+	return transfer_on(l, dg, n, class, 0);
+}
+
+/**
+ * ec_xfer_probe() - exchange a datagram on one link, also if that is mute
+ * @l: links
+ * @dg: datagram; its result is in it; not repeated
+ * @side: number of the link
+ *
+ * Context: Process. Waits for bus traffic.
+ * Return: as ec_xfer().
+ */
+int ec_xfer_probe(struct ec_links *l, struct ec_dg *dg, u8 side)
+{
+	dg->repeat = false;
+	return transfer_on(l, dg, 1, EC_POST_URGENT, BIT(side));
 }
 
 /**

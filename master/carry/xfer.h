@@ -9,6 +9,7 @@ struct ec_links;
 
 int ec_xfer(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_all(struct ec_links *l, struct ec_dg *dg, unsigned int n);
+int ec_xfer_probe(struct ec_links *l, struct ec_dg *dg, u8 side);
 int ec_xfer_urgent(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_clock(struct ec_links *l, struct ec_dg *dg, unsigned int n);
 int ec_xfer_train(struct ec_links *l, struct ec_dg *dg, unsigned int n);

@@ -51,6 +51,7 @@ int ec_config_index(const struct ec_config *c)
 	unsigned int place;
 	int i;
 
+	ec_bus_assert_stays(w->bus);
 	if (!ec_config_place(c, &place))
 		return -ENOENT;
 	if (w->n_groups)

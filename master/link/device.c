@@ -375,6 +375,8 @@ static void exchange_devices(struct ec_link *a, struct ec_link *b)
 		rcu_assign_pointer(b->dev->link, b);
 	WRITE_ONCE(a->up, b->up);
 	WRITE_ONCE(b->up, up);
+	ec_link_hears(a);
+	ec_link_hears(b);
 	for (i = 0; i < sizeof(a->stats) / sizeof(*x); i++)
 		atomic64_set(&y[i], atomic64_xchg(&x[i], atomic64_read(&y[i])));
 	swap(a->rates, b->rates);

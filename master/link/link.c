@@ -9,6 +9,8 @@
 #include "device.h"
 #include "links.h"
 
+#define MUTE_LOOKS	3	/* of the monitor, without a frame */
+
 /**
  * ec_link_init() - prepare a link, without device
  * @link: zeroed structure
@@ -90,7 +92,7 @@ int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, 
 }
 
 /*
- * Those of @sides that are up; all if none is. One that the monitor has seen last as down is looked
+ * Those of @sides that are up and not mute; all if none is. One that the monitor has seen last as down is looked
  * at again: a ring that is closed there needs its frames at once.
  */
 static u8 live(const struct ec_links *l, u8 sides)
@@ -99,7 +101,8 @@ static u8 live(const struct ec_links *l, u8 sides)
 	u8 up = 0;
 
 	for (i = 0; i < EC_MAX_LINKS; i++)
-		if (sides & BIT(i) && (READ_ONCE(l->link[i].up) || ec_link_is_up(&l->link[i])))
+		if (sides & BIT(i) && !READ_ONCE(l->link[i].mute) &&
+		    (READ_ONCE(l->link[i].up) || ec_link_is_up(&l->link[i])))
 			up |= BIT(i);
 	return up ?: sides;
 }
@@ -213,6 +216,41 @@ bool ec_link_is_up(const struct ec_link *link)
 	up = dev && dev->ops->link_up(dev->priv);
 	rcu_read_unlock();
 	return up;
+}
+
+/**
+ * ec_link_hears() - a link is not mute
+ * @link: link
+ *
+ * Context: The monitor.
+ */
+void ec_link_hears(struct ec_link *link)
+{
+	link->misses = 0;
+	WRITE_ONCE(link->mute, false);
+}
+
+/**
+ * ec_link_missed() - a copy of a link has not returned although the link is up
+ * @link: link of a ring whose other link works
+ *
+ * After MUTE_LOOKS of them without any frame the link is mute.
+ *
+ * Context: The monitor.
+ * Return: whether it is mute from now on.
+ */
+bool ec_link_missed(struct ec_link *link)
+{
+	u64 rx = atomic64_read(&link->stats.rx_frames);
+
+	if (!link->misses || rx != link->misses_rx) {
+		link->misses = 0;
+		link->misses_rx = rx;
+	}
+	if (READ_ONCE(link->mute) || ++link->misses < MUTE_LOOKS)
+		return false;
+	WRITE_ONCE(link->mute, true);
+	return true;
 }
 
 /**

@@ -73,6 +73,12 @@ struct ec_link {
 	bool keep;
 	/** @up: link state as last seen by the monitor */
 	bool up;
+	/** @mute: up, but no frame returns: the other link alone is used; the monitor's */
+	bool mute;
+	/** @misses: looks of the monitor without a copy although it is up; the monitor's */
+	u8 misses;
+	/** @misses_rx: frames received before the first of these */
+	u64 misses_rx;
 	/** @slaves: slaves that answered the last broadcast on this link */
 	u32 slaves;
 	/** @al_states: OR of their AL states */
@@ -92,6 +98,8 @@ void ec_link_poll(struct ec_link *link);
 void ec_links_poll_each(struct ec_links *l);
 bool ec_link_is_up(const struct ec_link *link);
 bool ec_link_look(struct ec_link *link);
+void ec_link_hears(struct ec_link *link);
+bool ec_link_missed(struct ec_link *link);
 void ec_link_clear_counters(struct ec_link *link);
 void ec_link_rates_update(struct ec_link *link);
 

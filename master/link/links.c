@@ -178,6 +178,7 @@ bool ec_links_look(struct ec_links *l)
 
 	ec_links_for_each(l, link) {
 		if (has_changed(link)) {
+			ec_link_hears(link);
 			/* the way of all frames of a ring changes */
 			WRITE_ONCE(l->ring.news, !l->only);
 			ec_report(l->base, link->up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN,

@@ -283,7 +283,7 @@ struct ec_config *ec_session_configure(struct ec_session *s, u16 alias, u16 posi
 		return c;
 	ec_session_mark(s);
 	ec_config_locate(c);
-	/* so many slaves are not there: those behind the break are others than before */
+	/* so many slaves are not connected: those behind the break are others than before */
 	if (!s->sessions->links->only && s->wanted.n_places > READ_ONCE(s->sessions->bus->n_slaves))
 		attach_again(s);
 	else

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* A ring that is connected in another way than it should be, or that is not whole at the start. */
 #include "ring.h"
+#include "devices/ecdev.h"
 #include "master/bus/ring_break.h"
 #include "master/bus/ring_ends.h"
 
@@ -371,6 +372,144 @@ static void ring_start_alias(struct kunit *test)
 	ring_closed(b, SLAVES);
 }
 
+/* A device that sends and receives nothing although it has a link. */
+static int mute_start(void *priv, struct ecdev *dev)
+{
+	return 0;
+}
+
+static void mute_stop(void *priv)
+{
+}
+
+static u8 *mute_get(void *priv)
+{
+	return priv;
+}
+
+static int mute_send(void *priv, u8 *buf, size_t len)
+{
+	return 0;
+}
+
+static bool mute_up(void *priv)
+{
+	return true;
+}
+
+static const struct ecdev_ops mute_ops = {
+	.kind = "mute", .atomic = true, .start = mute_start, .stop = mute_stop, .tx_get = mute_get,
+	.tx_send = mute_send, .link_up = mute_up,
+};
+
+/* The backup device is at a switch or at a PC: the bus is as without it. */
+static void ring_end_mute(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	u8 *buf = kunit_kzalloc(test, EC_ETH_MAX, GFP_KERNEL), mac[6] = { 2, 3 };
+	struct ring *r = ring_new(test, b);
+	struct ecdev *dev;
+	u64 lost;
+
+	KUNIT_ASSERT_NOT_NULL(test, buf);
+	ring_cable(b, true, SLAVES);
+	ec_sim_link_second_withdraw(b->link);
+	dev = ecdev_offer("bus0b", mac, &mute_ops, buf);
+	KUNIT_ASSERT_FALSE(test, IS_ERR(dev));
+	msleep(500);
+	bus_idle(b);
+	ring_open(b, SLAVES);
+	KUNIT_EXPECT_TRUE(test, bus_links(b)->link[EC_BACKUP].mute);
+	/* one that loses its power is noticed, and one that is new is found */
+	bus_command(b, "off d8");
+	bus_idle(b);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), SLAVES - 1);
+	bus_command(b, "on d8");
+	KUNIT_EXPECT_NE(test, bus_wait(b, SLAVES, EC_AL_PREOP, 5000), ~0ull);
+	ring_run(r, SLAVES);
+	cyc_run(r->c, 200);
+	lost = atomic64_read(&bus_links(b)->link[EC_BACKUP].stats.lost);
+	cyc_run(r->c, 1000);
+	KUNIT_EXPECT_LE(test, atomic64_read(&bus_links(b)->link[EC_BACKUP].stats.lost), lost + 3);
+	ring_expect(r, "a mute end");
+	ecdev_withdraw(dev);
+	bus_plug_second(b);
+	ring_cable(b, false, SLAVES);
+	cyc_run(r->c, 300);
+	ring_closed(b, SLAVES);
+	KUNIT_EXPECT_FALSE(test, bus_links(b)->link[EC_BACKUP].mute);
+	ring_expect(r, "it has a slave again");
+}
+
+/* The card of the backup device keeps its link although the device is absent. */
+static void end_without_device(struct bus *b)
+{
+	ec_sim_link_second_withdraw(b->link);
+	ec_sim_wire_card(ec_sim_link_wire(b->link), 1, true);
+}
+
+static void ring_end_without_device(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	struct ring *r = ring_new(test, b);
+	u32 cycles = 0;
+
+	bus_idle(b);
+	end_without_device(b);
+	msleep(500);
+	bus_idle(b);
+	ring_open(b, SLAVES);
+	bus_plug_second(b);
+	msleep(500);
+	bus_idle(b);
+	ring_closed(b, SLAVES);
+	ring_run(r, SLAVES);
+	r->absent = ~0ull;
+	end_without_device(b);
+	do {
+		cyc_run(r->c, 1);
+		cycles++;
+	} while (cycles < 5 || (cycles < 1000 &&
+				cyc_state(r->c, 0)->wc_state != EC_STATUS_WC_COMPLETE));
+	bus_figure("ring whose backup device leaves, with a link that stays: %u cycles without data",
+		   cycles);
+	KUNIT_EXPECT_LE(test, cycles, 200u);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(r->c, 2000), ~0ull);
+	cyc_run(r->c, 100);
+	ring_open(b, SLAVES);
+	bus_plug_second(b);
+	cyc_run(r->c, 1000);
+	ring_closed(b, SLAVES);
+	r->absent = 0;
+	cyc_run(r->c, 10);
+	r->lost = r->left = r->wrong = 0;
+	cyc_run(r->c, 100);
+	ring_expect(r, "the device is back");
+}
+
+/* The place of a break beside a slave that is lost is the port at which that hung. */
+static void ring_place_of_loss(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	u32 at[4], i;
+	char text[16];
+
+	for (i = 1; i + 1 < SLAVES; i++) {
+		snprintf(text, sizeof(text), "off d%u", i + 1);
+		bus_command(b, text);
+		bus_idle(b);
+		ec_ring_break_show(bus_table(b), &at[0], &at[1], &at[2], &at[3]);
+		KUNIT_EXPECT_EQ(test, at[0], (u32)EC_RING_OPEN);
+		KUNIT_EXPECT_EQ(test, at[1], i - 1);
+		KUNIT_EXPECT_EQ(test, at[2], 1u);
+		KUNIT_EXPECT_EQ(test, at[3], i);
+		snprintf(text, sizeof(text), "on d%u", i + 1);
+		bus_command(b, text);
+		KUNIT_ASSERT_NE(test, bus_wait(b, SLAVES, EC_AL_PREOP, 5000), ~0ull);
+		bus_idle(b);
+	}
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_names_exchanged),
 	KUNIT_CASE_PARAM(ring_names_exchanged_open, place_gen_params),
@@ -381,6 +520,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_start_between_cuts),
 	KUNIT_CASE(ring_start_not_certain),
 	KUNIT_CASE(ring_start_alias),
+	KUNIT_CASE(ring_end_mute),
+	KUNIT_CASE(ring_end_without_device),
+	KUNIT_CASE(ring_place_of_loss),
 	{}
 };
 

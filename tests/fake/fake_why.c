@@ -132,7 +132,7 @@ static const struct {
 	{ "group_not_started", { .kind = EC_CAUSE_GROUP, .position = 1 },
 	  "group tool: slave 1 is not at port 1 of slave 0: connect it there" },
 	{ "ring_place", { .kind = EC_CAUSE_RING, .position = 3 },
-	  "ring position 3 not certain: the ring is open, and a slave may be missing there (3 connected)" },
+	  "ring position 3 not certain: the ring is open (3 connected)" },
 	{ "older", { .kind = EC_CAUSE_NONE }, "a reason of an older module" },
 	{ "no_cycle", { .kind = EC_CAUSE_NO_CYCLE },
 	  "AL state SAFEOP; cycle timeout: the application sends no cyclic frames" },

@@ -268,6 +268,30 @@ app_ends() {
 	wait_for 60 all_slaves_are OP $slaves
 }
 
+# value NAME: of the running bus
+value() { ethercat data --names | awk -v n="$1" '$0 ~ "(^| )" n " " { print $NF }'; }
+
+@test "a slave of the ring has no power: the others run, each with its own values" {
+	virtual
+	ring closed
+	tell off i2
+	wait_for 60 ring "open between port 1 of slave 2 and slave 3"
+	wait_for 60 all_slaves_are PREOP $((slaves - 1))
+	ethercat run
+	wait_for 60 all_slaves_are OP $((slaves - 1))
+	# of the last slave but one, wired to the second one
+	ethercat config
+	ethercat config | grep -q '^0:6 '
+	run ethercat config
+	[[ $output != *0:3* ]]
+	ethercat data --names
+	ethercat set --hold el2008_4.channel_1.output 1
+	wait_for 20 grep -qx 1 <(value el1008.channel_1.input)
+	ethercat stop
+	tell on i2
+	wait_for 60 ring closed
+}
+
 # wire N M: a cable between vethN and vethM
 wire() {
 	ip link add veth$1 type veth peer name veth$2

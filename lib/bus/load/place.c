@@ -146,6 +146,38 @@ static bool is_head(const struct load *l, const struct match *m, size_t k)
 	return false;
 }
 
+/* Slaves before the break of a ring that is open and has slaves behind it; else SIZE_MAX. */
+static size_t slaves_before_break(const struct load *l)
+{
+	ec_master_link_state_t front = { 0 }, back = { 0 };
+
+	if (ecrt_master_link_state(l->m, 1, &back) || ecrt_master_link_state(l->m, 0, &front))
+		return SIZE_MAX;
+	return back.slaves_responding ? front.slaves_responding : SIZE_MAX;
+}
+
+/* Positions behind a break count from the far end of the whole ring: which slaves are missing? */
+static int check_ring(struct load *l)
+{
+	size_t front = SIZE_MAX, i;
+	bool missing = false;
+
+	for (i = 0; i < l->want->slave_count; i++)
+		missing |= l->plans[i].omitted;
+	if (missing)
+		front = slaves_before_break(l);
+	for (i = 0; i < l->want->slave_count; i++) {
+		const struct plan *p = &l->plans[i];
+
+		if (p->there && p->position >= front && p->group < 0 &&
+		    (!p->s->alias || p->s->alias != p->there->alias))
+			return BAD(l, p->s->line,
+				   "slave '%s' is behind the break of a ring from which slaves are missing, so its position is not certain; close the ring, connect what is missing, or give it an alias",
+				   p->s->name);
+	}
+	return 0;
+}
+
 /*
  * Ring positions, as ec_groups_mark() counts: without the heads of groups and all slaves behind
  * them, also those that the file does not have.
@@ -176,6 +208,8 @@ static int find_positions(struct load *l, const struct match *m)
 
 static int take_peers(struct load *l, const struct match *m)
 {
+	int ret;
+
 	for (size_t i = 0; i < l->want->slave_count; i++) {
 		struct plan *p = &l->plans[i];
 		size_t k = m->a.peer[i];
@@ -187,7 +221,8 @@ static int take_peers(struct load *l, const struct match *m)
 		/* a group may come later */
 		p->omitted = !p->there && p->group < 0;
 	}
-	return find_positions(l, m);
+	ret = find_positions(l, m);
+	return ret ? ret : check_ring(l);
 }
 
 /* without the slave at whose port it is, a group cannot be configured */
