@@ -17,6 +17,7 @@
 #include "bus/mailboxes.h"
 #include "bus/owed.h"
 #include "bus/ports.h"
+#include "bus/ring_break.h"
 #include "bus/ring_exit.h"
 #include "bus/slave.h"
 #include "bus/survey.h"
@@ -316,7 +317,9 @@ static void ask_slaves(struct watch *w)
 	} else {
 		w->same++;
 	}
-	if (w->scanned && m->bus.front != m->links.ring.front && !w->held)
+	if (w->scanned && count && !w->held &&
+	    (m->bus.front != m->links.ring.front ||
+	     (ec_ring_break_is_news(&m->bus) && !ec_dc_busy(&m->dc))))
 		scan_next(w);
 	survey(w);
 	if (w->scanned && count && wkc >= w->survey.replying)

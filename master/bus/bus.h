@@ -76,6 +76,8 @@ struct ec_bus {
 	unsigned int front;
 	/** @break_at: of an open ring: the slave before the break, its port, EC_EVENT_NONE: none */
 	u32 break_at[2];
+	/** @break_was: @break_at and front before the list that is made now; the monitor's */
+	u32 break_was[3];
 	/** @ring_told: state and front of the ring as the log has them; the monitor's */
 	u32 ring_told[2];
 	/** @exit: the monitor's */

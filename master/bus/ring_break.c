@@ -66,6 +66,9 @@ void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned i
 	bool told = bus->ring_told[0] == EC_RING_OPEN;
 
 	lockdep_assert_held_write(&bus->topo);
+	bus->break_was[0] = told ? at[0] : EC_EVENT_NONE;
+	bus->break_was[1] = at[1];
+	bus->break_was[2] = bus->ring_told[1];
 	if (!ring_is_open(bus) || (front < n && find_place(at, slaves, front, slaves[front])))
 		return;
 	at[0] = front ? front - 1 : EC_EVENT_NONE;
@@ -98,6 +101,41 @@ void ec_ring_break_report(struct ec_bus *bus)
 }
 
 /**
+ * ec_ring_break_is_news() - is the ring closed or open, and no event says so?
+ * @bus: bus
+ *
+ * Context: The monitor thread.
+ * Return: whether it is.
+ */
+bool ec_ring_break_is_news(const struct ec_bus *bus)
+{
+	u32 state = bus->links->ring.state;
+
+	return state >= EC_RING_CLOSED && state != bus->ring_told[0];
+}
+
+/**
+ * ec_ring_break_neighbor() - the slave before the break behind which another one was
+ * @s: slave of the list that is replaced now, without neighbor towards the main device
+ * @port: result: port of the one before the break
+ *
+ * Context: The monitor thread, topo held for writing, after ec_ring_break_note().
+ * Return: that slave, or NULL: the main device, or not known.
+ */
+struct ec_slave *ec_ring_break_neighbor(const struct ec_slave *s, u8 *port)
+{
+	const struct ec_bus *bus = s->bus;
+	const u32 *was = bus->break_was;
+
+	lockdep_assert_held_write(&bus->topo);
+	if (bus->links->only || !s->position || s->position != was[2] || was[0] >= bus->n_slaves ||
+	    was[1] >= EC_MAX_PORT)
+		return NULL;
+	*port = was[1];
+	return bus->slaves[was[0]];
+}
+
+/**
  * ec_ring_break_show() - the state of the ring, for users
  * @bus: bus
  * @state: result: EC_RING_*
@@ -114,7 +152,9 @@ void ec_ring_break_show(const struct ec_bus *bus, u32 *state, u32 *slave, u32 *p
 	*state = READ_ONCE(bus->links->ring.state);
 	*slave = *port = *next = EC_EVENT_NONE;
 	/* a scan begins: the place is not known before it is complete */
-	if (*state >= EC_RING_CLOSED && *state != READ_ONCE(bus->ring_told[0]))
+	if (*state >= EC_RING_CLOSED &&
+	    (*state != READ_ONCE(bus->ring_told[0]) || !READ_ONCE(bus->n_slaves) ||
+	     !ec_links_any_up(bus->links)))
 		*state = EC_RING_UNKNOWN;
 	if (*state != EC_RING_OPEN)
 		return;

@@ -11,6 +11,7 @@
 #include "scan_count.h"
 #include "scan_int.h"
 
+#define TRIES		2	/* to count */
 #define PROBE_NS	NSEC_PER_SEC	/* between probes of a mute link */
 
 /**
@@ -24,10 +25,14 @@ int ec_scan_count(struct ec_bus *bus)
 {
 	u8 type[1] = { 0 };
 	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
-	int ret = ec_xfer(bus->links, &dg, 1);
+	bool seen = false;
+	int ret = 0, try;
 
-	if (!ret)
-		ec_scan_see_ring(bus, &dg, true);
+	/* a copy that is lost once says nothing of the ring */
+	for (try = 0; try < TRIES && !ret && !seen; try++) {
+		ret = ec_xfer(bus->links, &dg, 1);
+		seen = !ret && ec_scan_see_ring(bus, &dg, try + 1 == TRIES);
+	}
 	return ret ?: dg.back;
 }
 

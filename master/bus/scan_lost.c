@@ -5,6 +5,7 @@
 #include "../link/links.h"
 #include "graph.h"
 #include "ports.h"
+#include "ring_break.h"
 #include "scan_int.h"
 #include "scan_lost.h"
 
@@ -15,15 +16,15 @@ static u32 position_of(const struct ec_slave *s)
 	return s ? s->position : EC_EVENT_NONE;
 }
 
-/* Behind which port the slave hangs. */
-static void place_text(const struct ec_slave *s, char *buf, size_t size)
+/* Behind which port slave @s hangs. */
+static void place_text(const struct ec_slave *s, const struct ec_slave *u, u8 port, char *buf,
+		       size_t size)
 {
-	const struct ec_slave *u = ec_graph_parent(s);
-
 	if (u)
-		snprintf(buf, size, "port %u of slave %u (%.24s)", s->graph.parent_port,
-			 u->position,
+		snprintf(buf, size, "port %u of slave %u (%.24s)", port, u->position,
 			 ec_slave_label(u));
+	else if (s->position && !s->bus->links->only)
+		strscpy(buf, "the break of the ring", size);
 	else
 		strscpy(buf, "the main device", size);
 }
@@ -38,14 +39,16 @@ static void place_text(const struct ec_slave *s, char *buf, size_t size)
  */
 void ec_lost_note_place(struct ec_slave *s)
 {
-	struct ec_slave *u = ec_graph_parent(s);
+	struct ec_slave *up = ec_graph_parent(s), *u;
+	u8 port = s->graph.parent_port;
 
 	lockdep_assert_held_write(&s->bus->topo);
+	u = up ?: ec_ring_break_neighbor(s, &port);
 	s->lost.seen_ns = s->bus->complete_ns ?: ktime_get_ns();
 	if (u && u->position < s->position && !u->listing) {
 		s->lost.at = u->lost.at;
 		s->lost.at.up = u->position;
-		s->lost.at.up_port = s->graph.parent_port;
+		s->lost.at.up_port = port;
 		strscpy(s->lost.parent, u->lost.parent, sizeof(s->lost.parent));
 		if (u->lost.first[0])
 			strscpy(s->lost.first, u->lost.first, sizeof(s->lost.first));
@@ -54,14 +57,14 @@ void ec_lost_note_place(struct ec_slave *s)
 				 u->position, ec_slave_label(u));
 		return;
 	}
-	if (u)
-		ec_ports_note_loss(u, s->graph.parent_port, true);
+	if (up)
+		ec_ports_note_loss(up, port, true);
 	s->lost.at = (struct ec_break){
 		.station = u ? u->station : 0, .position = position_of(u),
-		.port = s->graph.parent_port,
-		.up = u ? u->position : EC_UAPI_NONE16, .up_port = s->graph.parent_port,
+		.port = port,
+		.up = u ? u->position : EC_UAPI_NONE16, .up_port = port,
 	};
-	place_text(s, s->lost.parent, sizeof(s->lost.parent));
+	place_text(s, u, port, s->lost.parent, sizeof(s->lost.parent));
 }
 
 /* Lost together? What hangs behind a cable is one range of the ring, and one event. */
@@ -172,7 +175,7 @@ void ec_lost_report_found(struct scan *sc, unsigned int n_old)
 			if (up < first || up == EC_EVENT_NONE)
 				break;
 		}
-		place_text(s, place, sizeof(place));
+		place_text(s, ec_graph_parent(s), s->graph.parent_port, place, sizeof(place));
 		more = (struct ec_event_more){
 			.place = place, .name = ec_slave_label(s),
 			.last = ec_slave_label(bus->slaves[i - 1]),

@@ -128,7 +128,7 @@ static int ask_found(struct proof *p)
 	p->dg[2 * i] = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, p->type);
 	ret = ec_xfer(sc->bus->links, p->dg, 2 * sc->n + 1);
 	if (!ret)
-		ec_scan_see_ring(sc->bus, &p->dg[2 * i], true);
+		ec_scan_see_ring(sc->bus, &p->dg[2 * i], false);
 	note_seen(p);
 	return ret;
 }

@@ -3,7 +3,9 @@
 #include "ring.h"
 #include "devices/ecdev.h"
 #include "master/bus/ring_break.h"
+#include "master/bus/absent.h"
 #include "master/bus/ring_ends.h"
+#include "master/bus/scan_count.h"
 
 #define IO_BITS		8
 #define ALL		GENMASK(SLAVES - 1, 0)
@@ -510,6 +512,81 @@ static void ring_place_of_loss(struct kunit *test)
 	}
 }
 
+/* What is lost between two cuts hung at the first of them. */
+static void ring_loss_between_cuts(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	struct ec_event e, lost = { 0 };
+	struct ec_absent a;
+	u64 from = 0;
+
+	bus_idle(b);
+	ring_cable(b, true, 2);
+	bus_idle(b);
+	ring_cable(b, true, 5);
+	bus_idle(b);
+	while (ec_event_ring_get(bus_events(b), &from, &e))
+		if (e.kind == EC_EVENT_SLAVE_LOST)
+			lost = e;
+	KUNIT_EXPECT_EQ(test, lost.slave, 2u);
+	KUNIT_EXPECT_EQ(test, lost.arg[0], 1u);
+	KUNIT_EXPECT_EQ(test, lost.arg[1], 1u);
+	KUNIT_EXPECT_EQ(test, lost.arg[6], 3u);
+	down_read(&bus_table(b)->topo);
+	ec_absent_get(bus_table(b), 0, &a);
+	KUNIT_EXPECT_EQ(test, a.n, 3u);
+	KUNIT_EXPECT_EQ(test, a.up, bus_slave(b, 1)->device);
+	KUNIT_EXPECT_EQ(test, a.port, 1);
+	up_read(&bus_table(b)->topo);
+}
+
+static void shown(struct bus *b, u32 state, u32 events, u32 kind)
+{
+	u32 at[4];
+
+	bus_idle(b);
+	ec_ring_break_show(bus_table(b), &at[0], &at[1], &at[2], &at[3]);
+	KUNIT_EXPECT_EQ(b->test, at[0], state);
+	KUNIT_EXPECT_EQ(b->test, faults_events(b, kind), events);
+}
+
+/* The end at the computer: no slave shows an event, and as many are before the break. */
+static void ring_device_is_told(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+
+	shown(b, EC_RING_CLOSED, 1, EC_EVENT_RING_CLOSED);
+	bus_fault(b, EC_SIM_FAULT_MISS_BROADCAST, 0, -1, 0, 0);
+	ec_sim_link_second_withdraw(b->link);
+	shown(b, EC_RING_OPEN, 1, EC_EVENT_RING_OPEN);
+	bus_plug_second(b);
+	shown(b, EC_RING_CLOSED, 2, EC_EVENT_RING_CLOSED);
+	ring_cable(b, true, 0);
+	ring_cable(b, true, SLAVES);
+	msleep(500);
+	shown(b, EC_RING_UNKNOWN, 2, EC_EVENT_RING_CLOSED);
+	ring_cable(b, false, 0);
+	ring_cable(b, false, SLAVES);
+	msleep(500);
+	shown(b, EC_RING_CLOSED, 2, EC_EVENT_RING_CLOSED);
+}
+
+/* A copy that is lost once leaves the positions as they are. */
+static void ring_copy_is_lost(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	u32 i;
+
+	ring_cable(b, true, 5);
+	bus_idle(b);
+	for (i = 0; i < 50; i++) {
+		bus_fault(b, EC_SIM_FAULT_LOSE, -1, -1, 1, 0);
+		ec_scan_count(bus_table(b));
+		KUNIT_EXPECT_EQ(test, bus_links(b)->ring.front, 5u);
+		bus_fault(b, EC_SIM_FAULT_LOSE, -1, -1, 0, 0);
+	}
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_names_exchanged),
 	KUNIT_CASE_PARAM(ring_names_exchanged_open, place_gen_params),
@@ -523,6 +600,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_end_mute),
 	KUNIT_CASE(ring_end_without_device),
 	KUNIT_CASE(ring_place_of_loss),
+	KUNIT_CASE(ring_loss_between_cuts),
+	KUNIT_CASE(ring_device_is_told),
+	KUNIT_CASE(ring_copy_is_lost),
 	{}
 };
 
