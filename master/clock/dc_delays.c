@@ -119,15 +119,37 @@ static int measure_rounds(struct ec_dc_job *j)
 	return 0;
 }
 
+/* Is a ring what the list of slaves says? Else a scan follows. */
+static bool ring_is_as_listed(const struct ec_dc_job *j)
+{
+	const struct ec_ring *r = &j->dc->links->ring;
+
+	return j->dc->links->only ||
+	       (READ_ONCE(r->state) == j->ring && READ_ONCE(r->front) == j->front);
+}
+
+/* An open ring may break once more, or heal. In it each delay is measured once for all. */
+static int measure_open(struct ec_dc_job *j)
+{
+	u32 path = ec_dc_path(j->dc);
+	int ret = measure_rounds(j);
+
+	if (ret || j->dc->links->only)
+		return ret;
+	return ring_is_as_listed(j) && ec_dc_path(j->dc) == path ? 0 : -EAGAIN;
+}
+
 static int dc_job_measure(struct ec_dc_job *j)
 {
 	struct ec_ring *r = &j->dc->links->ring;
 	int ret;
 
+	if (!ring_is_as_listed(j))
+		return -EAGAIN;
 	if (j->ring != EC_RING_CLOSED)
-		return measure_rounds(j);
-	/* its last slave was not read, or it has opened: a closed exit would cut more off */
-	if (j->exit == j->n || READ_ONCE(r->state) != EC_RING_CLOSED)
+		return measure_open(j);
+	/* its last slave was not read: nothing turns the frames */
+	if (j->exit == j->n)
 		return -EAGAIN;
 	/* to the monitor it is as before */
 	WRITE_ONCE(r->measured, true);

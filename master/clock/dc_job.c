@@ -216,6 +216,7 @@ int ec_dc_job_init(struct ec_dc_job *j, struct ec_dc *dc, bool sends)
 	j->ring = READ_ONCE(dc->links->ring.state);
 	down_read(&dc->bus->topo);
 	j->n = dc->bus->n_slaves;
+	j->front = dc->bus->front;
 	j->exit = j->n;
 	j->slaves = kvcalloc(j->n + 1, sizeof(*j->slaves), GFP_KERNEL);
 	j->nodes = kvcalloc(j->n + 1, sizeof(*j->nodes), GFP_KERNEL);

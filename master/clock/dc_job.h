@@ -28,6 +28,7 @@
  * @followed: station address of the clock that the others are synchronized to, or 0
  * @ref: index of the reference clock, @n: none
  * @ring: EC_RING_* at the begin of the job
+ * @front: slaves before the break of an open ring
  * @shift: how much later a frame reaches the clocks on the other side of a break than the
  *	reference clock, beyond their delays, ns
  * @shifted: @shift is known
@@ -59,6 +60,7 @@ struct ec_dc_job {
 	u16 followed;
 	unsigned int ref;
 	u8 ring;
+	u32 front;
 	s32 shift;
 	bool shifted;
 	bool given;
