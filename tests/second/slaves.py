@@ -3,13 +3,16 @@
 simulator. Written only from the published descriptions of registers, state machine, SII
 and mailbox protocols; it shares no line, no table and no number with the simulator.
 
-usage: slaves.py INTERFACE FOLDER       (FOLDER: gets the EEPROMs, 0.bin to 2.bin)
+usage: slaves.py INTERFACE FOLDER [SECOND]      (FOLDER: gets the EEPROMs, 0.bin to 2.bin)
 
 Three slaves in a line: four digital outputs, four digital inputs (an ESC that copies AL
 control to AL status without software), an axis with CoE. The inputs repeat the outputs
 in reverse order; the axis answers with status = ~control, position = -target.
+With a second interface the line is a ring. Its cables break and heal by "cut N" and "heal N"
+in the pipe FOLDER/tell: the cable in front of slave N, 3: the one to the second interface.
 At SIGTERM it says what the master did that no master may do, one line "fault: ..." each."""
 
+import os
 import select
 import signal
 import socket
@@ -83,7 +86,7 @@ class Esc:
           (0x204, 0x208), (0x210, 0x214), (0x220, 0x224), (0x440, 0x442))
 
     def __init__(self, image):
-        self.image, self.downstream = image, False
+        self.image, self.link, self.open = image, [True, False], [True, False]
         m = self.mem = bytearray(0x10000)
         # type, revision, build, FMMUs, SMs, RAM KiB, ports (two MII), features:
         # registers that do not exist give no working counter
@@ -132,6 +135,8 @@ class Esc:
         data = bytes(self.mem[at:at + n])
         if at >= 0x1000:
             return data if self.access(at, n, 0) else None
+        if at <= 0x110 < at + n:
+            self.mem[0x210] &= ~4 & 0xFF        # DL status event
         if at <= 0x130 < at + n:
             self.mem[0x210] &= ~8 & 0xFF        # AL status event
         return None if self.readable.isdisjoint(range(at, at + n)) else data
@@ -155,7 +160,7 @@ class Esc:
             if self.requested & ~0x3F:
                 fault("reserved bits in AL control 0x%04x" % self.requested)
         if at <= 0x101 < at + n:
-            self.dl_status()
+            self.dl_status(written=True)
         return bool(mine)
 
     def write_eeprom(self, at, data):
@@ -176,13 +181,20 @@ class Esc:
             m[0x502] = 0x40 if self.read8 else 0
         return True
 
-    def dl_status(self):
-        closed = self.mem[0x101] >> 2 & 3       # loop control of port 1
-        self.open1 = (self.downstream and closed != 3) or closed == 2
-        # PDI; link and communication at port 0, perhaps at port 1; ports 2 and 3 closed
-        status = 0x5211 | (0x20 if self.downstream else 0) | (0 if self.open1 else 0x400)
-        struct.pack_into("<H", self.mem, 0x110, status | (
-            0x800 if self.downstream and self.open1 else 0))
+    def dl_status(self, written=False):
+        status = 0x5001                         # PDI; ports 2 and 3 closed
+        for port in (0, 1):
+            mode, link = self.mem[0x101] >> 2 * port & 3, self.link[port]
+            if mode == 3 and port == 0:
+                fault("port 0 closed")
+            # auto, auto-close (what has closed opens by a write), open, closed
+            self.open[port] = (link, link and (self.open[port] or written), True, False)[mode]
+            # physical link, communication, loop closed
+            status |= (0x10 << port) * link | (0x200 << 2 * port) * (link and self.open[port])
+            status |= (0x100 << 2 * port) * (not self.open[port])
+        if status != u16(self.mem, 0x110):
+            struct.pack_into("<H", self.mem, 0x110, status)
+            self.mem[0x210] |= 4
 
     def logical(self, cmd, at, data):
         wrote, inputs = False, []
@@ -538,8 +550,36 @@ def execute(slave, cmd, adp, ado, data):
     return adp if by_address else adp + 1 & 0xFFFF, gain
 
 
-def process(line, frame):
-    """All datagrams of a frame at all slaves, as in a ring."""
+def plug(line, cable, whole):
+    for i, port in ((cable - 1, 1), (cable, 0)):
+        if 0 <= i < len(line):
+            line[i].link[port] = whole
+            line[i].dl_status()
+
+
+def route(line, end):
+    """Slaves that process a frame from this end (1: the second one), the end where it leaves
+    (None: nowhere), and is it marked as circulating. The processing unit is behind port 0:
+    a frame that comes in by port 1 meets it only if it cannot leave by port 0."""
+    at, port, through, circulates = (len(line) - 1 if end else 0), end, [], False
+    while 0 <= at < len(line):
+        slave = line[at]
+        if not slave.open[port]:
+            return through, None, circulates
+        if port and slave.open[0]:
+            at -= 1
+            continue
+        if port and circulates:                 # twice at such a port
+            return through, None, circulates
+        circulates |= bool(port)
+        through.append(slave)
+        port = int(not slave.open[1])
+        at += -1 if port else 1
+    return through, int(at >= 0), circulates
+
+
+def process(line, frame, circulates=False):
+    """All datagrams of a frame at the slaves of its way."""
     word, at, more = u16(frame, 14), 16, True
     end = at + (word & 0x7FF)
     if word >> 11 != 2 or end > len(frame):
@@ -557,36 +597,58 @@ def process(line, frame):
                 adp, gain = execute(slave, cmd, adp, ado, data)
                 wkc += gain
             irq |= u16(slave.mem, 0x210) & u16(slave.mem, 0x200)
-            if not slave.open1:
-                break
+        n |= 0x4000 * circulates
         struct.pack_into("<HHHH", frame, at + 2, adp, ado, n, irq)
         frame[at + 10:at + 12 + size] = data + struct.pack("<H", wkc)
         at += 12 + size
     if at != end or any(frame[end:]):
         fault("bytes behind the datagrams that are not 0, or a wrong length")
-    frame[6] |= 2                               # it went through an ESC
+    frame[6] |= 2 * bool(line)                  # it went through a processing unit
     return True
 
 
-def main():
+def end_of(interface):
     s = socket.socket(socket.AF_PACKET, socket.SOCK_RAW, socket.htons(0x88A4))
-    s.bind((sys.argv[1], 0x88A4))
+    s.bind((interface, 0x88A4))
+    return s
+
+
+def receive(line, ends, end):
+    """A frame at one end, which leaves at one of them."""
+    try:
+        data, where = ends[end].recvfrom(2048)
+        if where[2] == socket.PACKET_OUTGOING:
+            return 0
+        frame, (through, leaves, circulates) = bytearray(data), route(line, end)
+        if process(through, frame, circulates) and leaves is not None:
+            ends[leaves].send(frame)
+    except (OSError, IndexError):               # an interface without link, or none
+        return 0
+    return 1
+
+
+def main():
+    ends = [end_of(name) for name in (sys.argv[1], *sys.argv[3:])]
     line = [Outputs(), Inputs(), Axis()]
+    for cable in range(len(line) + len(ends) - 1):
+        plug(line, cable, True)
     for i, slave in enumerate(line):
-        slave.downstream = slave is not line[-1]
-        slave.dl_status()
         with open("%s/%d.bin" % (sys.argv[2], i), "wb") as f:
             f.write(slave.image)
+    tell = "%s/tell" % sys.argv[2]
+    os.mkfifo(tell)
+    tell = os.open(tell, os.O_RDWR)
     stop, frames = [], 0
     signal.signal(signal.SIGTERM, lambda *_: stop.append(1))
     print("ready", flush=True)
     while not stop:
-        if select.select([s], [], [], 0.005)[0]:
-            data, where = s.recvfrom(2048)
-            if where[2] != socket.PACKET_OUTGOING:
-                frame, frames = bytearray(data), frames + 1
-                if process(line, frame):
-                    s.send(frame)
+        for which in select.select([*ends, tell], [], [], 0.005)[0]:
+            if which is not tell:
+                frames += receive(line, ends, ends.index(which))
+                continue
+            for command in os.read(tell, 100).decode().splitlines():
+                what, cable = command.split()
+                plug(line, int(cable), what == "heal")
         for slave in line:
             slave.work()
     for text, n in sorted(faults.items()):

@@ -8,24 +8,47 @@ load helpers
 SECOND=$BATS_TEST_DIRNAME/../second
 export PYTHONDONTWRITEBYTECODE=1
 
-setup_file() {
-	modprobe veth
-	ip link add veth0 type veth peer name veth1
-	ip link set veth0 up
-	ip link set veth1 up
+# model FOLDER INTERFACE...: its slaves; what it says is in FOLDER
+model() {
 	# a slave answers at once, whoever else has something to do
-	chrt -f 60 python3 "$SECOND/slaves.py" veth1 "$BATS_FILE_TMPDIR" >"$BATS_FILE_TMPDIR/said" 3>&- &
-	echo $! >"$BATS_FILE_TMPDIR/pid"
-	wait_for 60 grep -q ready "$BATS_FILE_TMPDIR/said"
-	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=veth0
+	chrt -f 60 python3 "$SECOND/slaves.py" "$2" "$1" "${@:3}" >"$1/said" 3>&- &
+	echo $! >"$1/pid"
+	wait_for 60 grep -q ready "$1/said"
+}
+
+# no_faults FOLDER: the model ends, and the master did nothing that no master may do
+no_faults() {
+	kill "$(cat "$1/pid")"
+	wait_for 20 grep -q frames "$1/said"
+	cat "$1/said"
+	grep -qE '^[0-9]+ frames, 0 faults$' "$1/said"
+}
+
+# master PARAMETER...: at veth0
+master() {
+	insmod "$EC_BUILD/modules/master/ec_master.ko" main_devices=veth0 "$@"
 	insmod "$EC_BUILD/modules/devices/ec_generic.ko"
 	wait_for 60 all_slaves_are PREOP 3
+}
+
+setup_file() {
+	local i
+
+	modprobe veth
+	for i in 0 2; do
+		ip link add veth$i type veth peer name veth$((i + 1))
+		ip link set veth$i up
+		ip link set veth$((i + 1)) up
+	done
+	model "$BATS_FILE_TMPDIR" veth1
+	master
 }
 
 teardown_file() {
 	stop
 	kill "$(cat "$BATS_FILE_TMPDIR/pid")" 2>/dev/null || true
 	ip link del veth0
+	ip link del veth2
 }
 
 # value SUBINDEX OPTION...
@@ -124,10 +147,54 @@ code_is() { [ "$(ethercat reg_read -p2 -t uint16 0x0134 | cut -d' ' -f1)" = "$1"
 	timeout 120 chrt -f 50 python3 "$SECOND/app.py" "$EC_BUILD/lib/libethercat.so.1" 8
 }
 
-@test "the master did nothing that no master may do" {
-	pid=$(cat "$BATS_FILE_TMPDIR/pid")
-	kill "$pid"
-	wait_for 20 grep -q frames "$BATS_FILE_TMPDIR/said"
-	cat "$BATS_FILE_TMPDIR/said"
-	grep -qE '^[0-9]+ frames, 0 faults$' "$BATS_FILE_TMPDIR/said"
+@test "the master did nothing that no master may do" { no_faults "$BATS_FILE_TMPDIR"; }
+
+# ring STATE: what "ethercat master" says of it
+ring() { [ "$(says Ring)" = "$1" ] || { echo "ring: $(says Ring)"; return 1; }; }
+
+# cable cut|heal N: in front of slave N; those at the ends with the links of both computers
+cable() {
+	local end=(veth1 "" "" veth3) link=down
+
+	[ "$1" = cut ] || link=up
+	echo "$1 $2" >"$BATS_TEST_TMPDIR/tell"
+	[ -z "${end[$2]}" ] || ip link set "${end[$2]}" $link
+}
+
+# how many times slaves have changed their state
+changes() {
+	ethercat log --json | gojq '[.masters[0].events[] | select(.event == "al_state")] | length'
+}
+
+@test "in a ring each cable is cut and healed: slaves stay in OP, with their values" {
+	local i open app before
+
+	stop
+	model "$BATS_TEST_TMPDIR" veth1 veth3
+	master backup_devices=veth2
+	wait_for 20 ring closed
+	timeout 240 chrt -f 50 python3 "$SECOND/app.py" "$EC_BUILD/lib/libethercat.so.1" 100000 16 \
+		>"$BATS_TEST_TMPDIR/out" 2>&1 3>&- &
+	app=$!
+	wait_for 100 grep -q -e 'in operation' -e 'not so' "$BATS_TEST_TMPDIR/out"
+	before=$(changes)
+	open=("the main device and slave 0" "port 1 of slave 0 and slave 1"
+		"port 1 of slave 1 and slave 2" "port 1 of slave 2 and the backup device")
+	for i in 0 1 2 3; do
+		cable cut $i
+		wait_for 20 ring "open between ${open[i]}"
+		[ "$(ethercat upload -p2 -t string 0x1008 0)" = "Second model axis" ]
+		cable heal $i
+		wait_for 20 ring closed
+		[ "$(ethercat upload -p2 -t string 0x1008 0)" = "Second model axis" ]
+	done
+	all_slaves_are OP 3
+	[ "$(changes)" = "$before" ]
+	kill $app
+	rc=0
+	wait $app || rc=$?
+	cat "$BATS_TEST_TMPDIR/out"
+	[ "$rc" = 0 ]
+	[ "$(sed -n 's/^exchanged //p' "$BATS_TEST_TMPDIR/out")" -ge 20 ]
+	no_faults "$BATS_TEST_TMPDIR"
 }
