@@ -8,7 +8,7 @@ set -u
 cd "$(dirname "$0")/../.." || exit 1
 out=$(mktemp)
 trap 'rm -f "$out" "$out.x" "$out.y"' EXIT
-names="run compare syncunits hotconnect redundancy"
+names="run compare syncunits hotconnect redundancy cable"
 passed=0 failed=0
 
 t() {	# t NAME COMMAND...
@@ -63,6 +63,12 @@ t "DEMO=redundancy shows where the ring is open" \
 t "DEMO=redundancy shows a tree for each device" shows '^Master0: backup device sim0b, link up'
 t "DEMO=redundancy has all slaves in OP and its cycles complete" \
 	shows '^cycles: [0-9]{4,}, incomplete: [0-4]$'
+t "DEMO=cable shows a value that stands still in a line" \
+	shows '^line: station 1 .* [0-9]{1,2} ms, station 2 for [0-9]{4,} ms$'
+t "DEMO=cable shows one that goes on in a ring" \
+	shows '^ring: station 1 .* [0-9]{1,2} ms, station 2 for [0-9]{1,2} ms$'
+t "DEMO=cable draws the clocks" \
+	shows '^clocks: [0-9]{2,} samples, .* axis 2 at the end [0-9]{1,3} ns$'
 for name in install kernel build:\ {modules,library,tool,application}; do
 	t "the step '$name' has its seconds" says "^\[ *[0-9]+ s\] $name: done in [0-9]+ s$"
 done

@@ -17,6 +17,7 @@ list() {
 	syncunits   a part of the machine fails, the other one keeps running
 	hotconnect  a part of the machine is unplugged and plugged in again while the other one runs
 	redundancy  a cable of a ring is taken out: each value keeps moving
+	cable       the same cable in a line and in a ring: what stops, what goes on, and the clocks
 	END
 }
 
@@ -258,6 +259,108 @@ scene_redundancy() {
 		die "process data" "at most a frame at each event should be lost"
 	show ethercat log
 	show ethercat stop || die "ethercat stop" "see above"
+}
+
+# axes: the stations of a machine with clocks; what comes behind "wire" is the way back
+axes() {
+	cat <<-END
+	segment seed=7
+	slave station1 EK1100 drift=30ppm
+	slave level EL3062
+	slave axis1 drive drift=-20ppm clock=3s
+	slave end1 EK1110
+	slave station2 EK1100 cable=50 drift=-40ppm clock=7s
+	slave pressure EL3062
+	slave axis2 drive drift=25ppm clock=11s
+	slave end2 EK1110
+	$*
+	sine level.1 amplitude=15000 period=2s
+	sine pressure.1 amplitude=15000 period=1500ms
+	END
+}
+
+# clocks FILE: registers 0x092c of both axes, until FILE.enough exists
+clocks() {
+	local line since t all
+
+	read -r since _ </proc/uptime
+	until [ -e "$1.enough" ]; do
+		all=()
+		while read -r line; do
+			[[ ! $line =~ registers:\ difference\ (-?[0-9]+) ]] || all+=("${BASH_REMATCH[1]}")
+		done < <(ethercat dc -v)
+		read -r t _ </proc/uptime
+		[ ${#all[@]} != 8 ] || echo "$t,${all[2]},${all[6]}"
+	done | awk -F, -v OFS=, -v since="$since" 'BEGIN { print "time_s,axis1_ns,axis2_ns" }
+		{ $1 -= since; print }' >"$1"
+}
+
+# still FILE COLUMN: the longest time without a change of this value, ms
+still() {
+	awk -F, -v c="$2" '/^#|time_s/ { next } $c != last { last = $c; since = $1 }
+		$1 - since > most { most = $1 - since } END { printf "%d", 1000 * most }' "$1"
+}
+
+apart() { ethercat graph --tree 2>/dev/null | grep -qE 'disconnected|backup device'; }
+all_in_op() { [ "$(ethercat slaves 2>/dev/null | awk '$3 == "OP"' | wc -l)" = 8 ]; }
+
+# pull NAME WAY-BACK PARAMETER...: a run whose cable between the stations is out for 2 s; the
+# recording is cable-NAME.csv. More parameters: of the master
+pull() {
+	local file=$tmp/cable-$1.csv recorder sampler
+
+	bus 8 "${@:3}" < <(axes "$2")
+	ethercat bus save -f "$tmp/saved.yaml" >/dev/null || die "bus save" "see above"
+	# both axes get SYNC0 from their clocks
+	awk '{ print } /- name: drive/ {
+		print "        clock: {assign_activate: 0x0300, sync0: 1 ms}" }' \
+		"$tmp/saved.yaml" >"$tmp/$1.yaml"
+	show ethercat run "$tmp/$1.yaml" || die "ethercat run" "'ethercat why' names the cause"
+	sleep 2		# the clocks come together
+	show ethercat graph --tree
+	echo "\$ ethercat record '*channel_1.value' -o cable-$1.csv --time 6 &"
+	"$EC_BUILD/tool/ethercat" record '*channel_1.value' -o "$file" --time 6 &
+	recorder=$!
+	clocks "$tmp/clocks.csv" 2>/dev/null &
+	sampler=$!
+	sleep 2
+	echo "\$ echo 'cut end1.1' >$sim"
+	echo 'cut end1.1' >$sim || die "the simulator" "is debugfs mounted?"
+	wait_for 20 apart || die "the cut" "'ethercat graph' should show it"
+	show ethercat graph --tree
+	sleep 2
+	echo "\$ echo 'heal end1.1' >$sim"
+	echo 'heal end1.1' >$sim
+	wait_for 20 all_in_op || die "slaves" "all of them should be in OP again"
+	wait $recorder || die "ethercat record" "see above"
+	touch "$tmp/clocks.csv.enough"
+	wait $sampler
+	rm "$tmp/clocks.csv.enough"
+	show ethercat graph --tree
+	show ethercat plot "$file" || die "ethercat plot" "see above"
+	echo "$1: station 1 stands still for at most $(still "$file" 6) ms, station 2 for" \
+		"$(still "$file" 7) ms"
+	ethercat stop
+}
+
+scene_cable() {
+	step "cable: two stations in a line; the cable between them is out for 2 s"
+	pull line ""
+	[ "$(still "$tmp/cable-line.csv" 7)" -ge 1500 ] ||
+		die "the line" "station 2 should stand still while the cable is out"
+	step "a cable back from the last slave to a second device makes it a ring"
+	pull ring "wire end2.1 -> master.1 cable=50" backup_devices=sim0b
+	[ "$(still "$tmp/cable-ring.csv" 7)" -le 50 ] ||
+		die "the ring" "station 2 should go on while the cable is out"
+	step "clocks of the ring: how far each axis is from the time that its frames bring, ns"
+	show ethercat plot "$tmp/clocks.csv" || die "ethercat plot" "see above"
+	awk -F, 'function size(x) { return x < 0 ? -x : +x }
+		NR > 1 { n++; for (i = 2; i < 4; i++) if (size($i) > most) most = size($i)
+			last = size($3) }
+		END { printf "clocks: %d samples, at most %d ns, axis 2 at the end %d ns\n",
+				n, most, last
+			exit n < 10 || last > 1000 }' "$tmp/clocks.csv" ||
+		die "clocks" "axis 2 should be within 1000 ns of the others when the ring is closed"
 }
 
 for name; do
