@@ -305,7 +305,6 @@ static void ask_slaves(struct watch *w)
 		ec_swallowed(&m->bus);
 		return;
 	}
-	ec_scan_look_at_mute(&m->bus);
 	set_present(m, count, ored & EC_AL_STATE_MASK);
 	if (count != w->count) {
 		if (w->scanned)
@@ -442,6 +441,7 @@ static void monitor_count_slaves(struct watch *w)
 	}
 	if (!all_well(w))
 		ask_slaves(w);
+	ec_scan_look_at_mute(&w->m->bus);
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
 	monitor_note_ports(w);
 	ride(w);

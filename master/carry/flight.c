@@ -252,8 +252,21 @@ int ec_flight_send(struct ec_carry *c, enum ec_post_class class,
 }
 
 /*
- * Take the results of a post from the copy of each link. Return: false: no slave has processed one
- * of its datagrams, and a copy is missing: it is not known whether one has.
+ * A copy is missing: is it not known what the slaves have done? One that no slave has processed may
+ * have been by that copy, and what is written to all of them may have reached one side of a break.
+ */
+static bool is_unknown(const struct ec_slot *slot, const struct ec_dg *dg)
+{
+	const struct ec_carry *c = slot->user;
+
+	if (slot->back == slot->sides)
+		return false;
+	return !dg->wkc || (dg->cmd == EC_CMD_BWR && !READ_ONCE(c->links->ring.measured));
+}
+
+/*
+ * Take the results of a post from the copy of each link. Return: false: that of one of its
+ * datagrams is not known.
  */
 static bool take_results(const struct ec_slot *slot, struct ec_post *post)
 {
@@ -286,7 +299,7 @@ static bool take_results(const struct ec_slot *slot, struct ec_post *post)
 		post->dg[i].sent_ns = slot->sent_ns;
 		if (post->dg[i].err) {
 			post->dg[i].err = -EIO;
-		} else if (!post->dg[i].wkc && slot->back != slot->sides) {
+		} else if (is_unknown(slot, &post->dg[i])) {
 			ec_dg_begin(&post->dg[i]);
 			known = false;
 		}

@@ -390,6 +390,20 @@ static void post_one_copy_of_two(struct kunit *test)
 	}
 }
 
+/* Slaves of one side only may have got what was written to all. */
+static void post_for_all_on_one_of_two(struct kunit *test)
+{
+	struct rig *r = rig_new(test);
+
+	rig_two_links(r);
+	r->dg[0][0].cmd = EC_CMD_BWR;
+	rig_send(r, BIT(0));
+	rig_answer(r, 0);
+	rig_give(r, 0, r->frame[0] + EC_ETH_HDR, r->len[0]);
+	msleep(60);
+	rig_expect(r, BIT(0), 1, -ETIMEDOUT);
+}
+
 /* A link that is down does not stop the other one. */
 static void post_beside_link_that_is_down(struct kunit *test)
 {
@@ -479,6 +493,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(post_device_gone),
 	KUNIT_CASE(post_on_two_links),
 	KUNIT_CASE(post_one_copy_of_two),
+	KUNIT_CASE(post_for_all_on_one_of_two),
 	KUNIT_CASE(post_beside_link_that_is_down),
 	KUNIT_CASE(post_keeps_data),
 	KUNIT_CASE(post_after_end),

@@ -26,7 +26,8 @@ static bool take_off(u8 side, const u8 *buf, size_t len)
 	const u8 *first = buf + EC_ETH_HDR + EC_FRAME_HDR;
 	u16 adp = get_unaligned_le16(first + 2);
 
-	if (first[0] != EC_CMD_FPRW || adp < POSTS_ADP || adp >= POSTS_ADP + POSTS)
+	if ((first[0] != EC_CMD_FPRW && first[0] != EC_CMD_BWR) || adp < POSTS_ADP ||
+	    adp >= POSTS_ADP + POSTS)
 		return false;
 	memcpy(rig->frame[side], buf, len);
 	rig->len[side] = EC_FRAME_HDR + (get_unaligned_le16(buf + EC_ETH_HDR) & EC_DGRAM_LEN_MASK);
