@@ -439,6 +439,7 @@ static void monitor_count_slaves(struct watch *w)
 		w->riding = false;
 		ec_rider_end(&w->m->rider);
 	}
+	ec_scan_look_at_mute(&w->m->bus);
 	if (!all_well(w))
 		ask_slaves(w);
 	ec_scan_look_at_mute(&w->m->bus);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/bitops.h>
 #include <linux/errno.h>
+#include <linux/ktime.h>
 #include <linux/math64.h>
 #include <linux/ratelimit.h>
 #include <linux/rcupdate.h>
@@ -9,7 +10,7 @@
 #include "device.h"
 #include "links.h"
 
-#define MUTE_LOOKS	3	/* of the monitor, without a frame */
+#define MUTE_NS	(1500 * NSEC_PER_MSEC)	/* without a frame; a measurement takes less */
 
 /**
  * ec_link_init() - prepare a link, without device
@@ -226,7 +227,7 @@ bool ec_link_is_up(const struct ec_link *link)
  */
 void ec_link_hears(struct ec_link *link)
 {
-	link->misses = 0;
+	link->missed_ns = 0;
 	WRITE_ONCE(link->mute, false);
 }
 
@@ -234,7 +235,7 @@ void ec_link_hears(struct ec_link *link)
  * ec_link_missed() - a copy of a link has not returned although the link is up
  * @link: link of a ring whose other link works
  *
- * After MUTE_LOOKS of them without any frame the link is mute.
+ * After MUTE_NS without any frame the link is mute.
  *
  * Context: The monitor.
  * Return: whether it is mute from now on.
@@ -243,11 +244,11 @@ bool ec_link_missed(struct ec_link *link)
 {
 	u64 rx = atomic64_read(&link->stats.rx_frames);
 
-	if (!link->misses || rx != link->misses_rx) {
-		link->misses = 0;
-		link->misses_rx = rx;
+	if (!link->missed_ns || rx != link->missed_rx) {
+		link->missed_ns = ktime_get_ns();
+		link->missed_rx = rx;
 	}
-	if (READ_ONCE(link->mute) || ++link->misses < MUTE_LOOKS)
+	if (READ_ONCE(link->mute) || ktime_get_ns() - link->missed_ns < MUTE_NS)
 		return false;
 	WRITE_ONCE(link->mute, true);
 	return true;

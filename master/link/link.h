@@ -75,10 +75,10 @@ struct ec_link {
 	bool up;
 	/** @mute: up, but no frame returns: the other link alone is used; the monitor's */
 	bool mute;
-	/** @misses: looks of the monitor without a copy although it is up; the monitor's */
-	u8 misses;
-	/** @misses_rx: frames received before the first of these */
-	u64 misses_rx;
+	/** @missed_ns: since when no copy has returned although it is up (ktime); the monitor's */
+	u64 missed_ns;
+	/** @missed_rx: frames received before */
+	u64 missed_rx;
 	/** @slaves: slaves that answered the last broadcast on this link */
 	u32 slaves;
 	/** @al_states: OR of their AL states */

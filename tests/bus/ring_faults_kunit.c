@@ -418,7 +418,7 @@ static void ring_end_mute(struct kunit *test)
 	ec_sim_link_second_withdraw(b->link);
 	dev = ecdev_offer("bus0b", mac, &mute_ops, buf);
 	KUNIT_ASSERT_FALSE(test, IS_ERR(dev));
-	msleep(500);
+	msleep(3000);
 	bus_idle(b);
 	ring_open(b, SLAVES);
 	KUNIT_EXPECT_TRUE(test, bus_links(b)->link[EC_BACKUP].mute);
