@@ -101,7 +101,7 @@ void ec_ring_break_report(struct ec_bus *bus)
 }
 
 /**
- * ec_ring_break_is_news() - is the ring closed or open, and no event says so?
+ * ec_ring_break_is_news() - is the ring closed or open, and no event has reported it?
  * @bus: bus
  *
  * Context: The monitor thread.
