@@ -442,7 +442,6 @@ static void monitor_count_slaves(struct watch *w)
 	ec_scan_look_at_mute(&w->m->bus);
 	if (!all_well(w))
 		ask_slaves(w);
-	ec_scan_look_at_mute(&w->m->bus);
 	w->stays = w->irq & EC_ECAT_EVENT_AL ? w->stays + w->woken : 0;
 	monitor_note_ports(w);
 	ride(w);

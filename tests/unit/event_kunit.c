@@ -193,7 +193,7 @@ static void event_each_kind_has_text_and_unique_name(struct kunit *test)
 			if (ec_event_kind(other))
 				KUNIT_EXPECT_STRNEQ(test, ec_event_kind(other)->name, k->name);
 	}
-	KUNIT_EXPECT_EQ(test, n, 55u);
+	KUNIT_EXPECT_EQ(test, n, 57u);
 }
 
 /* A record of any content, a buffer of any size. */
