@@ -57,6 +57,7 @@ void ec_dc_look_behind(struct ec_dc *dc, const s32 *shift)
 	    b->slaves != slaves || shift) {
 		/* odd: the cycle uses none of it; pairs with ec_ring_clock_wanted() */
 		WRITE_ONCE(b->number, b->number + 1);
+		/* before what follows */
 		smp_wmb();
 		WRITE_ONCE(b->delay, delay);
 		WRITE_ONCE(b->ref, ref);

@@ -36,8 +36,8 @@ bool ec_ring_clock_wanted(struct ec_ring_clock *r, const struct ec_dc *dc)
 			.samples = READ_ONCE(dc->behind.given) ? EC_RING_SAMPLES : 0,
 		};
 	r->station = READ_ONCE(dc->behind.station);
+	/* the rest before the number: else another break, which begins with the next cycle */
 	smp_rmb();
-	/* else another break: it begins with the next cycle */
 	return READ_ONCE(dc->behind.number) == number && r->station &&
 	       READ_ONCE(dc->mode) == EC_DC_COMPENSATE;
 }
