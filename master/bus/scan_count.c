@@ -116,7 +116,9 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 		return false;
 	if (!ec_ring_ends_fit(bus, dg))
 		return false;
-	note_copies(bus, dg);
+	/* nothing returns from a port that is closed to measure delays */
+	if (!READ_ONCE(l->ring.measured))
+		note_copies(bus, dg);
 	ec_ring_set(&l->ring, dg->crossed, came(dg, EC_MAIN) ? dg->side_back[EC_MAIN] : 0);
 	return true;
 }

@@ -106,8 +106,11 @@ bool ec_ring_clock_take(struct ec_ring_clock *r, const struct ec_dc *dc,
 		return false;
 	if (f->gives) {
 		*time = is - r->shift;
-		/* without a reply of the clock it is the time that was sent */
-		return READ_ONCE(dc->behind.ref) && *time != f->time;
+		/* without a reply of the clock it is the time that was sent, and one count less */
+		if (*time == f->time && wkc != r->wkc)
+			return false;
+		r->wkc = wkc;
+		return READ_ONCE(dc->behind.ref);
 	}
 	if (!f->reads || ec_ring_clock_knows(r))
 		return false;

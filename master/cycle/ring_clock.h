@@ -14,6 +14,8 @@ struct ec_ring_clock {
 	u32 break_seen;
 	/** @station: a clock behind the break */
 	u16 station;
+	/** @wkc: working counter of the last reply of the reference clock, behind the break */
+	u16 wkc;
 	/** @samples: times that were read behind the break so far, up to EC_RING_SAMPLES */
 	u32 samples;
 	/** @sum: of their differences from the time that the reference clock had, ns */
