@@ -55,7 +55,7 @@ void ec_dc_look_behind(struct ec_dc *dc, const s32 *shift)
 	ref = s && s == dc->ref;
 	if (b->station != station || b->delay != delay || b->front != front || b->ref != ref ||
 	    b->slaves != slaves || shift) {
-		/* odd: the cycle uses none of it; pairs with ec_ring_clock_wanted() */
+		/* bit 0: the cycle uses none of it; pairs with ec_ring_clock_wanted() */
 		WRITE_ONCE(b->number, b->number + 1);
 		/* before what follows */
 		smp_wmb();

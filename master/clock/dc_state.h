@@ -197,7 +197,7 @@ struct ec_dc_app {
 
 /** struct ec_dc_behind - clocks that frames of the backup link reach alone */
 struct ec_dc_behind {
-	/** @number: of the break; changes with what follows, and is odd meanwhile */
+	/** @number: of the break; changes with what follows; bit 0: that is changed now */
 	u32 number;
 	/** @station: of the reference clock if it is behind, else of the first clock; 0: none */
 	u16 station;

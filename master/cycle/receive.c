@@ -298,7 +298,7 @@ static bool is_overdue(const struct ec_cycle *c, const struct ec_cyc_flight *f, 
 /*
  * Of several copies the last one is awaited until the first receive after the next send, which
  * takes the data of the others. One of a link that was missing the last time is not awaited, nor
- * that of the backup link while delays are measured, but not if only the copy is there that passes
+ * that of the backup link while delays are measured, but not if only that copy has come that passes
  * a closed ring the other way.
  */
 static noinline bool has_copies(const struct ec_cycle *c, const struct ec_cyc_flight *f,
