@@ -1,18 +1,19 @@
 #!/bin/bash
 # SPDX-License-Identifier: GPL-2.0-only
 #
-# What takes too long for every check: 20,000 random events at ports; each function of class A
-# taken away, whose tests have to fail; all suites in a UML kernel with KASAN and lockdep, and all
-# of tests/system on all kernels, among them one that reports data races and one that reports wrong
-# use of memory, locks and DMA; with a native network card of three models, also behind an IOMMU,
-# the files that the card matters to; a million cycles of it, also while its cable is pulled;
-# 600,000 cycles beside readers of events; 10,000,000 inputs of the reader of bus files; the
-# packages of Debian 12 and 13; README's two commands in a fresh root of Debian 13; a reboot and a
-# suspend with both kinds of device; Debian's Prometheus, which scrapes the metrics; Debian's numpy,
-# which opens recordings; all benchmarks, the cycle also with the legacy interrupt of the card. The
-# last line is "N passed, N failed"; results with their date are in Documentation/results.rst.
+# What takes too long for every check: 20,000 random events at ports; an hour of faults in a
+# ring; each function of class A taken away, whose tests have to fail; all suites in a UML kernel
+# with KASAN and lockdep, and all of tests/system on all kernels, among them one that reports
+# data races and one that reports wrong use of memory, locks and DMA; with a native network card
+# of three models, also behind an IOMMU, the files that the card matters to; a million cycles of
+# it, also while its cable is pulled; 600,000 cycles beside readers of events; 10,000,000 inputs
+# of the reader of bus files; the packages of Debian 12 and 13; README's two commands in a fresh
+# root of Debian 13; a reboot and a suspend with both kinds of device; Debian's Prometheus, which
+# scrapes the metrics; Debian's numpy, which opens recordings; all benchmarks, the cycle also
+# with the legacy interrupt of the card. The last line is "N passed, N failed"; results with
+# their date are in Documentation/results.rst.
 #
-# usage: check-long.sh [ports|groups|without|bus-files|uml-debug|nic-MODEL|iommu-MODEL|cycles|
+# usage: check-long.sh [ports|groups|ring|without|bus-files|uml-debug|nic-MODEL|iommu-MODEL|cycles|
 #	flaps|events|packages|packages-13|check-13|reboot|prometheus|numpy|bench|bench-legacy|
 #	KERNEL...]
 
@@ -50,15 +51,17 @@ run() {
 	ports) EC_UML_TIMEOUT=3000 EC_UML_ARGS=random_kunit.runs=80 tests/uml/run.sh bus_random ;;
 	groups) EC_UML_TIMEOUT=3000 EC_UML_ARGS=groups_random_kunit.runs=100 \
 		tests/uml/run.sh bus_groups_random ;;
+	ring) EC_UML_TIMEOUT=3000 EC_UML_ARGS=ring_soak_kunit.minutes=60 \
+		tests/uml/run.sh bus_ring_soak ;;
 	uml-debug) EC_UML_TIMEOUT=${EC_UML_TIMEOUT:-3000} tests/uml/run.sh --debug ;;
 	*) EC_KERNEL=$1 tests/system/run.sh ;;
 	esac
 }
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
-for k in ${*:-ports groups without bus-files uml-debug 6.1-rt 6.1 6.12-rt 6.12 6.1-kcsan \
-	6.1-kasan nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events packages \
-	packages-13 check-13 reboot prometheus numpy bench bench-legacy}; do
+for k in ${*:-ports groups ring without bus-files uml-debug 6.1-rt 6.1 6.12-rt 6.12 \
+	6.1-kcsan 6.1-kasan nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events \
+	packages packages-13 check-13 reboot prometheus numpy bench bench-legacy}; do
 	echo "=== $k"
 	began=$SECONDS
 	run "$k" >"$log" 2>&1
