@@ -86,6 +86,8 @@ struct ec_bus {
 	u64 probe_ns;
 	/** @turned: device number of a slave of a ring that is the wrong way round, 0: none */
 	u64 turned;
+	/** @turned_seen: where the last scan has found such a slave; the monitor's */
+	u32 turned_seen;
 	/** @turned_told: @turned as the log has it; the monitor's */
 	u64 turned_told;
 	/** @places: positions of the closed ring */

@@ -108,6 +108,15 @@ static bool ends_are_exchanged(const struct scan *sc)
 	return true;
 }
 
+/* One scan may have read a ring whose cables are cut and healed meanwhile. */
+static bool turned_again(const struct scan *sc, u32 at)
+{
+	bool again = sc->bus->turned_seen == at;
+
+	sc->bus->turned_seen = at;
+	return again || !sc->turned;
+}
+
 /**
  * ec_ring_ends_judge() - are the slaves of an open ring reached by port 0 from the main device?
  * @sc: scan that was proved; @turned: a slave that is the wrong way round
@@ -115,7 +124,8 @@ static bool ends_are_exchanged(const struct scan *sc)
  * If all of them are reached from the backup device by it, the links exchange their devices.
  *
  * Context: The monitor thread.
- * Return: 0; -EAGAIN: they have: positions are others now.
+ * Return: 0; -EAGAIN: they have: positions are others now; or one more scan is to confirm a slave
+ * that is the wrong way round.
  */
 int ec_ring_ends_judge(struct scan *sc)
 {
@@ -128,10 +138,11 @@ int ec_ring_ends_judge(struct scan *sc)
 		exchange(sc->bus);
 		return -EAGAIN;
 	}
-	for (i = 0; i < sc->n && !sc->turned; i++)
-		if (is_contrary(sc, i) || came_contrary(sc, i))
-			sc->turned = sc->slaves[i];
-	return 0;
+	for (i = 0; i < sc->n && !is_contrary(sc, i) && !came_contrary(sc, i); i++)
+		;
+	if (i < sc->n)
+		sc->turned = sc->slaves[i];
+	return turned_again(sc, i) ? 0 : -EAGAIN;
 }
 
 /**

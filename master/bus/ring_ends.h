@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: GPL-2.0-only */
-/* How a ring is connected: which device is at which end, and slaves that are the wrong way round. */
+/* How a ring is connected: the device at each end, and slaves that are the wrong way round. */
 #ifndef EC_RING_ENDS_H
 #define EC_RING_ENDS_H
 

@@ -47,7 +47,8 @@ static void note_copies(struct ec_bus *bus, const struct ec_dg *dg)
 	struct ec_link *link;
 
 	ec_links_for_each(bus->links, link) {
-		if (came(dg, link->side))
+		/* one that has crossed was received by the other device */
+		if (came(dg, link->side) || dg->crossed)
 			ec_link_hears(link);
 		else if (ec_link_is_up(link) && ec_link_missed(link))
 			ec_warn(bus,

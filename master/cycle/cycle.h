@@ -206,6 +206,10 @@ struct ec_cycle {
 	u64 from_backup;
 	/** @shown_backup: the same in the status page */
 	u64 shown_backup;
+	/** @opened: changes with each frame that shows a ring open which was closed, or the reverse */
+	u16 opened;
+	/** @crossed: the last frame has crossed the ring */
+	bool crossed;
 	/** @last: frames of the last send */
 	struct ec_cyc_wire last;
 	/** @send: number of the last send */

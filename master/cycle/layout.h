@@ -51,6 +51,12 @@ struct ec_cyc_dgram {
 	u16 spare;
 	/** @full: working counter with all slaves */
 	u16 full;
+	/** @of_main: in a ring: that of the last copy of the main link, if both were processed */
+	u16 of_main;
+	/** @of_backup: likewise of the backup link */
+	u16 of_backup;
+	/** @of_open: struct ec_cycle.opened then */
+	u16 of_open;
 	/** @first_copy: first area that is copied into it, in struct ec_layout.areas */
 	u32 first_copy;
 	/** @n_copies: areas that are copied into it */

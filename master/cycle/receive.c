@@ -9,8 +9,8 @@
 #include "../base/bytes.h"
 #include "../base/once64.h"
 #include "../base/report.h"
-#include "../wire/merge.h"
 #include "receive.h"
+#include "ring_join.h"
 #include "units_run.h"
 
 /* Parts of inputs that are larger than a datagram; the last one completes them. */
@@ -321,63 +321,6 @@ static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
 	return unlikely(!c->links->only) && has_copies(c, f, slot, now);
 }
 
-/* Links whose copy was missing, unless late ones show that these do return. */
-static void note_mute(struct ec_cycle *c, u8 missing)
-{
-	u64 late = 0;
-	u8 side;
-
-	if (likely(!(missing | c->mute)))
-		return;
-	for (side = 0; side < EC_MAX_LINKS; side++)
-		late += atomic64_read(&c->links->link[side].stats.late);
-	c->mute = late == c->copies_late ? missing : 0;
-	c->copies_late = late;
-}
-
-/* Domains in the copy of the backup link that slaves have processed. */
-static void note_backup(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *copy)
-{
-	const struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
-	const u8 *data = copy + EC_FRAME_HDR + EC_DGRAM_HDR;
-	unsigned int i;
-
-	for (i = 0; i < f->count; i++, d++) {
-		if (!(f->queued & BIT_ULL(d->domain)))
-			continue;
-		if (get_unaligned_le16(data + d->len))
-			c->from_backup |= BIT_ULL(d->domain);
-		data += d->len + EC_DGRAM_OVERHEAD;
-	}
-}
-
-/*
- * The copies of both ends of a ring: one reply. One that has crossed has passed all slaves, also
- * if the other one was processed by some as the ring was just breaking or healing: their values
- * would be those of two moments. Clock datagrams have a frame without domains.
- */
-static noinline void join_copies(struct ec_cycle *c, const struct ec_cyc_flight *f,
-				 struct ec_slot *slot)
-{
-	u8 processed = slot->back & ~slot->blank, crossed = processed & slot->crossed;
-
-	if (!f->count)
-		return;
-	note_mute(c, slot->sides & ~slot->back);
-	ec_links_note_ring(c->links, slot);
-	if (is_power_of_2(crossed)) {
-		slot->reply = slot->got[__ffs(crossed)];
-		return;
-	}
-	if (processed & ~crossed & BIT(EC_BACKUP))
-		note_backup(c, f, slot->got[EC_BACKUP]);
-	if (processed != (BIT(EC_MAIN) | BIT(EC_BACKUP)))
-		return;
-	slot->reply = c->links->slots.merged;
-	ec_merge_frame(c->links->slots.merged, slot->got[EC_MAIN], slot->got[EC_BACKUP],
-		       ec_slot_body(slot), slot->eth_len - EC_ETH_HDR);
-}
-
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
 	return is_overdue(c, f, now) && ec_slot_cancel(f->slot, *now);
@@ -430,7 +373,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
 			if (unlikely(!only))
-				join_copies(c, f, slot);
+				ec_ring_join(c, f, slot);
 			irq |= take_frame(c, f);
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);

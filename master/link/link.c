@@ -94,7 +94,7 @@ int ec_link_send_traced(const struct ec_link *link, struct ecdev *dev, u8 *buf, 
 
 /*
  * Those of @sides that are up and not mute; all if none is. One that the monitor has seen last as
- * down is looked at again: a ring that is closed there needs its frames at once.
+ * down is read again: a ring that is closed there needs its frames at once.
  */
 static u8 live(const struct ec_links *l, u8 sides)
 {

@@ -55,6 +55,7 @@ more=()
 }
 tmp=$(mktemp -d) || exit 1
 trap 'rm -rf "$tmp"' EXIT
-tests/vm/run.sh --kernel "${EC_KERNEL:-6.1-rt}" --icount --nics ${more[@]+"${more[@]}"} --monitor --rw "$tmp" \
+tests/vm/run.sh --kernel "${EC_KERNEL:-6.1-rt}" --icount --nics ${more[@]+"${more[@]}"} \
+	--monitor --rw "$tmp" \
 	--qemu "-cpu max,-erms,-fsrm" -- "$0" guest "${1:-1}" "$tmp" &&
 	tests/bench/profile.py "$tmp" "$build/modules" "${@:2}"

@@ -551,7 +551,7 @@ static void shown(struct bus *b, u32 state, u32 events, u32 kind)
 }
 
 /* The end at the computer: no slave shows an event, and as many are before the break. */
-static void ring_device_is_told(struct kunit *test)
+static void ring_device_has_event(struct kunit *test)
 {
 	struct bus *b = bus_up(test, ring_eight, SLAVES);
 
@@ -601,7 +601,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_end_without_device),
 	KUNIT_CASE(ring_place_of_loss),
 	KUNIT_CASE(ring_loss_between_cuts),
-	KUNIT_CASE(ring_device_is_told),
+	KUNIT_CASE(ring_device_has_event),
 	KUNIT_CASE(ring_copy_is_lost),
 	{}
 };
