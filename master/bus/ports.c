@@ -131,7 +131,9 @@ static bool may_write(const struct ec_slave *s)
 
 static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, const u8 *is)
 {
-	if (dg[0].err || dg[0].wkc != 1 || dg[1].err || dg[1].wkc != 1)
+	/* it may have been executed although its reply is lost */
+	s->ports.unsure = dg[0].err || dg[0].wkc != 1 || dg[1].err || dg[1].wkc != 1;
+	if (s->ports.unsure)
 		return;
 	s->ports.control = is[0];
 	s->ports.loops = is[1];
@@ -144,7 +146,7 @@ static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, c
 
 static bool has_to_write(const struct ec_slave *s)
 {
-	return wanted_loops(s) != s->ports.loops && may_write(s);
+	return (wanted_loops(s) != s->ports.loops || s->ports.unsure) && may_write(s);
 }
 
 /* Slaves whose loop control is not what it has to be. */

@@ -75,6 +75,8 @@ static void close_them(struct ec_bus *bus, struct ec_slave **list, struct ec_dg 
 	for (i = 0; i < k; i++)
 		if (!dg[i].err && dg[i].wkc == 1)
 			list[i]->ports.loops = v[i][2];
+		else
+			list[i]->ports.unsure = true;
 }
 
 static bool look_is_due(struct ec_bus *bus)

@@ -47,6 +47,7 @@ struct ec_loss {
  * @fast: ports that are opened as soon as they have a link, a bit each; of the session
  * @settled: connected before process data began
  * @let_in: by port: a user has just let the device behind it in
+ * @unsure: a write whose reply is lost may have been executed: @loops is to be written again
  * @lost: its counters of lost links, 0x0310, as read last
  * @door: by port
  * @loss: by port
@@ -54,6 +55,7 @@ struct ec_loss {
 struct ec_ports {
 	u8 control;
 	u8 loops;
+	bool unsure;
 	bool fixed;
 	bool doors;
 	u8 fast;

