@@ -143,7 +143,7 @@ struct ect_slave {
 	uint8_t port_kept[ECT_PORTS];	/* ECT_PORT_*: why a port is closed despite its link */
 	uint8_t port_wait_s[ECT_PORTS];	/* ECT_PORT_LOSSES: it opens after such a time of link */
 	uint16_t identification;	/* explicit device identification, 0: none */
-	uint16_t missing_before;	/* slaves of the closed ring that are missing before this one */
+	uint16_t missing_before;	/* slaves of a ring that are missing before it */
 	uint16_t reserved[2];
 };
 

@@ -206,7 +206,7 @@ struct ec_cycle {
 	u64 from_backup;
 	/** @shown_backup: the same in the status page */
 	u64 shown_backup;
-	/** @opened: changes with each frame that shows a ring open which was closed, or the reverse */
+	/** @opened: changes with each frame by which a ring has opened or closed */
 	u16 opened;
 	/** @crossed: the last frame has crossed the ring */
 	bool crossed;
