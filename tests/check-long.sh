@@ -60,7 +60,8 @@ run() {
 
 tests/install-deps.sh build vm capture uml json cross || exit 1
 for k in ${*:-ports groups ring without bus-files uml-debug 6.1-rt 6.1 6.12-rt 6.12 \
-	6.1-kcsan 6.1-kasan nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps events \
+	6.1-kcsan 6.1-kasan nic-e1000e nic-e1000 nic-igb iommu-e1000e iommu-igb cycles flaps \
+	events \
 	packages packages-13 check-13 reboot prometheus numpy bench bench-legacy}; do
 	echo "=== $k"
 	began=$SECONDS

@@ -287,7 +287,8 @@ clocks() {
 	until [ -e "$1.enough" ]; do
 		all=()
 		while read -r line; do
-			[[ ! $line =~ registers:\ difference\ (-?[0-9]+) ]] || all+=("${BASH_REMATCH[1]}")
+			[[ ! $line =~ registers:\ difference\ (-?[0-9]+) ]] ||
+				all+=("${BASH_REMATCH[1]}")
 		done < <(ethercat dc -v)
 		read -r t _ </proc/uptime
 		[ ${#all[@]} != 8 ] || echo "$t,${all[2]},${all[6]}"

@@ -35,8 +35,8 @@ is() {
 
 @test "why names each cause once and exits with 1" {
 	for c in no_device link_down no_slaves no_cycle cycle_too_short cable different \
-		wrong_place missing no_alias ring_place group_absent group_not_started not_requested boot \
-		no_reply sdo mailbox \
+		wrong_place missing no_alias ring_place group_absent group_not_started \
+		not_requested boot no_reply sdo mailbox \
 		pdo al_refused watchdog al_timeout sync working_counter; do
 		[ "$(causes $c)" = $c ] || { echo "$c: $(causes $c)"; false; }
 		FAKE_WHY=$c run ethercat why
