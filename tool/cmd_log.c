@@ -211,7 +211,7 @@ const struct cmd cmd_log = {
 		"port_kept (port, reason, losses, period_s, longest_wait_s, vendor_id, product_code,\n"
 		"slaves), line_errors (port, invalid_frames, receiver_errors, duration_s, to_slave, to_port,\n"
 		"to_master), ring_open (slave, port, next), ring_closed (slaves),\n"
-		"ring_exchanged (exchanged), ring_turned,\n"
+		"ring_exchanged (exchanged), ring_turned (none),\n"
 		"al_state (state, before, slaves, lowest),\n"
 		"al_state_left (state, before), al_error (state, al_status_code), emergency\n"
 		"(code, error_register, data, data_4, profile), slave_failed (error, al_status_code, cause,\n"

@@ -118,7 +118,7 @@ struct ec_ioc_master {
 	__u32 no_cycle;		/* active, but the application sends no cyclic frames */
 	__u32 held;		/* the list of slaves is held, see ecrt_master_reserve() */
 	__u32 links_up;		/* bit n: device n has a link */
-	__u32 ring_turned;	/* 1 + position of a slave that is the wrong way round; 0: none */
+	__u32 reserved;
 	char owner[EC_UAPI_STRING];	/* application that has reserved the master, or empty */
 	__u32 left;		/* detached by EC_IOC_DETACH: EC_IOC_OUTPUT works */
 	__u32 ring;		/* EC_RING_* */
@@ -127,6 +127,8 @@ struct ec_ioc_master {
 	__u32 ring_port;	/* its port there; EC_EVENT_NONE: not known */
 	__u32 ring_next;	/* behind the break; EC_EVENT_NONE: the backup device */
 	__u32 ring_exchanged;	/* device 0 has the name of the backup device */
+	__u32 ring_turned;	/* 1 + position of a slave that is the wrong way round; 0: none */
+	__u32 reserved2;
 };
 
 /* struct ec_ioc_master.ring */
@@ -263,7 +265,7 @@ struct ec_ioc_slave {
 	__u8 device_index;	/* 0 main, 1 backup */
 	__u16 dl_status;
 	__u16 features;		/* register 0x0008 */
-	__u16 missing_before;	/* slaves of the closed ring that are missing before this one */
+	__u16 reserved;
 	__u32 transmission_delay;
 	__u32 sii_words;
 	__u32 differs;		/* identity differs from @config */
@@ -272,7 +274,8 @@ struct ec_ioc_slave {
 	__u16 dc_set;		/* synchronized for the active application */
 	__u16 dc_odd;		/* delay unreliable: receive times contradict the topology */
 	__u16 identification;	/* explicit device identification, 0: none */
-	__u16 reserved2[3];
+	__u16 missing_before;	/* slaves of the closed ring that are missing before this one */
+	__u16 reserved2[2];
 };
 
 /* what the EEPROM of a slave calls it */

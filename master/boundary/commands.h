@@ -8,8 +8,7 @@ CMD(EC_IOC_VERSION, ec_ioc_version, 0)
 CMD(EC_IOC_REASON, ec_ioc_reason, 0)
 CMD(EC_IOC_MASTER, ec_ioc_master, 0, OLDEST(ec_ioc_master, owner))
 CMD(EC_IOC_DEVICE, ec_ioc_device, 0)
-CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave),
-	RSV(FIELD(ec_ioc_slave, missing_before), FIELD(ec_ioc_slave, reserved2)),
+CMD(EC_IOC_SLAVE, ec_ioc_slave, 0, SHOW_SLAVE(ec_ioc_slave), RSV2(ec_ioc_slave),
 	OLDEST(ec_ioc_slave, dc_odd))
 CMD(EC_IOC_SLAVE_NAMES, ec_ioc_slave_names, 0, SLAVE(ec_ioc_slave_names), RSV1(ec_ioc_slave_names))
 CMD(EC_IOC_SLAVE_WHY, ec_ioc_slave_why, 0, SHOW_SLAVE(ec_ioc_slave_why), RSV1(ec_ioc_slave_why))

@@ -10,7 +10,7 @@
 
 #define NOISE_NS	40	/* of receive times */
 
-static void exchange(struct ec_bus *bus)
+static void exchange_ends(struct ec_bus *bus)
 {
 	struct ec_event_more more = { .detail = NULL };
 	struct ec_links *l = bus->links;
@@ -38,7 +38,7 @@ bool ec_ring_ends_fit(struct ec_bus *bus, const struct ec_dg *dg)
 	if (dg->crossed != (BIT(EC_MAIN) | BIT(EC_BACKUP)) || dg->side_back[EC_MAIN] ||
 	    !dg->side_back[EC_BACKUP])
 		return true;
-	exchange(bus);
+	exchange_ends(bus);
 	return false;
 }
 
@@ -68,7 +68,7 @@ enum way {
 };
 
 /* By which port did the frame arrive first? */
-static enum way way_of(const struct scan *sc, unsigned int i)
+static enum way way_in(const struct scan *sc, unsigned int i)
 {
 	const u8 *recv = sc->regs[i].recv;
 	u8 open = open_ports(sc, i);
@@ -89,12 +89,12 @@ static enum way way_of(const struct scan *sc, unsigned int i)
 /* From the main device frames arrive by port 0, from the backup device by another one. */
 static bool came_contrary(const struct scan *sc, unsigned int i)
 {
-	return way_of(sc, i) == (i < sc->front ? BY_ANOTHER : BY_PORT_0);
+	return way_in(sc, i) == (i < sc->front ? BY_ANOTHER : BY_PORT_0);
 }
 
 static bool came_right(const struct scan *sc, unsigned int i)
 {
-	return way_of(sc, i) == (i < sc->front ? BY_PORT_0 : BY_ANOTHER);
+	return way_in(sc, i) == (i < sc->front ? BY_PORT_0 : BY_ANOTHER);
 }
 
 /* Is the first slave of each end contrary, and no other? Then frames came to all from there. */
@@ -135,7 +135,7 @@ int ec_ring_ends_judge(struct scan *sc)
 	if (sc->bus->links->ring.state != EC_RING_OPEN || sc->bus->turned)
 		return 0;
 	if (ends_are_exchanged(sc)) {
-		exchange(sc->bus);
+		exchange_ends(sc->bus);
 		return -EAGAIN;
 	}
 	for (i = 0; i < sc->n && !is_contrary(sc, i) && !came_contrary(sc, i); i++)

@@ -30,7 +30,7 @@ void ec_ring_places_exit(struct ec_ring_places *p)
 }
 
 /* The ring is closed: remember its devices. */
-static void remember(struct ec_ring_places *p, struct ec_slave **slaves, unsigned int n)
+static void remember_all(struct ec_ring_places *p, struct ec_slave **slaves, unsigned int n)
 {
 	unsigned int i;
 
@@ -93,7 +93,7 @@ void ec_ring_places_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned 
 	p->front = min(bus->front, n);
 	p->n_list = n;
 	if (state == EC_RING_CLOSED && whole && n && !bus->turned) {
-		remember(p, slaves, n);
+		remember_all(p, slaves, n);
 		p->last = bus->known.last;
 	} else if (p->open && p->n) {
 		find_all(bus, p, slaves, n);

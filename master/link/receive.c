@@ -18,8 +18,8 @@ static __always_inline bool same(struct ec_slot *slot, const u8 *reply, size_t l
 }
 
 /* Enter the state FILL of the slot that awaits the copy of a link. */
-static __always_inline enum ec_match hold(struct ec_slot *slot, u32 seq, u8 side,
-					  const u8 *data, size_t len, u16 *touched)
+static __always_inline enum ec_match hold_slot(struct ec_slot *slot, u32 seq, u8 side,
+					       const u8 *data, size_t len, u16 *touched)
 {
 	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
 		/* a cancelled frame; otherwise a second copy of a reply */
@@ -38,7 +38,7 @@ static __always_inline enum ec_match fill_copy(const struct ec_link *by, struct 
 					       bool *last)
 {
 	u16 touched = 0;
-	enum ec_match what = hold(slot, seq, side, data, len, &touched);
+	enum ec_match what = hold_slot(slot, seq, side, data, len, &touched);
 
 	if (what != EC_MATCH_DONE)
 		return what;
@@ -94,10 +94,10 @@ static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link 
  * Fill the slot of a master with one link. A reply to the cycle may stay in the memory of the
  * device, see struct ec_link.keep: the cycle owner takes it before it leaves the links.
  */
-static __always_inline enum ec_match fill(const struct ec_link *by, struct ec_slot *slot, u32 seq,
-					  u8 side, const u8 *data, size_t len)
+static __always_inline enum ec_match fill_slot(const struct ec_link *by, struct ec_slot *slot,
+					       u32 seq, u8 side, const u8 *data, size_t len)
 {
-	enum ec_match what = hold(slot, seq, side, data, len, NULL);
+	enum ec_match what = hold_slot(slot, seq, side, data, len, NULL);
 	void (*done)(struct ec_slot *slot);
 
 	if (what != EC_MATCH_DONE)
@@ -137,7 +137,7 @@ static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_l
 		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
 								   EC_MATCH_UNMATCHED;
 	return unlikely(s->copies) ? fill_two(s, by, slot, src, data, len) :
-				     fill(by, slot, seq, src[1], data, len);
+				     fill_slot(by, slot, seq, src[1], data, len);
 }
 
 static __always_inline enum ec_match receive(struct ec_link *link, const u8 *src,

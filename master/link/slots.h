@@ -231,7 +231,7 @@ static inline bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, b
 				bool blank)
 {
 	if (blank && slot->sides != BIT(side)) {
-		slot->blank |= BIT(side);
+		WRITE_ONCE(slot->blank, slot->blank | BIT(side));
 	} else if (keep) {
 		slot->got[side] = data;
 		slot->kept |= BIT(side);

@@ -80,6 +80,16 @@ int ecrt_master(ec_master_t *m, ec_master_info_t *info)
 	return 0;
 }
 
+/* it is no ring */
+int ecrt_master_link_state(const ec_master_t *m, unsigned int device,
+			   ec_master_link_state_t *state)
+{
+	if (!m || device)
+		return -EINVAL;
+	*state = (ec_master_link_state_t){ .slaves_responding = SLAVES, .link_up = 1 };
+	return 0;
+}
+
 int ecrt_master_get_slave(ec_master_t *m, uint16_t position, ec_slave_info_t *info)
 {
 	const struct machine_slave *s = &machine[position];
