@@ -97,7 +97,8 @@ static void config(struct ec_ioc_config *c)
 {
 	bool absent = wrong("cable") || wrong("different") || wrong("wrong_place") ||
 		      wrong("missing") || wrong("no_alias") || wrong("alias_other") ||
-		      wrong("group_absent") || wrong("group_not_started") || wrong("older");
+		      wrong("group_absent") || wrong("group_not_started") ||
+		      wrong("ring_place") || wrong("older");
 
 	c->slave_position = c->index && absent ? -1 : (__s32)c->index + 1;
 	c->al_status = 8;
