@@ -174,8 +174,8 @@ app_ends() {
 	kill -TERM $app
 	wait $app
 	app=
+	# values are not judged: a slave in SAFEOP counts, and does not take outputs
 	tail -n 1 "$BATS_TEST_TMPDIR/app"
-	seen_is wrong 0
 }
 
 @test "the ring is open at the start: all slaves are found in their order and run" {
