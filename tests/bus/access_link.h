@@ -131,6 +131,12 @@ static inline void bus_one_copy(const struct bus *b, struct ec_slot *slot)
 		slot->copy[side] = ec_slot_body(slot);
 }
 
+/* does a slave of the ring seem to be the wrong way round? */
+static inline bool bus_ring_turned(const struct bus *b)
+{
+	return READ_ONCE(b->m->bus.turned);
+}
+
 static inline struct ec_riders *bus_riders(const struct bus *b)
 {
 	return &b->m->riders;

@@ -397,7 +397,7 @@ static void calm(struct soak *s, bool all)
 /* A ring that seems to have a slave the wrong way round has to close before an activation. */
 static void restart(struct soak *s)
 {
-	calm(s, READ_ONCE(s->b->m->bus.turned));
+	calm(s, bus_ring_turned(s->b));
 	cyc_release(&s->c);
 	configure(s);
 	s->restarts++;
