@@ -354,11 +354,8 @@ static bool all_well(struct watch *w)
 	if (!w->riding)
 		return false;
 	w->riding = false;
-	if (READ_ONCE(m->links.ring.news)) {
-		ec_rider_end(&m->rider);
-		return false;
-	}
-	if (ec_rider_end(&m->rider) || !w->scanned || !w->link_up || r->back != w->count)
+	if (ec_rider_end(&m->rider) || READ_ONCE(m->links.ring.news) || !w->scanned ||
+	    !w->link_up || r->back != w->count)
 		return false;
 	ored = get_unaligned_le16(r->data);
 	survey(w);
@@ -761,10 +758,9 @@ int ec_monitor_start(struct ec_master *m)
 {
 	struct task_struct *t = kthread_run(monitor, m, "EtherCAT%u", m->base->index);
 
-	if (IS_ERR(t))
-		return PTR_ERR(t);
-	m->monitor = t;
-	return 0;
+	if (!IS_ERR(t))
+		m->monitor = t;
+	return PTR_ERR_OR_ZERO(t);
 }
 
 /**

@@ -63,16 +63,16 @@ static bool find_place(u32 *at, struct ec_slave **slaves, unsigned int front,
 void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
 {
 	u32 *at = bus->break_at, front = min(bus->front, n), was[2] = { at[0], at[1] };
-	bool told = bus->ring_told[0] == EC_RING_OPEN;
+	bool open = bus->ring_told[0] == EC_RING_OPEN;
 
 	lockdep_assert_held_write(&bus->topo);
-	bus->break_was[0] = told ? at[0] : EC_EVENT_NONE;
+	bus->break_was[0] = open ? at[0] : EC_EVENT_NONE;
 	bus->break_was[1] = at[1];
 	bus->break_was[2] = bus->ring_told[1];
 	if (!ring_is_open(bus) || (front < n && find_place(at, slaves, front, slaves[front])))
 		return;
 	at[0] = front ? front - 1 : EC_EVENT_NONE;
-	at[1] = front && told && was[0] == at[0] ? was[1] : EC_EVENT_NONE;
+	at[1] = front && open && was[0] == at[0] ? was[1] : EC_EVENT_NONE;
 	if (front && front == n && bus->ring_told[0] == EC_RING_CLOSED)
 		note_exit(bus);
 }

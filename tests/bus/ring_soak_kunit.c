@@ -2,7 +2,7 @@
 /*
  * A long run of a ring with clocks at 1 kHz and random faults: cables are cut and flap, slaves lose
  * power, mailboxes and clocks are wrong, frames are lost, the application restarts. All slaves are
- * alike. No value is wrong, who has a path stays in OP, and memory does not grow.
+ * alike. No value is wrong, each slave with a path stays in OP, and memory does not grow.
  *
  * ring_soak_kunit.minutes=N on the command line of the kernel says how long (EC_UML_ARGS of
  * tests/uml/run.sh). Each minute is a case; at its end all faults do.
