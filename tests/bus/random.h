@@ -42,7 +42,8 @@ struct random_slave {
  * @next_ns: when it begins again
  * @slave: mailbox to use; NULL: the thread ends
  * @index: of that slave in the segment
- * @since: well for so many cycles when it began
+ * @since: it was well for so many cycles at the last look
+ * @was_cut: it was cut off meanwhile
  * @file: FoE, not CoE
  * @ret: result
  * @good: transfers that ended well
@@ -57,6 +58,7 @@ struct random_user {
 	struct ec_slave *slave;
 	u32 index;
 	u64 since;
+	bool was_cut;
 	bool file;
 	int ret;
 	u32 good;

@@ -57,11 +57,20 @@ static int work(void *arg)
 	return 0;
 }
 
+/* A transfer may take so long that the slave is well again at its end. */
+static void notice(struct random_run *r, struct random_user *u)
+{
+	const struct random_slave *s = &r->s[u->index];
+
+	u->was_cut |= s->slave != u->slave || s->well < u->since;
+	u->since = s->well;
+}
+
 static void count(struct random_run *r, struct random_user *u)
 {
 	if (!u->ret)
 		u->good++;
-	else if (r->s[u->index].slave != u->slave || r->s[u->index].well <= u->since)
+	else if (u->was_cut)
 		u->cut++;
 	else if (u->bad++ < 5)
 		pr_info("# bad: %s of slave %u: %d, %llu ns\n", u->file ? "file" : "object",
@@ -81,6 +90,7 @@ static void begin(struct random_run *r, struct random_user *u, u64 now)
 		return;
 	u->index = i;
 	u->since = r->s[i].well;
+	u->was_cut = false;
 	u->slave = ec_slave_ref(r->s[i].slave);
 	u->idle = false;
 	complete(&u->go);
@@ -98,6 +108,8 @@ void random_users_turn(struct random_run *r, u64 now)
 	for (k = 0; k < ARRAY_SIZE(r->user); k++) {
 		struct random_user *u = &r->user[k];
 
+		if (u->slave)
+			notice(r, u);
 		if (!u->task || !READ_ONCE(u->idle))
 			continue;
 		if (u->slave)
@@ -116,6 +128,7 @@ void random_users_begin(struct random_run *r)
 
 		init_completion(&u->go);
 		u->idle = true;
+		u->next_ns = 0;	/* of a run that has ended before: never */
 		u->file = k;
 		u->task = kthread_run(work, u, "ec_user%u", k);
 		KUNIT_ASSERT_FALSE(r->b->test, IS_ERR(u->task));

@@ -10,6 +10,7 @@
 #include <linux/mm.h>
 #include <linux/vmstat.h>
 #include "random.h"
+#include "devices/sim/app_int.h"
 #include "devices/sim/esc_int.h"
 #include "master/boundary/ioctl.h"
 #include "master/clock/dc.h"
@@ -65,6 +66,7 @@ struct fault {
  * @in: inputs of a slave
  * @out: its outputs
  * @last: these inputs in the last cycle
+ * @sent: outputs that it has had in the last cycle
  * @count: numbers of the last sends, the newest first
  * @well: cycles in OP with a whole path; with RANDOM_SETTLED a slave is entitled to remain so
  * @complete: the last cycle was
@@ -88,6 +90,7 @@ static struct soak {
 	u8 *in[SLAVES];
 	u8 *out[SLAVES];
 	u8 last[SLAVES];
+	u8 sent[SLAVES];
 	u8 count[RANDOM_HISTORY];
 	u32 well[SLAVES];
 	bool complete;
@@ -105,6 +108,14 @@ static struct soak {
 static u8 code(u8 count, u32 i)
 {
 	return count * SLAVES + i;
+}
+
+/* The mode of operation that a drive was sent; the inputs echo it. */
+static u8 outputs(const struct soak *s, u32 i)
+{
+	const struct ec_app *app = bus_esc(s->b, i)->app;
+
+	return ec_app_od_get(app, ec_app_od_entry(app->model, 0x6060, 0));
 }
 
 /* a port that leads away from the main device, closed by the master */
@@ -288,6 +299,11 @@ static void judge(struct soak *s, u32 i, bool steady)
 	if (is != s->last[i] && is && is != UNTOUCHED && is % SLAVES != i)
 		wrong(s, i, "value of another slave", is);
 	s->last[i] = is;
+	is = outputs(s, i);
+	if (is != s->sent[i] && is && is != UNTOUCHED && is % SLAVES != i)
+		wrong(s, i, "outputs of another slave", is);
+	s->sent[i] = is;
+	is = *s->in[i];
 	if (!has_path(s, i)) {
 		s->well[i] = 0;
 		return;
