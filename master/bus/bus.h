@@ -88,6 +88,8 @@ struct ec_bus {
 	u64 turned;
 	/** @turned_seen: where the last scan has found such a slave; the monitor's */
 	u32 turned_seen;
+	/** @turned_ns: all scans since then have (ktime) */
+	u64 turned_ns;
 	/** @turned_told: @turned as the log has it; the monitor's */
 	u64 turned_told;
 	/** @places: positions of the closed ring */
@@ -163,6 +165,8 @@ struct ec_bus {
 	u32 lists;
 	/** @thrown_away: scans in a row whose result contradicted the bus; the monitor's */
 	unsigned int thrown_away;
+	/** @flaps: scans in a row during which slaves have come or gone; the monitor's */
+	unsigned int flaps;
 	/**
 	 * @torn: scans in a row that have read other addresses than slaves had when they were to
 	 * get one; the monitor's

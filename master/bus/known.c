@@ -7,19 +7,47 @@
 
 #define IMAGES		256
 #define IMAGE_BYTES	65536
+#define MORE_LOST	256	/* disconnected devices, beside as many as were on the bus at a time */
 
 static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 {
 	return &heads[hash_64(key, EC_KNOWN_BITS)];
 }
 
+static bool is_image_of(const struct ec_image *image, const struct ec_slave *s)
+{
+	return image->bytes == s->eeprom.bytes &&
+	       !memcmp(&image->flaw, &s->eeprom.flaw, sizeof(image->flaw)) &&
+	       !memcmp(image->sii, s->eeprom.data, s->eeprom.bytes);
+}
+
+/* Identical devices, and one that was disconnected often, share an image. */
+static struct ec_image *share_image(const struct ec_known *k, const struct ec_slave *s)
+{
+	unsigned int n = IMAGES;
+	struct ec_lost *l;
+
+	list_for_each_entry_reverse(l, &k->oldest, age) {
+		if (l->image && is_image_of(l->image, s)) {
+			kref_get(&l->image->kref);
+			return l->image;
+		}
+		if (!--n)
+			break;
+	}
+	return NULL;
+}
+
 /* Images only save time: without memory there is none. */
-static struct ec_image *keep_image(const struct ec_slave *s)
+static struct ec_image *keep_image(const struct ec_known *k, const struct ec_slave *s)
 {
 	struct ec_image *image;
 
 	if (!s->eeprom.data || s->eeprom.bytes < EC_SII_FIXED_SIZE || s->eeprom.bytes > IMAGE_BYTES)
 		return NULL;
+	image = share_image(k, s);
+	if (image)
+		return image;
 	image = kvmalloc(sizeof(*image) + s->eeprom.bytes, GFP_KERNEL | __GFP_NOWARN);
 	if (!image)
 		return NULL;
@@ -66,7 +94,7 @@ static void known_note_lost(struct ec_known *k, struct ec_slave *s, unsigned int
 	l->up_port = s->lost.at.up_port;
 	l->seen_ns = s->lost.seen_ns;
 	strscpy(l->label, ec_slave_label(s), sizeof(l->label));
-	l->image = keep_image(s);
+	l->image = keep_image(k, s);
 	hlist_add_head(&l->by_number, head_of(k->lost, l->number));
 	hlist_add_head(&l->by_station, head_of(k->by_station, l->station));
 	if (l->serial)
@@ -323,6 +351,8 @@ void ec_known_update(struct ec_bus *bus, struct ec_slave **slaves, unsigned int 
 	unsigned int i;
 
 	lockdep_assert_held_write(&bus->topo);
+	k->most = max3(k->most, n, bus->n_slaves);
+	limit = min(limit, k->most + MORE_LOST);
 	ec_for_each_slave(s, bus)
 		if (s->position >= n || slaves[s->position] != s)
 			known_note_lost(k, s, limit);

@@ -82,6 +82,7 @@ struct ec_lost {
  * @by_serial: the same by serial number, if they have one
  * @oldest: the same, the first one that was disconnected first
  * @n_lost: their number
+ * @most: most slaves that were in the list so far
  * @absent: ports behind which they hung, NULL: none so far
  * @n_absent: entries in @absent
  */
@@ -93,6 +94,7 @@ struct ec_known {
 	struct hlist_head by_serial[EC_KNOWN_HEADS];
 	struct list_head oldest;
 	unsigned int n_lost;
+	unsigned int most;
 	struct ec_absent *absent;
 	unsigned int n_absent;
 };

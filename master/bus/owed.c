@@ -125,14 +125,6 @@ static const struct ec_slave *mapped_at(struct ec_bus *bus, u32 logical)
 	return found;
 }
 
-/* Does a slave with the AL status @al run as @s did? No device that was let in nowhere does. */
-static bool runs_as(const struct ec_slave *s, const u8 *al)
-{
-	u16 is = READ_ONCE(s->al.status);
-
-	return is & EC_AL_BEYOND_PREOP && get_unaligned_le16(al) == is;
-}
-
 /* read from a slave, and whether one replies at the address that it may have lost */
 struct owed_look {
 	u8 fmmu[EC_FMMU_PAGE];
@@ -140,16 +132,39 @@ struct owed_look {
 	u8 own[2];
 };
 
+/*
+ * Does a slave run as @s did, with the same process data? No device that was let in nowhere does,
+ * nor does another slave with process data, also if it is identical.
+ */
+static bool runs_as(const struct ec_slave *s, const struct owed_look *k)
+{
+	u32 mapped = k->fmmu[EC_FMMU_OFS_ENABLE] & 1 ? get_unaligned_le32(k->fmmu) + 1 : 0;
+	u16 is = READ_ONCE(s->al.status);
+
+	return is & EC_AL_BEYOND_PREOP && get_unaligned_le16(k->al) == is &&
+	       mapped == READ_ONCE(s->work.mapped);
+}
+
+static void look_add(struct ec_dg *dg, struct owed_look *k, u16 station)
+{
+	dg[0] = EC_FPRD(station, EC_REG_FMMU(0), EC_FMMU_PAGE, k->fmmu);
+	dg[1] = EC_FPRD(station, EC_REG_AL_STATUS, 2, k->al);
+}
+
+static bool has_looked(const struct ec_dg *dg)
+{
+	return !dg[0].err && dg[0].wkc == 1 && !dg[1].err && dg[1].wkc == 1;
+}
+
 static const struct ec_slave *mapped_as(struct ec_bus *bus, const struct ec_dg *dg,
 					const struct owed_look *k)
 {
 	const struct ec_slave *s;
 
-	if (dg[0].err || dg[0].wkc != 1 || dg[1].err || dg[1].wkc != 1 ||
-	    !(k->fmmu[EC_FMMU_OFS_ENABLE] & 1))
+	if (!has_looked(dg) || !(k->fmmu[EC_FMMU_OFS_ENABLE] & 1))
 		return NULL;
 	s = mapped_at(bus, get_unaligned_le32(k->fmmu));
-	return s && runs_as(s, k->al) ? s : NULL;
+	return s && runs_as(s, k) ? s : NULL;
 }
 
 /**
@@ -176,10 +191,8 @@ void ec_owed_by_fmmu(struct ec_bus *bus, const u16 *station, unsigned int n,
 	memset(owner, 0, n * sizeof(*owner));
 	if (!dg || !look)
 		goto out;
-	for (i = 0; i < n; i++) {
-		dg[2 * i] = EC_FPRD(station[i], EC_REG_FMMU(0), EC_FMMU_PAGE, look[i].fmmu);
-		dg[2 * i + 1] = EC_FPRD(station[i], EC_REG_AL_STATUS, 2, look[i].al);
-	}
+	for (i = 0; i < n; i++)
+		look_add(&dg[2 * i], &look[i], station[i]);
 	ec_xfer(bus->links, dg, 2 * n);
 	for (i = 0; i < n; i++)
 		owner[i] = mapped_as(bus, &dg[2 * i], &look[i]);
@@ -197,19 +210,21 @@ out:
 }
 
 /**
- * ec_owed_runs_as() - is a slave in the state of another one, above PREOP?
+ * ec_owed_runs_as() - may a slave be another one by its state, above PREOP, and its process data?
  * @bus: bus
  * @station: station address of the slave
  * @s: the other one
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: whether it is.
+ * Return: whether it may; false: also if that cannot be read.
  */
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s)
 {
-	u8 al[2];
+	struct owed_look look;
+	struct ec_dg dg[2];
 
-	return !ec_xfer_fprd(bus->links, station, EC_REG_AL_STATUS, al, 2) && runs_as(s, al);
+	look_add(dg, &look, station);
+	return !ec_xfer(bus->links, dg, 2) && has_looked(dg) && runs_as(s, &look);
 }
 
 /* Of those that were tried before, the ones at whose own address no slave replies by now. */

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-only
+#include <linux/ktime.h>
 #include "../base/report.h"
 #include "../carry/dg.h"
 #include "../link/device.h"
@@ -9,6 +10,7 @@
 #include "scan_int.h"
 
 #define NOISE_NS	40	/* of receive times */
+#define TURNED_NS	(500 * NSEC_PER_MSEC)	/* all scans have to find it for so long */
 
 static void exchange_ends(struct ec_bus *bus)
 {
@@ -108,31 +110,39 @@ static bool ends_are_exchanged(const struct scan *sc)
 	return true;
 }
 
-/* One scan may have read a ring whose cables are cut and healed meanwhile. */
-static bool turned_again(const struct scan *sc, u32 at)
+/* A scan may have read a ring whose cables are cut and healed meanwhile, as may the next one. */
+static bool turned_stays(const struct scan *sc, u32 at)
 {
-	bool again = sc->bus->turned_seen == at;
+	struct ec_bus *bus = sc->bus;
 
-	sc->bus->turned_seen = at;
-	return again || !sc->turned;
+	if (bus->turned_seen != at) {
+		bus->turned_seen = at;
+		bus->turned_ns = ktime_get_ns();
+	}
+	return !sc->turned || ktime_get_ns() - bus->turned_ns >= TURNED_NS;
 }
 
 /**
  * ec_ring_ends_judge() - are the slaves of an open ring reached by port 0 from the main device?
- * @sc: scan that was proved; @turned: a slave that is the wrong way round
+ * @sc: scan that was proved; @turned is set to a slave that is the wrong way round
  *
  * If all of them are reached from the backup device by it, the links exchange their devices.
  *
  * Context: The monitor thread.
- * Return: 0; -EAGAIN: they have: positions are others now; or one more scan is to confirm a slave
+ * Return: 0; -EAGAIN: they have: positions are others now; or more scans are to confirm a slave
  * that is the wrong way round.
  */
 int ec_ring_ends_judge(struct scan *sc)
 {
 	unsigned int i;
 
+	/* the ring changes, or has shown all in one piece */
+	if (ec_scan_is_partial(sc) || !sc->stands || sc->bus->links->ring.state != EC_RING_OPEN) {
+		sc->bus->turned_seen = U32_MAX;
+		return 0;
+	}
 	/* one that is the wrong way round may look like exchanged devices */
-	if (sc->bus->links->ring.state != EC_RING_OPEN || sc->bus->turned)
+	if (sc->bus->turned)
 		return 0;
 	if (ends_are_exchanged(sc)) {
 		exchange_ends(sc->bus);
@@ -142,7 +152,7 @@ int ec_ring_ends_judge(struct scan *sc)
 		;
 	if (i < sc->n)
 		sc->turned = sc->slaves[i];
-	return turned_again(sc, i) ? 0 : -EAGAIN;
+	return turned_stays(sc, i) ? 0 : -EAGAIN;
 }
 
 /**
@@ -161,7 +171,7 @@ void ec_ring_ends_note(const struct scan *sc, struct ec_slave **slaves, unsigned
 	struct ec_bus *bus = sc->bus;
 
 	lockdep_assert_held_write(&bus->topo);
-	if (ec_scan_is_partial(sc) || !n)
+	if (ec_scan_is_partial(sc) || !sc->stands || !n)
 		return;
 	if (bus->links->ring.state == EC_RING_CLOSED)
 		bus->turned = sc->front < n ? slaves[sc->front]->device : 0;

@@ -49,8 +49,7 @@ static void remember_all(struct ec_ring_places *p, struct ec_slave **slaves, uns
 }
 
 /* What each position has in an open ring of @n slaves: of those behind the break the last ones. */
-static void find_all(const struct ec_bus *bus, struct ec_ring_places *p, struct ec_slave **slaves,
-		     unsigned int n)
+static void find_known(const struct ec_bus *bus, struct ec_ring_places *p, unsigned int n)
 {
 	unsigned int i, at;
 
@@ -64,7 +63,13 @@ static void find_all(const struct ec_bus *bus, struct ec_ring_places *p, struct 
 		if (at == i)
 			p->index[i] = s->position;
 	}
-	/* a device that is new may have replaced one that is absent, and no other */
+}
+
+/* A device that is new may have replaced one that is absent, and no other. */
+static void find_new(struct ec_ring_places *p, struct ec_slave **slaves, unsigned int n)
+{
+	unsigned int i, at;
+
 	for (i = 0; i < n && n <= p->n; i++) {
 		at = i < p->front ? i : i + p->n - n;
 		if (p->index[at] == ABSENT && slaves[i]->device > p->last)
@@ -92,11 +97,15 @@ void ec_ring_places_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned 
 	p->open = state == EC_RING_OPEN;
 	p->front = min(bus->front, n);
 	p->n_list = n;
-	if (state == EC_RING_CLOSED && whole && n && !bus->turned) {
+	p->sure = state == EC_RING_CLOSED && whole && n && !bus->turned;
+	if (p->sure) {
 		remember_all(p, slaves, n);
 		p->last = bus->known.last;
-	} else if (p->open && p->n) {
-		find_all(bus, p, slaves, n);
+	} else if (p->n) {
+		find_known(bus, p, n);
+		/* else the list has slaves that are where the scan has not been */
+		if (p->open && whole)
+			find_new(p, slaves, n);
 	}
 }
 
@@ -148,7 +157,7 @@ int ec_ring_places_find(const struct ec_bus *bus, u32 place, u32 total)
 	const struct ec_ring_places *p = &bus->places;
 
 	ec_bus_assert_stays(bus);
-	if (!p->open || (p->front >= p->n_list && !p->n))
+	if (p->sure || (!p->n && (!p->open || p->front >= p->n_list)))
 		return min_t(u32, place, INT_MAX);
 	if (!p->n)
 		return ec_ring_places_count(place, p->front, p->n_list, total);

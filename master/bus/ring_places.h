@@ -8,15 +8,17 @@
 /**
  * struct ec_ring_places - positions of a ring, changed with topo and ec_show_change_begin()
  * @open: the ring is open
+ * @sure: it is closed, and a place in the list is a position
  * @front: slaves before the break
  * @n_list: slaves of the list
  * @n: slaves when it was closed, 0: it was not
  * @device: their numbers
- * @index: of an open ring: where the slave at each position is in the list, if that is certain
+ * @index: if not @sure: where the slave at each position is in the list, if that is certain
  * @last: number given last when it was closed
  */
 struct ec_ring_places {
 	bool open;
+	bool sure;
 	u32 front;
 	u32 n_list;
 	u32 n;

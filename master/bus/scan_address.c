@@ -80,6 +80,9 @@ static int prove_read(struct scan *sc, const u16 *at, unsigned int n)
 		torn |= !is_as_read(sc, at[i], dg);
 		dg += is_read_twice(sc, at[i]) ? 2 : 1;
 	}
+	/* no slave contradicts itself while others come and go */
+	if (torn && (ec_scan_count(bus) != sc->n || bus->links->ring.front != sc->front))
+		return -EAGAIN;
 	bus->torn = torn ? min(bus->torn + 1, TORN_MAX + 1) : 0;
 	return torn && bus->torn <= TORN_MAX ? -EAGAIN : 0;
 }

@@ -18,6 +18,7 @@
 /* scans in a row that are thrown away because of a slave that contradicts itself, at most */
 #define NEW_MAX		5	/* one that is new, or its ports */
 #define KNOWN_MAX	20
+#define FLAPS_MAX	500	/* while slaves come and go, which no one of them can help */
 
 /* what contradicts the result of the scan */
 enum doubt {
@@ -133,19 +134,29 @@ static int ask_found(struct proof *p)
 	return ret;
 }
 
-/* Each slave is where it was found, with the same ports open, and there is no other one. */
-static bool ring_stands(const struct proof *p)
+/* Have slaves come or gone, or has the break of the ring moved, since the scan began? */
+static bool ring_flaps(const struct proof *p)
 {
 	const struct scan *sc = p->sc;
 	const struct ec_dg *count = &p->dg[2 * sc->n];
+	unsigned int i;
+
+	for (i = 0; i < sc->n; i++)
+		if (sc->regs[i].gone)
+			return true;
+	return count->err || count->back != sc->n || sc->bus->links->ring.front != sc->front;
+}
+
+/* Each slave is where it was found, with the same ports open. */
+static bool ring_stands(const struct proof *p)
+{
+	const struct scan *sc = p->sc;
 	unsigned int i;
 
 	for (i = 0; i < sc->n; i++) {
 		const struct ec_slave *s = sc->slaves[i];
 		const struct regs *r = &sc->regs[i];
 
-		if (r->gone)
-			return false;
 		if (!r->there || READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 			continue;
 		if (!answers_as(p, i, s->station) || p->dg[2 * i + 1].wkc != 1 ||
@@ -153,7 +164,7 @@ static bool ring_stands(const struct proof *p)
 		    ec_graph_open_ports(get_unaligned_le16(r->dl)))
 			return false;
 	}
-	return !count->err && count->back == sc->n && sc->bus->links->ring.front == sc->front;
+	return true;
 }
 
 /* Slaves of a stretch, the one before it, the one after it, and at which these hang. */
@@ -234,11 +245,11 @@ out:
  * A slave that contradicts itself all the time must not keep the others from being used. Returns
  * whether that counts: a contact that is lost does not.
  */
-static bool note_doubt(struct scan *sc, struct stretch *t, enum doubt doubt)
+static bool note_doubt(struct scan *sc, struct stretch *t, enum doubt doubt, bool flaps)
 {
 	static const unsigned int max[] = { 0, NEW_MAX, KNOWN_MAX, UINT_MAX };
 
-	t->thrown = sc->bus->thrown_away < max[doubt];
+	t->thrown = doubt && (flaps || sc->bus->thrown_away < max[doubt]);
 	sc->n_thrown += t->thrown;
 	return t->thrown && doubt != UNREAD;
 }
@@ -248,9 +259,13 @@ static int prove(struct proof *p)
 	struct scan *sc = p->sc;
 	unsigned int k;
 	int ret = ask_found(p);
-	bool counts;
+	bool counts, flaps = !ret && ring_flaps(p);
 
-	sc->moving = !ret && sc->bus->thrown_away < NEW_MAX && !ring_stands(p);
+	sc->stands = !ret && !flaps && ring_stands(p);
+	/* what a flapping ring says must not be believed because it says so often */
+	sc->bus->flaps = flaps ? sc->bus->flaps + 1 : 0;
+	flaps &= sc->bus->flaps <= FLAPS_MAX;
+	sc->moving = flaps || (!ret && sc->bus->thrown_away < NEW_MAX && !sc->stands);
 	if (sc->moving)
 		leave_ports(sc);
 	counts = sc->moving;
@@ -259,8 +274,9 @@ static int prove(struct proof *p)
 		enum doubt doubt = check_found(p, &sc->stretch[k]);
 
 		ret = check_lost(sc, &sc->stretch[k], &doubt);
-		counts |= note_doubt(sc, &sc->stretch[k], doubt);
+		counts |= note_doubt(sc, &sc->stretch[k], doubt, flaps);
 	}
+	counts &= !flaps;
 	if (counts || !ec_scan_is_partial(sc))
 		sc->bus->thrown_away = counts ? sc->bus->thrown_away + 1 : 0;
 	return ret;
@@ -316,8 +332,10 @@ int ec_scan_proof(struct scan *sc)
 	int ret = prove_silence(sc);
 	bool change = sc->n_stretches || has_ports(sc);
 
-	if (!ret && !change)
+	if (!ret && !change) {
 		sc->bus->thrown_away = 0;
+		sc->stands = true;
+	}
 	/* an empty list needs no check of the bus */
 	if (ret || !sc->n || !change)
 		return ret;
@@ -330,5 +348,5 @@ int ec_scan_proof(struct scan *sc)
 	kvfree(p.dg);
 	if (!ret && sc->n_thrown && sc->n_thrown == sc->n_stretches)
 		ret = -EAGAIN;
-	return ret ?: ec_scan_is_partial(sc) ? 0 : ec_ring_ends_judge(sc);
+	return ret ?: ec_ring_ends_judge(sc);
 }

@@ -213,12 +213,11 @@ static bool replies_itself(const struct scan *sc, const struct ec_slave *s)
 	return ec_xfer(sc->bus->links, &dg, 1) || dg.wkc;
 }
 
-/* Is the slave at @i, with an address that was meant for another one, @s by its state? */
+/* May the slave at @i, with an address that was meant for another one, be @s as that ran? */
 static bool may_be(const struct scan *sc, unsigned int i, const struct ec_slave *s)
 {
 	return s && !sc->claims[s->station] && is_usable(s) &&
-	       READ_ONCE(s->al.status) & EC_AL_BEYOND_PREOP && same_state(sc, i, s) &&
-	       !replies_itself(sc, s);
+	       ec_owed_runs_as(sc->bus, ec_scan_address(sc, i), s) && !replies_itself(sc, s);
 }
 
 /* The slave at @i is @s; returns whether it has accepted its address. */
