@@ -115,10 +115,9 @@ static bool turned_stays(const struct scan *sc, u32 at)
 {
 	struct ec_bus *bus = sc->bus;
 
-	if (bus->turned_seen != at) {
-		bus->turned_seen = at;
+	if (sc->turned_before != at)
 		bus->turned_ns = ktime_get_ns();
-	}
+	bus->turned_seen = at;
 	return !sc->turned || ktime_get_ns() - bus->turned_ns >= TURNED_NS;
 }
 
@@ -137,10 +136,8 @@ int ec_ring_ends_judge(struct scan *sc)
 	unsigned int i;
 
 	/* the ring changes, or has shown all in one piece */
-	if (ec_scan_is_partial(sc) || !sc->stands || sc->bus->links->ring.state != EC_RING_OPEN) {
-		sc->bus->turned_seen = U32_MAX;
+	if (ec_scan_is_partial(sc) || !sc->stands || sc->bus->links->ring.state != EC_RING_OPEN)
 		return 0;
-	}
 	/* one that is the wrong way round may look like exchanged devices */
 	if (sc->bus->turned)
 		return 0;

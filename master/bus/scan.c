@@ -93,7 +93,7 @@ static int read_each(struct scan *sc, bool (*which)(const struct scan *sc, unsig
 	}
 	if (n < 0 || !missing)
 		return min(n, 0);
-	same = ec_scan_count(sc->bus) == sc->n;
+	same = ec_scan_count_again(sc) == 1;
 	for (k = 0; k < n; k++)
 		sc->regs[sc->who[k]].gone |= !same && sc->regs[sc->who[k]].partial;
 	return 0;
@@ -340,10 +340,13 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 		.bus = bus, .n = count,
 		.fresh = !bus->n_slaves && !ec_access_is_cyclic(&bus->links->access),
 		.front = bus->links->ring.front,
+		.turned_before = bus->turned_seen,
 	};
 	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	int ret = scan_alloc(&sc);
 
+	/* unless this scan gets so far as to say so */
+	bus->turned_seen = U32_MAX;
 	/* it may be begun again and again while a plug is pulled in, or for a port alone */
 	if (count && count != bus->n_slaves && !bus->scan_noted) {
 		bus->scan_noted = true;

@@ -81,7 +81,7 @@ static int prove_read(struct scan *sc, const u16 *at, unsigned int n)
 		dg += is_read_twice(sc, at[i]) ? 2 : 1;
 	}
 	/* no slave contradicts itself while others come and go */
-	if (torn && (ec_scan_count(bus) != sc->n || bus->links->ring.front != sc->front))
+	if (torn && ec_scan_count_again(sc) != 1)
 		return -EAGAIN;
 	bus->torn = torn ? min(bus->torn + 1, TORN_MAX + 1) : 0;
 	return torn && bus->torn <= TORN_MAX ? -EAGAIN : 0;
@@ -206,6 +206,15 @@ static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 	kvfree(used);
 }
 
+/* Does one reply there that has not when addresses were read? */
+static bool replies(const struct scan *sc, unsigned int i)
+{
+	u8 station[2];
+	struct ec_dg dg = EC_DG(EC_CMD_APRD, (u16)-i, EC_REG_STATION, 2, station);
+
+	return ec_xfer(sc->bus->links, &dg, 1) || dg.wkc;
+}
+
 /**
  * ec_scan_address_all() - write the station addresses of slaves that need one
  * @sc: scan
@@ -220,7 +229,7 @@ static void give_back_lost(struct scan *sc, const u16 *at, unsigned int n)
 int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 {
 	struct ec_dg *dg = sc->dg;
-	int count = -1, ret = prove_read(sc, at, n);
+	int same = -1, ret = prove_read(sc, at, n);
 	unsigned int i, k;
 
 	if (ret)
@@ -235,8 +244,9 @@ int ec_scan_address_all(struct scan *sc, const u16 *at, unsigned int n)
 		dg += datagrams(sc, at[i]);
 		if (datagrams(sc, at[i]) && dg[-1].wkc == 1)
 			continue;
-		count = count < 0 ? ec_scan_count(sc->bus) : count;
-		sc->regs[at[i]].gone = count != sc->n;
+		same = same < 0 ? ec_scan_count_again(sc) : same;
+		sc->regs[at[i]].gone = same != 1 ||
+				       (!datagrams(sc, at[i]) && replies(sc, at[i]));
 		if (sc->regs[at[i]].gone)
 			continue;
 		ec_slave_fail(sc->slaves[at[i]], EC_SLAVE_SCAN_FAILED, EC_CAUSE(REGISTERS), "%s",

@@ -36,6 +36,21 @@ int ec_scan_count(struct ec_bus *bus)
 	return ret ?: dg.back;
 }
 
+/**
+ * ec_scan_count_again() - are the slaves still as many as when a scan began?
+ * @sc: scan
+ *
+ * Context: The monitor thread. Waits for bus traffic.
+ * Return: 1: they are, on each side of a break of a ring; 0: they are not; negative: as ec_xfer().
+ */
+int ec_scan_count_again(const struct scan *sc)
+{
+	int count = ec_scan_count(sc->bus);
+
+	return count < 0 ? count :
+	       count == sc->n && READ_ONCE(sc->bus->links->ring.front) == sc->front;
+}
+
 static bool came(const struct ec_dg *dg, unsigned int side)
 {
 	return dg->side_wkc[side] != EC_DG_NO_COPY;

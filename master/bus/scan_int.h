@@ -58,6 +58,7 @@ struct scan {
 	bool fresh;	/* no slave was known before: broadcasts are allowed */
 	u32 front;	/* struct ec_ring.front when it began */
 	const struct ec_slave *turned;	/* in a ring, the wrong way round */
+	u32 turned_before;	/* where the scan before has found one */
 };
 
 static inline u16 ec_scan_address(const struct scan *sc, unsigned int i)

@@ -286,7 +286,7 @@ static int prove(struct proof *p)
 static int prove_silence(struct scan *sc)
 {
 	unsigned int i, k, n = 0;
-	int ret, count;
+	int ret, same;
 
 	for (i = 0; i < sc->n; i++) {
 		if (sc->regs[i].there || !ec_scan_is_known(sc, sc->slaves[i]))
@@ -298,14 +298,14 @@ static int prove_silence(struct scan *sc)
 	if (!n)
 		return 0;
 	ret = ec_xfer(sc->bus->links, sc->dg, n);
-	count = ec_scan_count(sc->bus);
+	same = ec_scan_count_again(sc);
 	for (k = 0; k < n; k++) {
 		struct regs *r = &sc->regs[sc->who[k]];
 
 		r->there = !sc->dg[k].err && sc->dg[k].wkc == 1;
-		r->gone |= !r->there && count != sc->n;
+		r->gone |= !r->there && same != 1;
 	}
-	return ret ?: min(count, 0);
+	return ret ?: min(same, 0);
 }
 
 /* Known slaves with other ports; their neighbors may be the same. */
