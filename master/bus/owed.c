@@ -216,7 +216,7 @@ out:
  * @s: the other one
  *
  * Context: The monitor thread. Waits for bus traffic.
- * Return: whether it may; false: also if that cannot be read.
+ * Return: whether it may; false: also when nothing can be read.
  */
 bool ec_owed_runs_as(struct ec_bus *bus, u16 station, const struct ec_slave *s)
 {

@@ -345,7 +345,7 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	int ret = scan_alloc(&sc);
 
-	/* unless this scan gets so far as to say so */
+	/* unless this scan finds it again */
 	bus->turned_seen = U32_MAX;
 	/* it may be begun again and again while a plug is pulled in, or for a port alone */
 	if (count && count != bus->n_slaves && !bus->scan_noted) {

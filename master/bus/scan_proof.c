@@ -262,7 +262,7 @@ static int prove(struct proof *p)
 	bool counts, flaps = !ret && ring_flaps(p);
 
 	sc->stands = !ret && !flaps && ring_stands(p);
-	/* what a flapping ring says must not be believed because it says so often */
+	/* a flapping ring is not believed because it contradicts so often */
 	sc->bus->flaps = flaps ? sc->bus->flaps + 1 : 0;
 	flaps &= sc->bus->flaps <= FLAPS_MAX;
 	sc->moving = flaps || (!ret && sc->bus->thrown_away < NEW_MAX && !sc->stands);
