@@ -249,7 +249,7 @@ static int broadcast(struct watch *w, struct ec_dg *dg, bool first)
 	int ret = -EAGAIN;
 
 	/* only a frame of its own shows which link's copy has passed which slaves */
-	if (first && m->links.only && ec_access_is_cyclic(&m->links.access) &&
+	if (first && READ_ONCE(m->links.only) && ec_access_is_cyclic(&m->links.access) &&
 	    ktime_get_ns() >= w->alone_ns) {
 		set_rider(r, dg);
 		ret = ec_rider_exchange(&m->riders, r);

@@ -184,6 +184,8 @@ static int run(struct tool *t, int argc, char **argv)
 		return device_use(t, argv[1]);
 	if (!on && strcmp(argv[0], "unbind"))
 		return usage_error("'%s': use bind, unbind or use", argv[0]);
+	if (t->backup)
+		return usage_error("%s has no --backup", argv[0]);
 	ret = nics_read(&all);
 	if (!ret)
 		ret = run_one(t, on, &all, argv[1]);
@@ -195,7 +197,7 @@ const struct cmd cmd_device = {
 	.name = "device",
 	.run = run,
 	.args = "bind|unbind|use DEVICE",
-	.opts = "mfb",
+	.opts = "mfbu",
 	.summary = "Give a network card its native driver or to a master, or take it away",
 	.help = "DEVICE is an interface, a MAC address or a PCI address as 'ethercat devices' lists them.\n"
 		"After bind the interface is absent: a master gets the card by its MAC or PCI address\n"
@@ -208,7 +210,9 @@ const struct cmd cmd_device = {
 		"bus; with the native driver, or by ec_generic. DEVICE may also be sim0 of the simulator.\n"
 		"Refused while an application has the master; an interface with an IP address needs --force.\n"
 		"If the card cannot be used, the master keeps its present one. Lasts until ec_master is\n"
-		"unloaded.\n",
+		"unloaded.\n"
+		"With --backup, use gives it the card at the other end of a ring, instead of the present\n"
+		"one if there is one; --backup none takes it away.\n",
 	.json = "none",
 	.min_args = 2,
 	.max_args = 2,

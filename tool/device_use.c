@@ -77,7 +77,8 @@ static int name_for_master(const struct tool *t, const char *name, char *buf, si
 	int ret;
 
 	snprintf(buf, size, "%s", name);
-	if (!strncmp(name, "sim", 3) || !strcasecmp(name, "ff:ff:ff:ff:ff:ff"))
+	if (!strncmp(name, "sim", 3) || !strcasecmp(name, "ff:ff:ff:ff:ff:ff") ||
+	    (t->backup && !strcmp(name, "none")))
 		return 0;
 	/* 'ethercat devices' does not list those of software */
 	if (if_nametoindex(name))
@@ -94,10 +95,13 @@ int device_use(const struct tool *t, const char *name)
 	int err;
 
 	if (t->boot)
-		return usage_error("use has no --boot; write main_devices= of ec_master into /etc/modprobe.d");
+		return usage_error("use has no --boot; write main_devices= and backup_devices= of ec_master into /etc/modprobe.d");
 	if (name_for_master(t, name, own, sizeof(own)) || dev_open_single(&d, t, true))
 		return 1;
-	err = ect_device_use(d.h, own);
+	if (t->backup)
+		err = ect_backup_use(d.h, strcmp(own, "none") ? own : NULL);
+	else
+		err = ect_device_use(d.h, own);
 	if (err)
 		dev_fail(&d, err, "Master%u: cannot use %s", d.master, name);
 	dev_close(&d);

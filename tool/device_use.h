@@ -4,7 +4,10 @@
 
 struct tool;
 
-/* the master of -m gets the card @name; prints its error and returns 0 or 1 */
+/*
+ * The master of -m gets the card @name, with --backup at the other end of its ring ("none": none).
+ * Prints its error and returns 0 or 1.
+ */
 int device_use(const struct tool *t, const char *name);
 
 #endif

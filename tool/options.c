@@ -21,6 +21,7 @@ const struct opt opts[] = {
 	{ 'q', "quiet", NULL, "less output" },
 	{ 'v', "verbose", NULL, "more output" },
 	{ 'b', "boot", NULL, "for each start of the computer" },
+	{ 'u', "backup", NULL, "the backup device, at the other end of a ring" },
 	{ 'w', "wait", "[SECONDS]", "wait for the end, at most SECONDS" },
 	{ 'I', "timeout", "SECONDS", "time limit of the slave, 0.001 to 600" },
 	{ 'S', "save", "FILE", "write the result to a file" },
@@ -71,6 +72,7 @@ static const struct option longs[] = {
 	{ "quiet", no_argument, NULL, 'q' },
 	{ "verbose", no_argument, NULL, 'v' },
 	{ "boot", no_argument, NULL, 'b' },
+	{ "backup", no_argument, NULL, 'u' },
 	{ "wait", optional_argument, NULL, 'w' },
 	{ "timeout", required_argument, NULL, 'I' },
 	{ "save", required_argument, NULL, 'S' },
@@ -299,6 +301,9 @@ static int one_option(struct tool *t, int c, char **argv, int argc)
 		return 0;
 	case 'b':
 		t->boot = true;
+		return 0;
+	case 'u':
+		t->backup = true;
 		return 0;
 	case 'S':
 		t->save = optarg;

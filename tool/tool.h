@@ -39,6 +39,7 @@
  * @json: -j
  * @verbosity: -1 after -q, 1 after -v
  * @boot: --boot
+ * @backup: --backup
  * @wait: --wait was given
  * @wait_s: its argument in seconds, negative: none
  * @timeout_ms: argument of --timeout, 0: not given
@@ -86,6 +87,7 @@ struct tool {
 	bool json;
 	int verbosity;
 	bool boot;
+	bool backup;
 	bool wait;
 	double wait_s;
 	u32 timeout_ms;

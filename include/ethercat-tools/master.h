@@ -236,6 +236,16 @@ int ect_end_detached(struct ect_handle *h);
 int ect_device_use(struct ect_handle *h, const char *name);
 
 /**
+ * ect_backup_use() - give a master another backup device, at the other end of its ring
+ * @h: master, open for writing; needs CAP_NET_ADMIN
+ * @name: interface, MAC address or PCI address; NULL: none, the bus is no ring any more
+ *
+ * Context: The thread of the handle; waits for the device.
+ * Return: as ect_device_use().
+ */
+int ect_backup_use(struct ect_handle *h, const char *name);
+
+/**
  * ect_cycle_read() - statistics of the cycle
  * @h: master
  * @c: result, with its @struct_size

@@ -417,11 +417,13 @@ struct ec_ioc_debug {
 	__u32 level;		/* 0, 1, 2 */
 };
 
+#define EC_DEVICE_FLAG_BACKUP	1	/* the backup device, at the other end of a ring */
+
 /* needs CAP_NET_ADMIN, and that no application has the master */
 struct ec_ioc_device_use {
-	__u32 flags;		/* none yet */
+	__u32 flags;		/* EC_DEVICE_FLAG_* */
 	__u32 reserved;
-	char name[EC_UAPI_STRING];	/* MAC address, PCI address or name of the device */
+	char name[EC_UAPI_STRING];	/* MAC or PCI address, or name; backup device: "": none */
 };
 
 #endif

@@ -166,6 +166,14 @@ int ect_device_use(struct ect_handle *h, const char *name)
 	return ect_command(h, EC_IOC_DEVICE_USE, &arg);
 }
 
+int ect_backup_use(struct ect_handle *h, const char *name)
+{
+	struct ec_ioc_device_use arg = { .flags = EC_DEVICE_FLAG_BACKUP };
+
+	snprintf(arg.name, sizeof(arg.name), "%s", name ? name : "");
+	return ect_command(h, EC_IOC_DEVICE_USE, &arg);
+}
+
 int ect_cycle_reset(struct ect_handle *h)
 {
 	return ect_command(h, EC_IOC_CYCLE_RESET, NULL);

@@ -100,7 +100,7 @@ static void probe(struct ec_bus *bus)
  */
 void ec_scan_look_at_mute(struct ec_bus *bus)
 {
-	if (!bus->links->only)
+	if (!READ_ONCE(bus->links->only))
 		probe(bus);
 }
 
@@ -119,7 +119,7 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 	struct ec_links *l = bus->links;
 	const struct ec_link *link;
 
-	if (l->only)
+	if (READ_ONCE(l->only))
 		return true;
 	ec_links_for_each(l, link)
 		if (!came(dg, link->side) && !last && !READ_ONCE(link->mute) && ec_link_is_up(link))

@@ -83,7 +83,7 @@ bool ec_carry_has_place(const struct ec_carry *c, u8 class)
 	unsigned int more = ec_post_first(class) ? URGENT_MORE : 0;
 	unsigned long left;
 
-	for (left = c->links->sides; left; left &= left - 1) {
+	for (left = READ_ONCE(c->links->sides); left; left &= left - 1) {
 		const struct ec_link *link = &c->links->link[__ffs(left)];
 
 		if (atomic_read(&link->acyclic) >= READ_ONCE(link->places) + more)

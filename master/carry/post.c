@@ -116,7 +116,7 @@ void ec_post_send(struct ec_post *post, u64 due_ns)
 	post->due_ns = due_ns;
 	post->since_ns = ktime_get_ns();
 	post->tries = 0;
-	post->sides = post->sides ?: post->links->sides;
+	post->sides = post->sides ?: READ_ONCE(post->links->sides);
 	raw_spin_lock_irqsave(&c->lock, flags);
 	if (!c->closed) {
 		make_ready(c, post);

@@ -208,8 +208,22 @@ static bool waits_for(const struct ec_links *l, unsigned int side, const struct 
 	const char *spec = name_of(l, side);
 
 	lockdep_assert_held(&devices_lock);
+	if (l->held && !ec_links_named(l, side))
+		return false;
 	return spec && ec_spec_is_any(spec) == any && !l->link[side].dev &&
 	       !READ_ONCE(l->base->stopping) && ec_spec_matches(spec, dev->name, dev->mac);
+}
+
+/* Does a master get this device in a moment, and no other one? */
+static bool is_held(const struct ecdev *dev)
+{
+	const struct ec_links *l;
+
+	lockdep_assert_held(&devices_lock);
+	list_for_each_entry(l, &masters, list)
+		if (l->held && ec_spec_matches(l->main, dev->name, dev->mac))
+			return true;
+	return false;
 }
 
 /* Give @dev to the first master that waits for it. */
@@ -220,6 +234,8 @@ static void match_locked(struct ecdev *dev)
 	int any;
 
 	lockdep_assert_held(&devices_lock);
+	if (is_held(dev))
+		return;
 	/* a master that names the device comes before one that takes any device */
 	for (any = 0; any < 2; any++)
 		list_for_each_entry(l, &masters, list)
@@ -261,6 +277,17 @@ void ec_device_unregister(struct ec_links *l)
 	mutex_unlock(&devices_lock);
 }
 
+/* Give the devices that are left to the masters that wait for them. */
+static void match_all(void)
+{
+	struct ecdev *dev;
+
+	lockdep_assert_held(&devices_lock);
+	list_for_each_entry(dev, &devices, list)
+		if (!rcu_access_pointer(dev->link))
+			match_locked(dev);
+}
+
 static void set_main(struct ec_links *l, const char *name)
 {
 	lockdep_assert_held(&devices_lock);
@@ -269,18 +296,21 @@ static void set_main(struct ec_links *l, const char *name)
 	raw_spin_unlock(&l->main_lock);
 }
 
-/* The master that has this device or waits for it, but for @l as its main device. */
-static const struct ec_links *rival_of(const struct ec_links *l, const char *name)
+/* The master that has this device or waits for it, but for @l as its device @as. */
+static const struct ec_links *rival_of(const struct ec_links *l, unsigned int as,
+				       const char *name)
 {
 	const struct ec_links *o;
 	unsigned int side;
 
 	lockdep_assert_held(&devices_lock);
 	list_for_each_entry(o, &masters, list)
-		for (side = o == l ? EC_BACKUP : EC_MAIN; side < EC_MAX_LINKS; side++) {
+		for (side = 0; side < EC_MAX_LINKS; side++) {
 			const char *spec = side ? o->backup : o->main;
 			const struct ecdev *dev = o->link[ec_links_named(o, side)].dev;
 
+			if (o == l && side == as)
+				continue;
 			if (spec && ec_spec_same(name, spec))
 				return o;
 			if (dev && !ec_spec_is_any(name) &&
@@ -290,41 +320,101 @@ static const struct ec_links *rival_of(const struct ec_links *l, const char *nam
 	return NULL;
 }
 
+static struct ecdev *device_at(const struct ec_links *l, unsigned int as)
+{
+	lockdep_assert_held(&devices_lock);
+	return l->link[ec_links_named(l, as)].dev;
+}
+
+static void release_main(struct ec_links *l)
+{
+	struct ecdev *dev = device_at(l, EC_MAIN);
+
+	lockdep_assert_held(&devices_lock);
+	l->closed = true;
+	if (!dev)
+		return;
+	detach(dev);
+	match_locked(dev);
+}
+
+/* No frame is in flight when a line becomes a ring: the main device is released for a while. */
+static void release_backup(struct ec_links *l)
+{
+	struct ecdev *main = device_at(l, EC_MAIN), *dev = device_at(l, EC_BACKUP);
+
+	lockdep_assert_held(&devices_lock);
+	l->held = true;
+	raw_spin_lock(&l->main_lock);
+	WRITE_ONCE(l->backup, NULL);
+	raw_spin_unlock(&l->main_lock);
+	if (main)
+		detach(main);
+	if (!dev)
+		return;
+	detach(dev);
+	match_locked(dev);
+}
+
+/* Return: whether the master has the device @name, or is to have none and has none. */
+static bool has_already(struct ec_links *l, unsigned int as, const char *name)
+{
+	const struct ecdev *dev = device_at(l, as);
+
+	lockdep_assert_held(&devices_lock);
+	if (!*name)
+		return !l->backup;
+	if (!dev || !ec_spec_matches(name, dev->name, dev->mac))
+		return false;
+	if (as == EC_MAIN)
+		set_main(l, name);
+	return true;
+}
+
+static int release(struct ec_links *l, unsigned int as, const char *name, unsigned int *rival)
+{
+	const struct ec_links *other = rival_of(l, as, name);
+
+	lockdep_assert_held(&devices_lock);
+	if (other) {
+		*rival = other->base->index;
+		return -EBUSY;
+	}
+	/* each end of a ring has the device of its name */
+	if (ec_spec_is_any(name) ? as || l->backup : as && *name && ec_spec_is_any(l->main))
+		return -EINVAL;
+	if (has_already(l, as, name))
+		return -EEXIST;
+	if (as == EC_BACKUP && *name && ec_slots_reserve(&l->slots))
+		return -ENOMEM;
+	if (as == EC_MAIN)
+		release_main(l);
+	else
+		release_backup(l);
+	return 0;
+}
+
 /**
- * ec_device_release() - a master releases its main device, in order to get another one
- * @l: its links; they get no main device until ec_device_use()
- * @name: of the device that it is to get
+ * ec_device_release() - a master releases a device, in order to get another one
+ * @l: its links; they get no such device until ec_device_use()
+ * @as: EC_MAIN or EC_BACKUP; with the latter they have no main device until ec_device_reopen()
+ * @name: of the device that it is to get; for the backup device "": none
  * @rival: result with -EBUSY: number of the other master
  *
  * A master that has the device @name keeps it.
  *
  * Context: Process. May sleep, takes RTNL.
  * Return: 0; -EEXIST when it keeps its device, which is @name now; -EBUSY when another master has
- * the device @name or waits for it, or it is the backup device.
+ * the device @name or waits for it, or it is the other one of this master; -EINVAL: a device of a
+ * ring would be any one; -ENOMEM.
  */
-int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival)
+int ec_device_release(struct ec_links *l, unsigned int as, const char *name, unsigned int *rival)
 {
-	const struct ec_links *other;
-	struct ecdev *dev;
-	int ret = 0;
+	int ret;
 
 	rtnl_lock();
 	mutex_lock(&devices_lock);
-	dev = l->link[ec_links_named(l, EC_MAIN)].dev;
-	other = rival_of(l, name);
-	if (other) {
-		*rival = other->base->index;
-		ret = -EBUSY;
-	} else if (dev && ec_spec_matches(name, dev->name, dev->mac)) {
-		set_main(l, name);
-		ret = -EEXIST;
-	} else {
-		l->closed = true;
-		if (dev) {
-			detach(dev);
-			match_locked(dev);
-		}
-	}
+	ret = release(l, as, name, rival);
 	mutex_unlock(&devices_lock);
 	rtnl_unlock();
 	if (!ret)
@@ -332,30 +422,61 @@ int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival)
 	return ret;
 }
 
+/* A device that has come at this moment leaves again. */
+static void use_backup(struct ec_links *l, const char *name)
+{
+	unsigned int i;
+
+	lockdep_assert_held(&devices_lock);
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		if (l->link[i].dev)
+			detach(l->link[i].dev);
+	ec_links_set_backup(l, name);
+}
+
 /**
- * ec_device_use() - a master gets a main device after ec_device_release()
+ * ec_device_use() - a master gets a device after ec_device_release()
  * @l: its links
- * @name: MAC address, PCI address or name of the device
+ * @as: EC_MAIN, or EC_BACKUP: then no slave is known, or @name is that of before
+ * @name: MAC address, PCI address or name of the device; for the backup device "": none
  *
  * Context: Process. May sleep, takes RTNL.
  * Return: 0, or -ENODEV: it waits for the device.
  */
-int ec_device_use(struct ec_links *l, const char *name)
+int ec_device_use(struct ec_links *l, unsigned int as, const char *name)
 {
-	struct ecdev *dev;
-
 	rtnl_lock();
 	mutex_lock(&devices_lock);
-	set_main(l, name);
-	l->closed = false;
-	list_for_each_entry(dev, &devices, list)
-		if (!rcu_access_pointer(dev->link))
-			match_locked(dev);
+	if (as == EC_BACKUP) {
+		use_backup(l, name);
+	} else {
+		set_main(l, name);
+		l->closed = false;
+	}
+	match_all();
 	mutex_unlock(&devices_lock);
 	rtnl_unlock();
 	/* drivers offer only devices that a master wants */
 	blocking_notifier_call_chain(&changes, 0, NULL);
-	return READ_ONCE(l->link[ec_links_named(l, EC_MAIN)].dev) ? 0 : -ENODEV;
+	return !*name || READ_ONCE(l->link[ec_links_named(l, as)].dev) ? 0 : -ENODEV;
+}
+
+/**
+ * ec_device_reopen() - a master has its main device again after it got another backup device
+ * @l: its links
+ *
+ * Context: Process. May sleep, takes RTNL.
+ */
+void ec_device_reopen(struct ec_links *l)
+{
+	rtnl_lock();
+	mutex_lock(&devices_lock);
+	l->held = false;
+	match_all();
+	mutex_unlock(&devices_lock);
+	rtnl_unlock();
+	/* a driver may have withdrawn the device meanwhile, since no master had it */
+	blocking_notifier_call_chain(&changes, 0, NULL);
 }
 
 /* What a link knows of its device, or by it. Frames in flight stay with the link. */

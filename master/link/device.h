@@ -29,8 +29,9 @@ struct ecdev {
 
 void ec_device_register(struct ec_links *l);
 void ec_device_unregister(struct ec_links *l);
-int ec_device_release(struct ec_links *l, const char *name, unsigned int *rival);
-int ec_device_use(struct ec_links *l, const char *name);
+int ec_device_release(struct ec_links *l, unsigned int as, const char *name, unsigned int *rival);
+int ec_device_use(struct ec_links *l, unsigned int as, const char *name);
+void ec_device_reopen(struct ec_links *l);
 bool ec_device_exchange(struct ec_links *l);
 
 #endif

@@ -4,6 +4,22 @@
 #include "device.h"
 #include "links.h"
 
+/* Frames are sent on two links, or on one. */
+static void set_two(struct ec_links *l, bool two)
+{
+	WRITE_ONCE(l->sides, two ? BIT(EC_MAIN) | BIT(EC_BACKUP) : BIT(EC_MAIN));
+	WRITE_ONCE(l->only, two ? NULL : &l->link[EC_MAIN]);
+	WRITE_ONCE(l->ring.state, two ? EC_RING_UNKNOWN : EC_RING_NONE);
+	WRITE_ONCE(l->ring.front, U32_MAX);
+	WRITE_ONCE(l->ring.news, false);
+}
+
+static void name_backup(struct ec_links *l, const char *name)
+{
+	strscpy(l->backup_name, name, sizeof(l->backup_name));
+	WRITE_ONCE(l->backup, *name ? l->backup_name : NULL);
+}
+
 /**
  * ec_links_init() - prepare the links of a master, which then wait for their devices
  * @l: zeroed structure
@@ -25,11 +41,8 @@ int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_link
 	l->ops = ops;
 	strscpy(l->main, main, sizeof(l->main));
 	raw_spin_lock_init(&l->main_lock);
-	l->backup = backup;
-	l->sides = backup ? BIT(EC_MAIN) | BIT(EC_BACKUP) : BIT(EC_MAIN);
-	l->only = backup ? NULL : &l->link[EC_MAIN];
-	l->ring.state = backup ? EC_RING_UNKNOWN : EC_RING_NONE;
-	l->ring.front = U32_MAX;
+	name_backup(l, backup ?: "");
+	set_two(l, backup);
 	l->max_datagrams = 15;
 	l->io_timeout_us = 20000;
 	for (i = 0; i < EC_MAX_LINKS; i++)
@@ -56,6 +69,29 @@ void ec_links_exit(struct ec_links *l)
 	ec_device_unregister(l);
 	ec_capture_destroy(l);
 	ec_slots_exit(&l->slots);
+}
+
+/**
+ * ec_links_set_backup() - the master has another backup device, or none, from now on
+ * @l: links without a device, after ec_slots_reserve(); no slave is known, no session open
+ * @name: of the backup device; "": none, so the bus is no ring
+ *
+ * Context: Process. May sleep. No device comes meanwhile.
+ */
+void ec_links_set_backup(struct ec_links *l, const char *name)
+{
+	rt_mutex_lock(&l->access.lock);
+	ec_access_shut(l);
+	raw_spin_lock(&l->main_lock);
+	name_backup(l, name);
+	WRITE_ONCE(l->exchanged, false);
+	raw_spin_unlock(&l->main_lock);
+	if (!l->only != !!*name) {
+		set_two(l, *name);
+		ec_slots_set_two(&l->slots, *name);
+	}
+	ec_access_reopen(l);
+	rt_mutex_unlock(&l->access.lock);
 }
 
 /**
@@ -90,7 +126,7 @@ bool ec_links_need_thread(const struct ec_links *l)
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		const struct ecdev *dev = READ_ONCE(l->link[i].dev);	/* may be withdrawn now */
 
-		if (l->sides & BIT(i) && dev && !dev->ops->atomic)
+		if (READ_ONCE(l->sides) & BIT(i) && dev && !dev->ops->atomic)
 			return true;
 	}
 	return false;
@@ -108,7 +144,7 @@ bool ec_links_one_attached(const struct ec_links *l)
 	const struct ec_link *link;
 
 	ec_links_for_each(l, link)
-		if (l->sides & BIT(link->side) && READ_ONCE(link->dev))
+		if (READ_ONCE(l->sides) & BIT(link->side) && READ_ONCE(link->dev))
 			return true;
 	return false;
 }
@@ -152,15 +188,18 @@ void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long
 /* Return: whether the state of a link has changed; a device that is withdrawn leaves it down. */
 static bool has_changed(struct ec_link *link)
 {
-	struct rt_mutex *lock = &link->links->access.lock;
+	struct ec_links *l = link->links;
 	bool up, was;
 
 	ec_link_look(link);
-	rt_mutex_lock(lock);
+	rt_mutex_lock(&l->access.lock);
 	up = ec_link_is_up(link);
 	was = link->up;
 	WRITE_ONCE(link->up, up);
-	rt_mutex_unlock(lock);
+	/* the way of all frames of a ring changes */
+	if (up != was)
+		WRITE_ONCE(l->ring.news, !l->only);
+	rt_mutex_unlock(&l->access.lock);
 	return up != was;
 }
 
@@ -179,8 +218,6 @@ bool ec_links_look(struct ec_links *l)
 	ec_links_for_each(l, link) {
 		if (has_changed(link)) {
 			ec_link_hears(link);
-			/* the way of all frames of a ring changes */
-			WRITE_ONCE(l->ring.news, !l->only);
 			ec_report(l->base, link->up ? EC_EVENT_LINK_UP : EC_EVENT_LINK_DOWN,
 				  link->side);
 		}

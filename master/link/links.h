@@ -45,8 +45,13 @@ struct ec_links {
 	char main[EC_UAPI_STRING];
 	/** @main_lock: for readers of @main and of the name of an attached device */
 	raw_spinlock_t main_lock;
-	/** @backup: backup device at the other end of a ring, as the user names it, NULL: none */
+	/**
+	 * @backup: backup device at the other end of a ring, as the user names it, NULL: none;
+	 * changed as @main
+	 */
 	const char *backup;
+	/** @backup_name: memory of @backup */
+	char backup_name[EC_UAPI_STRING];
 	/**
 	 * @exchanged: the device at @backup is the main one of the ring, and that at @main the
 	 * backup one, since the cables are exchanged; changed as @main
@@ -54,13 +59,18 @@ struct ec_links {
 	bool exchanged;
 	/** @closed: gets no main device, under the device lock */
 	bool closed;
+	/** @held: gets its main device later, and no other master does; under the device lock */
+	bool held;
 	/** @link: main and backup */
 	struct ec_link link[EC_MAX_LINKS];
 	/** @capture: for capture programs, NULL: none; immutable while a device is attached */
 	struct ec_capture *capture;
-	/** @sides: mask of the links on which frames are sent, immutable */
+	/**
+	 * @sides: mask of the links on which frames are sent; it and @only change while no device
+	 * is attached, no slave known and no session open, with the access lock held
+	 */
 	u8 sides;
-	/** @only: the link that carries all of them, NULL: several; immutable */
+	/** @only: the link that carries all of them, NULL: several */
 	struct ec_link *only;
 	/** @ring: state of the ring, with a backup device */
 	struct ec_ring ring;
@@ -87,7 +97,7 @@ static inline bool ec_links_is_up(const struct ec_links *l)
 	const struct ec_link *link;
 
 	ec_links_for_each(l, link)
-		if (l->sides & BIT(link->side) && ec_link_is_up(link))
+		if (READ_ONCE(l->sides) & BIT(link->side) && ec_link_is_up(link))
 			return true;
 	return false;
 }
@@ -98,7 +108,7 @@ static inline bool ec_links_seen_up(const struct ec_links *l)
 	const struct ec_link *link;
 
 	ec_links_for_each(l, link)
-		if (l->sides & BIT(link->side) && READ_ONCE(link->up))
+		if (READ_ONCE(l->sides) & BIT(link->side) && READ_ONCE(link->up))
 			return true;
 	return false;
 }
@@ -120,7 +130,9 @@ bool ec_links_one_attached(const struct ec_links *l);
 /* a device that sends frames is attached */
 static inline bool ec_links_attached(const struct ec_links *l)
 {
-	return likely(l->only) ? !!READ_ONCE(l->only->dev) : ec_links_one_attached(l);
+	const struct ec_link *only = READ_ONCE(l->only);
+
+	return likely(only) ? !!READ_ONCE(only->dev) : ec_links_one_attached(l);
 }
 
 static inline bool ec_links_any_device(const struct ec_links *l)
@@ -128,10 +140,10 @@ static inline bool ec_links_any_device(const struct ec_links *l)
 	return ec_links_attached(l) || READ_ONCE(l->link[EC_BACKUP].dev);
 }
 
-/* number of links that the module parameters name, limit for ec_links_at() */
+/* number of links that have a name of a device, limit for ec_links_at() */
 static inline unsigned int ec_links_n(const struct ec_links *l)
 {
-	return l->backup ? 2 : 1;
+	return READ_ONCE(l->backup) ? 2 : 1;
 }
 
 /* the link that has the device at one of the two names of the user, 0: that at the main one */
@@ -273,8 +285,8 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
  */
 static inline struct ec_ring_way ec_ring_way(const struct ec_links *l, u8 cmd, u16 adp)
 {
-	return likely(l->only) ? (struct ec_ring_way){ .sides = l->sides } :
-				 ec_ring_find_way(&l->ring, cmd, adp);
+	return likely(READ_ONCE(l->only)) ? (struct ec_ring_way){ .sides = BIT(EC_MAIN) } :
+					    ec_ring_find_way(&l->ring, cmd, adp);
 }
 
 void ec_links_lost(struct ec_links *l, const struct ec_slot *slot, unsigned long sides);
@@ -415,6 +427,7 @@ static inline void ec_links_flush(struct ec_links *l)
 int ec_links_init(struct ec_links *l, struct ec_base *base, const struct ec_links_ops *ops,
 		  const char *main, const char *backup);
 void ec_links_exit(struct ec_links *l);
+void ec_links_set_backup(struct ec_links *l, const char *name);
 const char *ec_links_name(struct ec_links *l, unsigned int i, char *buf, size_t size);
 bool ec_links_need_thread(const struct ec_links *l);
 bool ec_links_look(struct ec_links *l);

@@ -22,26 +22,55 @@ MODULE_PARM_DESC(frame_numbers, "Number the frames in their source MAC address (
  */
 int ec_slots_init(struct ec_slots *s, bool two)
 {
-	unsigned int i, side;
+	unsigned int i;
 
 	s->numbered = frame_numbers;
 	raw_spin_lock_init(&s->both);
 	s->slot = vzalloc(array_size(EC_SLOTS, sizeof(*s->slot)));
-	s->copies = two ? vzalloc(array_size(EC_SLOTS * EC_MAX_LINKS + 1, COPY_MAX)) : NULL;
-	s->merged = two ? s->copies + EC_SLOTS * EC_MAX_LINKS * COPY_MAX : NULL;
-	if (!s->slot || (two && !s->copies)) {
+	if (!s->slot || (two && ec_slots_reserve(s))) {
 		ec_slots_exit(s);
 		return -ENOMEM;
 	}
+	for (i = 0; i < EC_SLOTS; i++)
+		s->slot[i].index = i;
+	ec_slots_set_two(s, two);
+	return 0;
+}
+
+/**
+ * ec_slots_reserve() - allocate the memory for the copies of two links
+ * @s: slots
+ *
+ * Context: Process. May sleep.
+ * Return: 0, also if it was allocated before, or -ENOMEM.
+ */
+int ec_slots_reserve(struct ec_slots *s)
+{
+	if (!s->memory)
+		s->memory = vzalloc(array_size(EC_SLOTS * EC_MAX_LINKS + 1, COPY_MAX));
+	return s->memory ? 0 : -ENOMEM;
+}
+
+/**
+ * ec_slots_set_two() - from now on there are two links, or one
+ * @s: slots
+ * @two: two, after ec_slots_reserve(); the memory stays until ec_slots_exit()
+ *
+ * Context: Process, while no device delivers frames and no frame is sent.
+ */
+void ec_slots_set_two(struct ec_slots *s, bool two)
+{
+	unsigned int i, side;
+
+	s->copies = two ? s->memory : NULL;
+	s->merged = two ? s->memory + EC_SLOTS * EC_MAX_LINKS * COPY_MAX : NULL;
 	for (i = 0; i < EC_SLOTS; i++) {
 		struct ec_slot *slot = &s->slot[i];
 
-		slot->index = i;
 		for (side = 0; side < EC_MAX_LINKS; side++)
 			slot->copy[side] = two ? s->copies + (i * EC_MAX_LINKS + side) * COPY_MAX :
 						 ec_slot_body(slot);
 	}
-	return 0;
 }
 
 /**
@@ -53,8 +82,9 @@ int ec_slots_init(struct ec_slots *s, bool two)
 void ec_slots_exit(struct ec_slots *s)
 {
 	vfree(s->slot);
-	vfree(s->copies);
+	vfree(s->memory);
 	s->slot = NULL;
+	s->memory = NULL;
 	s->copies = NULL;
 	s->merged = NULL;
 }

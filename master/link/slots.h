@@ -85,6 +85,8 @@ struct ec_slot {
 struct ec_slots {
 	/** @slot: the slots */
 	struct ec_slot *slot;
+	/** @memory: of @copies and @merged, NULL: there was no second link so far */
+	u8 *memory;
 	/** @copies: memory of the copies with a second link, else NULL */
 	u8 *copies;
 	/** @merged: likewise, for the cycle: a frame that both links have returned, in one */
@@ -106,6 +108,8 @@ enum ec_match {
 };
 
 int ec_slots_init(struct ec_slots *s, bool two);
+int ec_slots_reserve(struct ec_slots *s);
+void ec_slots_set_two(struct ec_slots *s, bool two);
 void ec_slots_exit(struct ec_slots *s);
 struct ec_slot *ec_slot_search(struct ec_slots *s, bool cyclic, u64 now_ns);
 bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);

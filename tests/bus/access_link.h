@@ -36,7 +36,7 @@ static inline void bus_set_dev(const struct bus *b, struct ecdev *dev)
 /* the master gives up its device and gets no other */
 static inline void bus_no_device(const struct bus *b)
 {
-	ec_device_release(bus_links(b), "none", NULL);
+	ec_device_release(bus_links(b), EC_MAIN, "none", NULL);
 }
 
 static inline bool bus_link_up(const struct bus *b)

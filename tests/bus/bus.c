@@ -23,8 +23,8 @@ static struct bus *bus_make(struct kunit *test, const char *text, char *device, 
 	test->priv = b;
 	ret = ec_sim_describe(&b->sim, &ec_sim_kernel_ops, text, strlen(text), NULL, &err);
 	KUNIT_ASSERT_EQ_MSG(test, ret, 0, "line %u: %s", err.line, err.text);
-	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, &backup, ec_sim_is_ring(b->sim), 0),
-			0);
+	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, &backup,
+						backup && ec_sim_is_ring(b->sim), 0), 0);
 	b->m = ec_cdev_master(0);
 	ec_file_init(&b->app, b->m, true);
 	return b;
@@ -52,6 +52,18 @@ struct bus *bus_new(struct kunit *test, const char *text)
 struct bus *bus_new_exchanged(struct kunit *test, const char *text)
 {
 	return bus_make(test, text, "bus0b", "bus0");
+}
+
+/**
+ * bus_new_line() - bus_new() at a ring, without a backup device
+ * @test: as there
+ * @text: likewise
+ *
+ * Return: as there.
+ */
+struct bus *bus_new_line(struct kunit *test, const char *text)
+{
+	return bus_make(test, text, "bus0", NULL);
 }
 
 /**

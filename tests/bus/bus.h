@@ -43,6 +43,7 @@ struct bus {
 
 struct bus *bus_new(struct kunit *test, const char *text);
 struct bus *bus_new_exchanged(struct kunit *test, const char *text);
+struct bus *bus_new_line(struct kunit *test, const char *text);
 void bus_plug(struct bus *b);
 void bus_plug_second(struct bus *b);
 struct bus *bus_up(struct kunit *test, const char *text, u32 slaves);

@@ -4,6 +4,7 @@
 #include <linux/netdevice.h>
 #include <linux/rtnetlink.h>
 #include "bus.h"
+#include "master/boundary/ioctl.h"
 #include "master/link/device.h"
 
 /* private part of the network device */
@@ -183,7 +184,20 @@ static void generic_rename_shown(struct kunit *test)
 	msleep(100);
 	KUNIT_EXPECT_PTR_EQ(test, (const struct ecdev *)bus_dev(b), dev);
 	KUNIT_EXPECT_STREQ(test, dev->name, "lan7");
-	KUNIT_EXPECT_EQ(test, ec_device_release(bus_links(b), "lan7", &rival), -EEXIST);
+	KUNIT_EXPECT_EQ(test, ec_device_release(bus_links(b), EC_MAIN, "lan7", &rival), -EEXIST);
+	fake_free(b, nd);
+}
+
+/* The main device is released for a while, in which the generic driver withdraws it. */
+static void generic_main_device_back_after_backup_use(struct kunit *test)
+{
+	struct bus *b = bus_new(test, "slave a EK1100\n");
+	struct net_device *nd = fake_new(b);
+	struct ec_ioc_device_use use = { .flags = EC_DEVICE_FLAG_BACKUP, .name = "eth7" };
+
+	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEVICE_USE, &use), -ENODEV);
+	KUNIT_ASSERT_NOT_NULL(test, (const struct ecdev *)bus_dev(b));
+	KUNIT_EXPECT_STREQ(test, bus_dev(b)->name, nd->name);
 	fake_free(b, nd);
 }
 
@@ -303,6 +317,7 @@ static void generic_change_in_foreign_namespace_ignored(struct kunit *test)
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(generic_result_of_frame, result_gen_params),
 	KUNIT_CASE(generic_rename_shown),
+	KUNIT_CASE(generic_main_device_back_after_backup_use),
 	KUNIT_CASE(generic_full_queue_not_captured),
 	KUNIT_CASE(generic_mtu_in_cycle_refused_before_driver),
 	KUNIT_CASE(generic_change_in_foreign_namespace_ignored),

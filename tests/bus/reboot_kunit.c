@@ -217,7 +217,7 @@ static void reboot_scan_under_way_slaves_in_preop(struct kunit *test)
 	KUNIT_ASSERT_EQ(test, esc_state(b, 1), EC_AL_OP);
 	KUNIT_ASSERT_EQ(test, ec_masters_create(&device, 1, NULL, 0, 0), 0);
 	b->m = ec_cdev_master(0);
-	KUNIT_ASSERT_EQ(test, ec_device_use(bus_links(b), device), 0);
+	KUNIT_ASSERT_EQ(test, ec_device_use(bus_links(b), EC_MAIN, device), 0);
 	for (i = 0; i < 100 && !bus_scan_busy(b); i++)
 		usleep_range(500, 501);
 	KUNIT_EXPECT_TRUE(test, bus_scan_busy(b));

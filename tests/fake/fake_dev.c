@@ -271,7 +271,9 @@ static int answer(int fd, unsigned long request, void *arg)
 		fake_record("release %d\n", fd - FD);
 		return 0;
 	case EC_IOC_DEVICE_USE:
-		fake_record("use %d %s\n", fd - FD, ((struct ec_ioc_device_use *)arg)->name);
+		fake_record("use%s %d %s\n",
+			    ((struct ec_ioc_device_use *)arg)->flags ? " backup" : "", fd - FD,
+			    ((struct ec_ioc_device_use *)arg)->name);
 		return 0;
 	case EC_IOC_DEBUG:
 		fake_record("debug %d %u\n", fd - FD, ((struct ec_ioc_debug *)arg)->level);

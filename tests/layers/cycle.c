@@ -206,7 +206,7 @@ static void cycle_ends_without_device(void)
 	usleep_range(1000, 1100);
 	CHECK_EQ(ec_cycle_receive(&b->cycle), 0);
 	b->cycle.shared->status->domains[0].working_counter = 3;
-	ec_device_release(&b->p.s.seg.links, "none", NULL);
+	ec_device_release(&b->p.s.seg.links, EC_MAIN, "none", NULL);
 	CHECK_EQ(ec_cycle_send(&b->cycle, &all), -ENODEV);
 	ec_cycles_nothing_back(&b->cycles);
 	CHECK_EQ(b->cycle.shared->status->domains[0].working_counter, 0);

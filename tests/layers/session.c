@@ -99,7 +99,7 @@ static void master_has_one_application_at_a_time(void)
 	ec_session_end(&b->ss, &owner[0]);
 	CHECK(!b->ss.session);
 	CHECK_EQ(b->s.bus.held, false);
-	ec_device_release(&b->s.seg.links, "none", NULL);
+	ec_device_release(&b->s.seg.links, EC_MAIN, "none", NULL);
 	CHECK_EQ(ec_session_begin(&b->ss, &owner[0], NULL), -ENODEV);
 	bench_free(b);
 }

@@ -92,6 +92,7 @@ slaves_are() {
 
 @test "devices that are absent, invalid or of others are refused, and nothing changes" {
 	refused 'sim2 is the device of master 1' device use -m0 sim2
+	refused 'sim2 is the device of master 1' device use -m0 --backup sim2
 	refused 'there is no network card eth9' device use -m0 eth9
 	refused 'no driver offers sim9' device use -m0 sim9
 	refused 'neither a MAC address' device use -m0 'sim/9'
@@ -106,6 +107,10 @@ slaves_are() {
 	chmod 666 /dev/EtherCAT0
 	run setpriv --reuid 65534 --regid 65534 --clear-groups \
 		"$EC_BUILD/tool/ethercat" device use -m0 sim1
+	[ "$status" = 1 ]
+	[[ $output == *'needs root (CAP_NET_ADMIN)'* ]]
+	run setpriv --reuid 65534 --regid 65534 --clear-groups \
+		"$EC_BUILD/tool/ethercat" device use -m0 --backup none
 	[ "$status" = 1 ]
 	[[ $output == *'needs root (CAP_NET_ADMIN)'* ]]
 	run setpriv --bounding-set -net_admin --inh-caps -net_admin \

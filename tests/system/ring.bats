@@ -234,6 +234,50 @@ app_ends() {
 	wait_for 60 all_slaves_are PREOP $slaves
 }
 
+# line_is N: all of them in PREOP, at the main device alone
+line_is() {
+	wait_for 60 all_slaves_are PREOP "$1"
+	json '.masters[0] | (.devices | length) == 1 and .ring.state == "none"' master
+}
+
+@test "device use --backup makes a ring of a line, which runs, and --backup none a line again" {
+	local i to
+
+	master main_devices=sim0
+	simulator
+	line_is $slaves
+	refused 'sim0 is the device of master 0' device use --backup sim0
+	refused 'no driver offers sim9.*keeps no backup device' device use --backup sim9
+	line_is $slaves
+	ethercat device use --backup sim0b
+	# it has waited for the scan
+	ring closed
+	all_slaves_are PREOP $slaves
+	app_runs
+	refused 'stop that application first' device use --backup none
+	tell cut o3.1
+	wait_for 20 ring "open between port 1 of slave 4 and slave 5"
+	goes_on 100
+	tell heal o3.1
+	wait_for 20 ring closed
+	goes_on 100
+	app_ends 4
+	# it changes while callers are killed
+	for i in 1 2 3 4 5 6 7 8; do
+		for to in none sim0b; do
+			timeout -s KILL 0.0$i "$EC_BUILD/tool/ethercat" device use --backup $to ||
+				true	# it is killed
+		done
+	done
+	wait_for 60 ethercat device use --backup sim0b
+	wait_for 60 all_slaves_are PREOP $slaves
+	wait_for 20 ring closed
+	ethercat device use --backup none
+	line_is $slaves
+	ethercat run
+	wait_for 60 all_slaves_are OP $slaves
+}
+
 @test "the names of the two devices are exchanged: the ring works, and says so" {
 	master main_devices=sim0b backup_devices=sim0
 	simulator
@@ -336,6 +380,21 @@ cut_and_heal() {
 	wait_for 20 ring closed
 	goes_on 100
 	app_ends 40
+	# without the ring, with the cable out, and again; not while a bridge has it
+	tell cut i4.1
+	ip link set veth2 down
+	ethercat device use --backup none
+	line_is $slaves
+	modprobe bridge
+	ip link add br0 type bridge
+	ip link set veth2 master br0
+	refused 'or it cannot be used .*keeps no backup device' device use --backup veth2
+	ip link del br0
+	ip link set veth2 up
+	tell heal i4.1
+	ethercat device use --backup veth2
+	wait_for 60 all_slaves_are PREOP $slaves
+	wait_for 20 ring closed
 }
 
 # monitor COMMAND: of QEMU
@@ -391,4 +450,11 @@ links_are_up() { json '.masters[0].devices | all(.link_up)' master; }
 	wait_for 20 ring closed
 	goes_on 100
 	app_ends 100
+	# each of them as the other one
+	ethercat device use --backup none
+	ethercat device use 52:54:00:ec:00:02
+	ethercat device use --backup "$(cat "$BATS_TEST_TMPDIR/native")"
+	wait_for 60 all_slaves_are PREOP $slaves
+	wait_for 20 ring closed
+	ethercat master | grep -q '^  Devices exchanged: '
 }

@@ -155,6 +155,21 @@ refused() {
 	refused "/etc/modprobe.d" use --boot enp1s0
 }
 
+@test "use --backup: the device at the other end of a ring, or none" {
+	card 0000:05:00.0 0x8086 0x10d3 ec_intel
+	for name in enp1s0 sim0b; do
+		[ "$(log_of device use --backup $name)" = "use backup 0 $name" ]
+		[ "$(log_of device --backup use $name)" = "use backup 0 $name" ]
+	done
+	[ "$(log_of device use 05:00.0 --backup)" = "use backup 0 0000:05:00.0" ]
+	[ "$(log_of device use --backup none)" = "use backup 0 " ]
+	refused "there is no network card none" use none
+	refused "there is no network card eth9" use --backup eth9
+	refused "bind has no --backup" bind --backup enp1s0
+	refused "unbind has no --backup" unbind --backup enp1s0
+	refused "missing argument" use --backup
+}
+
 @test "unbind gives the card back" {
 	refused "enp1s0 has no native driver" unbind enp1s0
 	card 0000:05:00.0 0x8086 0x10d3 ec_intel

@@ -105,6 +105,7 @@ _ethercat()
 			device)
 				case $prev in
 				bind|unbind|use) w=$(_ethercat_values device) ;;
+				--backup)	w="$(_ethercat_values device) none" ;;
 				device)		w="bind unbind use" ;;
 				*)		w= ;;
 				esac ;;

@@ -80,7 +80,7 @@ const struct cmd cmds[] = {
 	CMD(CYCLE_RESET, BUS),
 	CMD(END_DETACHED, BUS),
 	CMD(OUTPUT, BUS, RSV1(ec_ioc_output), .flags = EC_OUTPUT_FLAG_HOLD),
-	CMD(DEVICE_USE, BUS, RSV1(ec_ioc_device_use)),
+	CMD(DEVICE_USE, BUS, RSV1(ec_ioc_device_use), .flags = EC_DEVICE_FLAG_BACKUP),
 	CMD(RESERVE, BUS),
 	CMD(RELEASE, APP),
 	CMD(CREATE_DOMAIN, APP),
