@@ -80,13 +80,18 @@ int ecrt_master(ec_master_t *m, ec_master_info_t *info)
 	return 0;
 }
 
-/* it is no ring */
+/* of a ring: whether it is one, and slaves before its break; SLAVES: it is closed */
+static bool is_ring;
+static unsigned int front = SLAVES;
+
 int ecrt_master_link_state(const ec_master_t *m, unsigned int device,
 			   ec_master_link_state_t *state)
 {
-	if (!m || device)
+	if (!m || device > is_ring)
 		return -EINVAL;
-	*state = (ec_master_link_state_t){ .slaves_responding = SLAVES, .link_up = 1 };
+	*state = (ec_master_link_state_t){
+		.slaves_responding = device ? SLAVES - front : front, .link_up = 1,
+	};
 	return 0;
 }
 
@@ -555,6 +560,44 @@ static void partial(void)
 	      "domain0: config3 SM0 0.0\n");
 }
 
+/* Behind the break of a ring only an alias is certain, if slaves of the file are missing. */
+static void ring_with_missing(void)
+{
+	static const char less[] = PART "}\n  - {name: more, vendor: 2, product: 0x99}\n";
+	static const char part[] =
+		"domain0\n"
+		"config0 = 0:0 0x2:0x10\n"
+		"config1 = 5:0 0x2:0x20\n"
+		"config2 = 0:2 0x2:0x30\n"
+		"domain0: config1 SM0 0.0\n"
+		"domain0: config2 SM2 0.0\n"
+		"domain0: config2 SM3 0.0\n";
+	static const char uncertain[] =
+		"t:6: slave 'axis' is behind the break of a ring from which slaves are missing";
+	struct ecb_error e;
+
+	is_ring = true;
+	loads(less, ECB_LOAD_PARTIAL, part);
+	/* the last slaves are those that are missing */
+	front = 3;
+	loads(less, ECB_LOAD_PARTIAL, part);
+	/* from the lamps on, which have an alias, and only the drive */
+	for (front = 0; front < 3; front++) {
+		const char *first = front ? uncertain : "t:4: slave 'k' is behind the break";
+
+		CHECK(load(less, ECB_LOAD_PARTIAL, &e) == -EINVAL && !calls[0]);
+		if (!strstr(e.text, first)) {
+			printf("%u: %s\n", front, e.text);
+			bad++;
+		}
+		/* all are there */
+		CHECK(!load(PART "}\n" INPUTS, 0, &e));
+		CHECK(!load(PART "}\n" INPUTS, ECB_LOAD_PARTIAL, &e));
+	}
+	is_ring = false;
+	front = SLAVES;
+}
+
 static void values(void)
 {
 	struct ecb_value v = { .struct_size = sizeof(v) }, old = { .struct_size = 8 };
@@ -643,6 +686,7 @@ int main(void)
 	groups();
 	published();
 	partial();
+	ring_with_missing();
 	values();
 	failures();
 	ec_master_free_data(&master);
