@@ -251,9 +251,25 @@ static u8 sync_command(const struct ec_dc_datagrams *k, u16 *adp)
 	return EC_CMD_FPRD;
 }
 
-static void add_monitor(struct ec_frame_buf *fb, u8 index)
+/* The application's time for the reference clock. */
+static __always_inline void add_refs(struct ec_frame_buf *fb, u8 index, u32 dc, u16 ref, u32 time)
 {
-	put_unaligned_le32(0, ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4));
+	unsigned int i;
+
+	for (i = 0; i < refs(dc); i++)
+		put_unaligned_le32(time, ec_frame_add(fb, EC_CMD_FPWR, index, ref,
+						      EC_REG_DC_SYSTIME, 4));
+}
+
+/* The datagrams that only read; take_reads() has their results. */
+static __always_inline void add_reads(struct ec_frame_buf *fb, u8 index, u32 dc, u16 ref)
+{
+	u16 len = time_bytes(dc);
+
+	if (dc & REF_TIME)
+		memset(ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, len), 0, len);
+	if (dc & MONITOR)
+		put_unaligned_le32(0, ec_frame_add(fb, EC_CMD_BRD, index, 0, EC_REG_DC_DIFF, 4));
 }
 
 /**
@@ -276,10 +292,7 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 	unsigned int i;
 	u8 t[8], *p;
 
-	for (i = 0; i < refs(dc); i++) {
-		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
-		put_unaligned_le32((u32)(now + k->lead), p);
-	}
+	add_refs(fb, index, dc, ref, (u32)(now + k->lead));
 	k->sent = predicted(k, now);
 	/* clock frames of the worker carry it as well */
 	if (k->silent)
@@ -291,12 +304,7 @@ void ec_dc_datagrams_fill(struct ec_dc_datagrams *k, struct ec_frame_buf *fb, u8
 		p = ec_frame_add(fb, cmd, index, adp, EC_REG_DC_SYSTIME, time_bytes(dc));
 		memcpy(p, t, time_bytes(dc));
 	}
-	if (dc & REF_TIME) {
-		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
-		memset(p, 0, time_bytes(dc));
-	}
-	if (dc & MONITOR)
-		add_monitor(fb, index);
+	add_reads(fb, index, dc, ref);
 }
 
 /**
@@ -346,20 +354,11 @@ void ec_dc_datagrams_fill_behind(struct ec_dc_datagrams *k, struct ec_frame_buf 
 {
 	u16 ref = READ_ONCE(k->dc->ref_station);
 	unsigned int i;
-	u8 *p;
 
-	for (i = 0; i < refs(dc); i++) {
-		p = ec_frame_add(fb, EC_CMD_FPWR, index, ref, EC_REG_DC_SYSTIME, 4);
-		put_unaligned_le32((u32)(now + k->lead + k->ring.shift), p);
-	}
+	add_refs(fb, index, dc, ref, (u32)(now + k->lead + k->ring.shift));
 	for (i = 0; i < syncs(dc); i++)
 		ec_ring_clock_fill(&k->ring, k->dc, fb, index, predicted(k, now), k->path_held, f);
-	if (dc & REF_TIME) {
-		p = ec_frame_add(fb, EC_CMD_FPRD, index, ref, EC_REG_DC_SYSTIME, time_bytes(dc));
-		memset(p, 0, time_bytes(dc));
-	}
-	if (dc & MONITOR)
-		add_monitor(fb, index);
+	add_reads(fb, index, dc, ref);
 }
 
 static const u8 *dc_datagrams_skip(const u8 *data, u16 len)
