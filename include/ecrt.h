@@ -1128,9 +1128,10 @@ EC_PUBLIC_API int ecrt_master_application_time(ec_master_t *master,
  * @master: a reserved master
  * @sc: slave whose clock is the reference; NULL: the first suitable slave
  *
- * If this slave has no clock or is absent at activation, there is no reference clock.
- * When it is lost later, another slave substitutes until it returns. A reference clock
- * that is not configured goes to OP with the other slaves, unless it has outputs.
+ * If this slave has no clock or is absent at activation, there is no reference clock. When it
+ * is lost later, or is absent while a ring is open, another slave substitutes until it returns.
+ * A reference clock that is not configured goes to OP with the other slaves, unless it has
+ * outputs.
  *
  * Context: Process. May sleep. Before activation.
  * Return: 0; %-EPERM not reserved; %-EBUSY active; %-EINVAL @master is NULL.

@@ -173,6 +173,7 @@ static void change_ref(struct ec_dc_job *j, bool found)
 	struct ec_dc *dc = j->dc;
 	u16 before = READ_ONCE(dc->ref_station), now;
 	bool lost = before && dc->ref && READ_ONCE(dc->ref->stop.gone);
+	bool substitute = found && READ_ONCE(dc->choice) == EC_DC_NOBODY;
 
 	if (found)
 		set_ref(j);
@@ -180,7 +181,7 @@ static void change_ref(struct ec_dc_job *j, bool found)
 		WRITE_ONCE(dc->ref_station, 0);
 	ec_dc_look_behind(dc, found && j->given ? &j->shift_behind : NULL);
 	now = READ_ONCE(dc->ref_station);
-	if (!j->first && before != now)
+	if ((!j->first || substitute) && before != now)
 		log_ref(j, lost);
 }
 

@@ -181,16 +181,19 @@ static bool any_set(const struct ec_dc_job *j)
  * The configured reference clock; else the one that others are synchronized to, so that a
  * slave that connects upstream of it changes nothing; else the first one, even with 32 bits,
  * since clocks upstream of the reference get no time from it. When the configured one is
- * lost, another clock substitutes it. When it was absent from the start, no clock is set.
+ * lost, another clock substitutes it. When it was absent from the start, no clock is set; but in an
+ * open ring it may be what the break has cut off, and SYNC that is started without a clock would
+ * have to be started again when the ring closes.
  */
 static void choose(struct ec_dc_job *j)
 {
 	u16 choice = READ_ONCE(j->dc->choice);
+	bool waits = choice == EC_DC_NOBODY && j->ring == EC_RING_OPEN && !j->dc->links->only;
 
 	j->ref = j->n;
 	if (choice != EC_DC_ANY) {
 		j->ref = dc_job_find(j, choice);
-		if (j->ref == j->n && !any_set(j))
+		if (j->ref == j->n && !waits && !any_set(j))
 			return;
 	}
 	if (j->ref == j->n)
