@@ -686,7 +686,7 @@ static void note_path(struct watch *w)
 	bool event = w->irq & EC_ECAT_EVENT_DL && w->dl_stays < STAYS;
 
 	ec_dc_armw_locate(dc, w->scanned && !event, w->path);
-	if (w->scanned && !event && !READ_ONCE(dc->changed) && !ec_dc_busy(dc))
+	if (w->scanned && !event && !READ_ONCE(dc->changed) && ec_dc_delays_written(dc))
 		ec_dc_path_is_known(dc, w->path);
 }
 

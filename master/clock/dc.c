@@ -208,6 +208,8 @@ static int set_clocks(struct ec_dc_job *j)
 		if (!ret) {
 			ec_dc_path_is_known(dc, j->path);
 			change_ref(j, true);
+			/* what has changed since, as by the measurement, is for the monitor */
+			WRITE_ONCE(dc->delays_written, true);
 		}
 		if (!dc_is_transient(ret) || READ_ONCE(dc->stop))
 			break;
@@ -355,6 +357,7 @@ void ec_dc_begin(struct ec_dc *dc, u16 choice)
 		ec_clock_event(ec_clock_of(dc->bus->slaves[i]), EC_CLOCK_ON_ACTIVATION);
 	up_read(&dc->bus->topo);
 	WRITE_ONCE(dc->stop, false);
+	WRITE_ONCE(dc->delays_written, false);
 	if (all) {
 		ec_dc_app_set(dc, 0, false);
 		dc->window_logged = false;

@@ -282,6 +282,8 @@ struct ec_dc {
 	u32 path_events;
 	/** @path_scanned: ec_dc_path() that the last scan has taken into account */
 	u32 path_scanned;
+	/** @delays_written: the worker has written those of the present list of slaves */
+	bool delays_written;
 	/** @path_known: ec_dc_path() for which the delays are right, else the clocks are held */
 	u32 path_known;
 	/** @armw: ring position of the reference clock, for slaves that ignore FRMW */
@@ -369,6 +371,12 @@ static inline u32 ec_dc_path(const struct ec_dc *dc)
 static inline void ec_dc_path_is_known(struct ec_dc *dc, u32 path)
 {
 	WRITE_ONCE(dc->path_known, path);
+}
+
+/* Are the delays in the clocks those of the list of slaves, or will no worker write others? */
+static inline bool ec_dc_delays_written(const struct ec_dc *dc)
+{
+	return READ_ONCE(dc->delays_written) || !ec_dc_busy(dc);
 }
 
 /* May the delays be wrong? RT-safe */
