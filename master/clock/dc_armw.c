@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-only
 #include <linux/ktime.h>
+#include "../bus/graph.h"
 #include "../bus/slave.h"
 #include "../link/links.h"
 #include "dc_armw.h"
@@ -48,13 +49,13 @@ static struct ec_slave *find_open(const struct ec_dc *dc)
 	return NULL;
 }
 
-/* Is the reference clock in the list, and in a ring with one end only? */
+/* Is the reference clock in the list, and do frames of the main device reach it? */
 static bool is_listed(const struct ec_dc *dc)
 {
 	const struct ec_slave *ref = dc->ref;
 
 	return ref && !READ_ONCE(ref->stop.gone) && !READ_ONCE(ref->reply.silent) &&
-	       ec_links_n(dc->links) == 1 && ref->position < dc->bus->n_slaves &&
+	       !ec_graph_is_reversed(ref) && ref->position < dc->bus->n_slaves &&
 	       dc->bus->slaves[ref->position] == ref;
 }
 
@@ -76,7 +77,8 @@ static void log_open(struct ec_dc *dc, struct ec_slave *s)
  * @path: after these changes of ports, ec_dc_path()
  *
  * The position is certain if no slave before that clock has a port at which others may join the
- * ring without the master, and until the next change of a port.
+ * ring without the master, and until the next change of a port. Ports between the slaves of a ring
+ * with two devices are such ports.
  *
  * Context: The monitor thread.
  */

@@ -54,6 +54,15 @@ bool ec_ring_clock_knows(const struct ec_ring_clock *r)
 	return r->samples == EC_RING_SAMPLES;
 }
 
+/*
+ * The command that gives clocks the time. Slaves that ignore FRMW get it by a write to all, where
+ * no reference clock would be written.
+ */
+static u8 giving(const struct ec_dc *dc)
+{
+	return READ_ONCE(dc->armw.wanted) && !READ_ONCE(dc->behind.ref) ? EC_CMD_BWR : EC_CMD_FRMW;
+}
+
 /**
  * ec_ring_clock_fill() - add a clock datagram to a frame
  * @r: of the active cycle, after ec_ring_clock_wanted()
@@ -74,7 +83,7 @@ void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
 {
 	bool reads = unsure || !ec_ring_clock_knows(r);
 	u16 station = reads ? r->station : READ_ONCE(dc->ref_station);
-	u8 *p = ec_frame_add(fb, reads ? EC_CMD_FPRD : EC_CMD_FRMW, index, station,
+	u8 *p = ec_frame_add(fb, reads ? EC_CMD_FPRD : giving(dc), index, station,
 			     EC_REG_DC_SYSTIME, EC_RING_BYTES);
 
 	put_unaligned_le32(reads ? 0 : (u32)time + r->shift, p);
