@@ -3,7 +3,6 @@
 #include "ring_clocks.h"
 
 #define EVENTS	200	/* half of them cuts */
-#define LOST_NS	2000	/* from the line of the reference clock, while it is lost */
 
 /* What the application gets of the reference clock, wherever that is. */
 static void expect_led(struct clocks *k, const char *when)
@@ -48,14 +47,17 @@ static const struct cut cuts[] = {
 	/* some without a clock, beside the break and at the ends */
 	{ 4, 1, false, { 0, 0x99 } }, { 3, 5, false, { 0x20, 0x98 } },
 	{ 0, 0, false, { 0 }, true }, { 4, 0, false, { 0 }, true }, { 2, 3, false, { 0 }, true },
+	/* some ignore FRMW; the first one is the reference clock, before the break */
+	{ 4, 0, false, { 0, 0, 0x66 } }, { 1, 0, false, { 0x0f, 0, 0xfe } },
+	{ 8, 0, false, { 0, 0, 0x88 } }, { 5, 0, true, { 0, 0, 0x24 } },
 };
 
 static void cut_desc(const struct cut *p, char *desc)
 {
 	snprintf(desc, KUNIT_PARAM_DESC_SIZE,
-		 "before %u, reference %u%s, 0x%x narrow, 0x%x none%s", p->at, p->ref,
+		 "before %u, reference %u%s, 0x%x narrow, 0x%x none, 0x%x deaf%s", p->at, p->ref,
 		 p->leads ? " led" : "", p->kinds.narrow, p->kinds.none,
-		 p->kernel ? ", kernel's cycle" : "");
+		 p->kinds.deaf, p->kernel ? ", kernel's cycle" : "");
 }
 
 KUNIT_ARRAY_PARAM(cut, cuts, cut_desc);
@@ -69,6 +71,7 @@ static void clocks_cut(struct kunit *test)
 	k->leads = p->leads;
 	k->kernel = p->kernel;
 	k->none = p->kinds.none;
+	k->deaf = p->kinds.deaf;
 	bus_plug_scanned(k->b, SLAVES, 5000);
 	clocks_activate(k, p->ref);
 	before = clocks_run(k, 1000);
@@ -86,6 +89,7 @@ static void clocks_cut(struct kunit *test)
 		   p->at, p->ref, p->leads ? " synchronized to the application" : "", before, most,
 		   end, healed);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(k->c));
+	clocks_on_grid(k);
 	KUNIT_EXPECT_LE(test, before, GOAL_NS);
 	KUNIT_EXPECT_LE(test, most, GOAL_NS);
 	KUNIT_EXPECT_LE(test, end, GOAL_NS);
@@ -182,34 +186,6 @@ static void clocks_power_off(struct kunit *test)
 	KUNIT_EXPECT_LE(test, end, GOAL_NS);
 }
 
-/* The line of the reference clock, as of two seconds before now. */
-static void note_line(struct clocks *k)
-{
-	u64 now = ktime_get_ns(), then;
-
-	ec_sim_advance(k->b->sim, now);
-	then = clock_of(k, k->ref, now);
-	clocks_run(k, 2000);
-	k->then_ns = ktime_get_ns();
-	ec_sim_advance(k->b->sim, k->then_ns);
-	k->then = clock_of(k, k->ref, k->then_ns);
-	k->ppb = div64_s64((s64)(k->then - then - (k->then_ns - now)) * NSEC_PER_SEC,
-			   k->then_ns - now);
-}
-
-static u32 ref_index(struct clocks *k)
-{
-	u32 i;
-
-	for (i = 0; i < SLAVES; i++)
-		if (!(k->absent & BIT(i)) &&
-		    get_unaligned_le16(bus_esc(k->b, i)->mem + EC_REG_STATION) ==
-		    bus_dc_ref_station(k->b))
-			return i;
-	KUNIT_FAIL(k->b->test, "no reference clock");
-	return 0;
-}
-
 /* a reference clock that is lost while the ring is closed, or open */
 struct loss {
 	u32 ref;
@@ -240,7 +216,7 @@ static void clocks_lose_ref(struct kunit *test)
 		ring_cable(k->b, true, p->at);
 		clocks_run(k, 1000);
 	}
-	note_line(k);
+	clocks_note_line(k);
 	k->lost = true;
 	k->absent = p->absent;
 	clocks_power(k, p->ref, false);
@@ -248,7 +224,7 @@ static void clocks_lose_ref(struct kunit *test)
 	KUNIT_EXPECT_NE(test, bus_status(k->b)->dc_ref, 0u);
 	/* from now on the line of the new one */
 	k->lost = false;
-	k->ref = ref_index(k);
+	k->ref = clocks_ref(k);
 	clocks_power(k, p->ref, true);
 	if (p->at >= 0)
 		ring_cable(k->b, false, p->at);
@@ -258,6 +234,7 @@ static void clocks_lose_ref(struct kunit *test)
 	k->absent = 0;
 	clocks_run(k, 3000);
 	end = clocks_run(k, 500);
+	clocks_on_grid(k);
 	ring_closed(k->b, SLAVES);
 	bus_figure("ring open before slave %d loses reference clock %u: clocks %lld ns from its line at most in 2 s; back: the others apart %lld ns at most, all %lld then",
 		   p->at, p->ref, most, back, end);

@@ -50,12 +50,101 @@ static void clocks_start_open(struct kunit *test)
 	ring_cable(b, true, p->at);
 	again = clocks_run(k, 2000);
 	KUNIT_EXPECT_TRUE(test, cyc_all_op(k->c));
+	KUNIT_EXPECT_EQ(test, k->left, 0u);
+	clocks_on_grid(k);
 	bus_figure("ring open before slave %u at the start, reference slave %u, cable to the backup device of %u ns: clocks apart at most %lld ns, %lld in 3 s after it has closed, then %lld; %lld when it opens again",
 		   p->at, p->ref, p->back_ns, most, healed, end, again);
 	KUNIT_EXPECT_LE(test, most, limit);
 	KUNIT_EXPECT_LE(test, healed, limit);
 	KUNIT_EXPECT_LE(test, end, GOAL_NS);
 	KUNIT_EXPECT_LE(test, again, GOAL_NS);
+}
+
+/* a start without the chosen reference clock */
+struct lack {
+	u32 cut[2];	/* cables, NONE: none */
+	int off;	/* slave without power, -1: none */
+	u32 n;		/* slaves that are configured */
+	u32 ref;
+	u32 absent;	/* mask of configured slaves that do not run then */
+};
+
+#define NONE	CUTS
+
+static const struct lack lacks[] = {
+	{ { 2, 5 }, -1, SLAVES, 3, 0x1c }, { { 0, 4 }, -1, SLAVES, 1, 0x0f },
+	{ { 6, 8 }, -1, SLAVES, 7, 0xc0 }, { { NONE, NONE }, 5, SLAVES, 5, 0x20 },
+	{ { 4, NONE }, 3, SLAVES, 3, 0x08 },
+	/* never seen closed, more are there than configured: which they are behind the break? */
+	{ { 3, NONE }, -1, 6, 3, 0x38 },
+};
+
+static void lack_desc(const struct lack *p, char *desc)
+{
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "reference %u of %u, open before %u and %u, %d off",
+		 p->ref, p->n, p->cut[0], p->cut[1], p->off);
+}
+
+KUNIT_ARRAY_PARAM(lack, lacks, lack_desc);
+
+static void lack_cables(struct clocks *k, const struct lack *p, bool cut)
+{
+	u32 i;
+
+	for (i = 0; i < ARRAY_SIZE(p->cut); i++)
+		if (p->cut[i] != NONE)
+			ring_cable(k->b, cut, p->cut[i]);
+	if (p->off >= 0)
+		clocks_power(k, p->off, !cut);
+}
+
+/* Another clock takes its place until it is there: SYNC goes on, and no slave leaves OP. */
+static void clocks_start_without_ref(struct kunit *test)
+{
+	const struct lack *p = test->param_value;
+	struct clocks *k = clocks_new(clocks_bus(test));
+	u32 after = bus_log_lines("only after SYNC"), i;
+	s64 most, healed, end;
+	u64 start[SLAVES];
+
+	if (p->n < SLAVES)
+		lack_cables(k, p, true);
+	bus_plug_scanned(k->b, SLAVES, 5000);
+	clocks_configure(k, p->ref, p->n);
+	if (p->n == SLAVES)
+		lack_cables(k, p, true);
+	msleep(1000);
+	bus_rescan(k->b);
+	msleep(1000);
+	k->absent = p->absent;
+	clocks_begin(k);
+	k->ref = clocks_ref(k);
+	KUNIT_EXPECT_NE(test, k->ref, p->ref);
+	most = clocks_run(k, 1000);
+	for (i = 0; i < SLAVES; i++)
+		start[i] = bus_esc(k->b, i)->dc.start;
+	lack_cables(k, p, false);
+	healed = clocks_run(k, 100);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(k->c, 20000), ~0ull);
+	healed = max(healed, k->most);
+	for (i = 0; i < SLAVES; i++)
+		if (!(p->absent & BIT(i)))
+			KUNIT_EXPECT_EQ_MSG(test, bus_esc(k->b, i)->dc.start, start[i],
+					    "SYNC0 of slave %u", i);
+	KUNIT_EXPECT_EQ(test, bus_log_lines("only after SYNC"), after);
+	KUNIT_EXPECT_EQ(test, k->left, 0u);
+	k->absent = p->n < SLAVES ? 0xffu << p->n & 0xff : 0;
+	k->ref = clocks_ref(k);
+	KUNIT_EXPECT_EQ(test, k->ref, p->ref);
+	clocks_run(k, 3000);
+	end = clocks_run(k, 500);
+	clocks_on_grid(k);
+	ring_closed(k->b, SLAVES);
+	bus_figure("start without reference clock %u, %u slaves there: clocks apart at most %lld ns, %lld until it is there, then %lld",
+		   p->ref, SLAVES - hweight32(p->absent), most, healed, end);
+	KUNIT_EXPECT_LE(test, most, GOAL_NS);
+	KUNIT_EXPECT_LE(test, healed, GOAL_NS);
+	KUNIT_EXPECT_LE(test, end, GOAL_NS);
 }
 
 /* The application ends and begins again while the ring is open; then it closes. */
@@ -220,6 +309,7 @@ static void clocks_slow_cycle(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(clocks_start_open, start_gen_params),
+	KUNIT_CASE_PARAM(clocks_start_without_ref, lack_gen_params),
 	KUNIT_CASE(clocks_restart),
 	KUNIT_CASE(clocks_join),
 	KUNIT_CASE(clocks_cut_while_measured),
