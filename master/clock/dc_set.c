@@ -24,6 +24,7 @@
 #define LAST_FRAMES	17	/* of which so many are enough */
 #define CYCLE_DGRAMS	12000	/* extra datagrams when the cycle alone compensates */
 #define CYCLE_WAIT_MS	3000
+#define CYCLE_REST	16000	/* which then remove the rest of the rates */
 
 /*
  * System time at the reference clock at the last latch, by a clock that is set already on this side
@@ -344,6 +345,9 @@ static int by_cycle(struct ec_dc_job *j, u8 (*v)[4])
 		ret = tolerate(ec_xfer_clock(j->dc->links, j->dg, n));
 		max = worst(j, 0, v);
 	}
+	/* if the reference clock is lost soon, the next one continues at its own rate */
+	if (!ret && !j->compensated)
+		WRITE_ONCE(j->dc->extra_dgrams, CYCLE_REST);
 	return ret;
 }
 
