@@ -86,6 +86,8 @@ void ec_ring_clock_fill(const struct ec_ring_clock *r, const struct ec_dc *dc,
 	u8 *p = ec_frame_add(fb, reads ? EC_CMD_FPRD : giving(dc), index, station,
 			     EC_REG_DC_SYSTIME, EC_RING_BYTES);
 
+	/* 1 ns more: else each reply might equal it, before its working counter is known */
+	time += !reads && !r->wkc && READ_ONCE(dc->behind.ref);
 	put_unaligned_le32(reads ? 0 : (u32)time + r->shift, p);
 	f->reads = reads && !unsure;
 	f->gives = !reads;
@@ -116,8 +118,10 @@ bool ec_ring_clock_take(struct ec_ring_clock *r, const struct ec_dc *dc,
 	if (f->gives) {
 		*time = is - r->shift;
 		/* without a reply of the clock it is the time that was sent, and one count less */
-		if (*time == f->time && wkc != r->wkc)
+		if (*time == f->time && wkc != r->wkc) {
+			r->wkc = 0;
 			return false;
+		}
 		r->wkc = wkc;
 		return READ_ONCE(dc->behind.ref);
 	}

@@ -14,7 +14,7 @@ struct ec_ring_clock {
 	u32 break_seen;
 	/** @station: a clock behind the break */
 	u16 station;
-	/** @wkc: working counter of the last reply of the reference clock, behind the break */
+	/** @wkc: of the last reply of the reference clock, behind the break; 0: not known */
 	u16 wkc;
 	/** @samples: times that were read behind the break so far, up to EC_RING_SAMPLES */
 	u32 samples;

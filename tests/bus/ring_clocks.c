@@ -38,7 +38,7 @@ static void wander(struct clocks *k, u64 now)
 	s32 was = k->wander_ppb, step;
 	u32 i;
 
-	if (now - k->wander_ns < STEP_NS)
+	if (k->still || now - k->wander_ns < STEP_NS)
 		return;
 	k->wandered = now - clocks_true(k, now);
 	k->wander_ns = now;
@@ -98,6 +98,7 @@ static void clocks_look(struct cyc *c)
 	bool open = bus_links(k->b)->ring.state == EC_RING_OPEN;
 
 	k->most = max(k->most, apart(k));
+	k->unlocked += k->kernel && bus_status(k->b)->kernel.lock != EC_CYCLE_LOCK_LOCKED;
 	look_at_states(k);
 	k->opened += open && !k->open;
 	k->open = open;
@@ -115,6 +116,7 @@ s64 clocks_run(struct clocks *k, u32 cycles)
 {
 	k->most = 0;
 	k->jump = 0;
+	k->unlocked = 0;
 	if (!k->kernel)
 		cyc_run(k->c, cycles);
 	else

@@ -19,6 +19,8 @@
  * @b: bus
  * @c: its cycle
  * @kernel: the kernel runs it, phase-locked to the reference clock
+ * @still: the clock of the computer does not wander
+ * @unlocked: cycles in which it was not, in the last run
  * @leads: the reference clock is synchronized to its time
  * @off: how far it was ahead of that, ns, 0: not known yet
  * @ref: index of the reference clock
@@ -47,6 +49,8 @@ struct clocks {
 	struct bus *b;
 	struct cyc *c;
 	bool kernel;
+	bool still;
+	u32 unlocked;
 	bool leads;
 	s64 off;
 	u32 ref;

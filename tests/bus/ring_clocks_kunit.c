@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Clocks on both sides of the break of a ring, and after it has healed. */
 #include "ring_clocks.h"
+#include "master/cycle/ring_clock.h"
+#include "master/wire/frame.h"
 
 #define EVENTS	200	/* half of them cuts */
 
@@ -15,6 +17,8 @@ static void expect_led(struct clocks *k, const char *when)
 	if (k->kernel) {
 		KUNIT_EXPECT_EQ_MSG(k->b->test, st->kernel.lock, EC_CYCLE_LOCK_LOCKED, "%s", when);
 		KUNIT_EXPECT_EQ_MSG(k->b->test, st->kernel.lock_losses, 0u, "%s", when);
+		/* a reply that equals the prediction is one */
+		KUNIT_EXPECT_EQ_MSG(k->b->test, k->unlocked, 0u, "%s", when);
 		return;
 	}
 	KUNIT_EXPECT_NE_MSG(k->b->test, st->dc_monitor, ~0u, "%s", when);
@@ -35,6 +39,7 @@ struct cut {
 	bool leads;
 	struct kinds kinds;
 	bool kernel;
+	bool still;
 };
 
 static const struct cut cuts[] = {
@@ -47,17 +52,23 @@ static const struct cut cuts[] = {
 	/* some without a clock, beside the break and at the ends */
 	{ 4, 1, false, { 0, 0x99 } }, { 3, 5, false, { 0x20, 0x98 } },
 	{ 0, 0, false, { 0 }, true }, { 4, 0, false, { 0 }, true }, { 2, 3, false, { 0 }, true },
+	{ 6, 7, false, { 0 }, true },
+	/* replies equal the prediction for many cycles */
+	{ 0, 0, false, { 0 }, true, true }, { 2, 3, false, { 0 }, true, true },
+	{ 6, 7, false, { 0 }, true, true },
 	/* some ignore FRMW; the first one is the reference clock, before the break */
 	{ 4, 0, false, { 0, 0, 0x66 } }, { 1, 0, false, { 0x0f, 0, 0xfe } },
 	{ 8, 0, false, { 0, 0, 0x88 } }, { 5, 0, true, { 0, 0, 0x24 } },
+	/* behind it: they run free at the rate that they have learned */
+	{ 0, 0, false, { 0, 0, 0x66 } },
 };
 
 static void cut_desc(const struct cut *p, char *desc)
 {
 	snprintf(desc, KUNIT_PARAM_DESC_SIZE,
-		 "before %u, reference %u%s, 0x%x narrow, 0x%x none, 0x%x deaf%s", p->at, p->ref,
+		 "before %u, reference %u%s, 0x%x narrow, 0x%x none, 0x%x deaf%s%s", p->at, p->ref,
 		 p->leads ? " led" : "", p->kinds.narrow, p->kinds.none,
-		 p->kinds.deaf, p->kernel ? ", kernel's cycle" : "");
+		 p->kinds.deaf, p->kernel ? ", kernel's cycle" : "", p->still ? ", still" : "");
 }
 
 KUNIT_ARRAY_PARAM(cut, cuts, cut_desc);
@@ -70,6 +81,7 @@ static void clocks_cut(struct kunit *test)
 
 	k->leads = p->leads;
 	k->kernel = p->kernel;
+	k->still = p->still;
 	k->none = p->kinds.none;
 	k->deaf = p->kinds.deaf;
 	bus_plug_scanned(k->b, SLAVES, 5000);
@@ -82,7 +94,8 @@ static void clocks_cut(struct kunit *test)
 	end = clocks_run(k, 500);
 	expect_led(k, "with an open ring");
 	ring_cable(k->b, false, p->at);
-	healed = clocks_run(k, 2000);
+	healed = clocks_run(k, 1500);
+	healed = max(healed, clocks_run(k, 500));
 	expect_led(k, "when it has healed");
 	ring_closed(k->b, SLAVES);
 	bus_figure("ring cut before slave %u, reference slave %u%s: clocks apart %lld ns before, at most %lld in 1.5 s after it, then %lld, at most %lld in 2 s after it has healed",
@@ -277,7 +290,35 @@ static void clocks_second_cut(struct kunit *test)
 	KUNIT_EXPECT_LE(test, end, GOAL_NS);
 }
 
+/* All replies equal the prediction, from the first one on; then the clock is lost. */
+static void clocks_reply_equals(struct kunit *test)
+{
+	struct ec_dc *dc = kunit_kzalloc(test, sizeof(*dc), GFP_KERNEL);
+	struct ec_ring_clock r = { .break_seen = 2, .samples = 64, .shift = -300 };
+	struct ec_ring_clock_flight f;
+	u8 frame[64], reply[64];
+	u32 i, time, valid = 0;
+
+	KUNIT_ASSERT_NOT_NULL(test, dc);
+	dc->behind.ref = true;
+	for (i = 0; i < 10; i++) {
+		struct ec_frame_buf fb;
+		const u8 *data = reply;
+		bool lost = i >= 5;
+		u8 *sent;
+
+		ec_frame_begin(&fb, frame, sizeof(frame));
+		ec_ring_clock_fill(&r, dc, &fb, 0, 1000 * i, false, &f);
+		sent = fb.last + EC_DGRAM_HDR;
+		put_unaligned_le32(lost ? get_unaligned_le32(sent) : 1000 * i - 300, reply);
+		put_unaligned_le16(lost ? 7 : 8, reply + 4);
+		valid += ec_ring_clock_take(&r, dc, &f, &data, &time);
+	}
+	KUNIT_EXPECT_EQ(test, valid, 5u);
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(clocks_reply_equals),
 	KUNIT_CASE_PARAM(clocks_cut, cut_gen_params),
 	KUNIT_CASE(clocks_random),
 	KUNIT_CASE(clocks_stay),
