@@ -136,7 +136,7 @@ int ec_ring_ends_judge(struct scan *sc)
 	unsigned int i;
 
 	/* the ring changes, or has shown all in one piece */
-	if (ec_scan_is_partial(sc) || !sc->stands || sc->bus->links->ring.state != EC_RING_OPEN)
+	if (ec_scan_is_partial(sc) || !sc->calm || sc->bus->links->ring.state != EC_RING_OPEN)
 		return 0;
 	/* one that is the wrong way round may look like exchanged devices */
 	if (sc->bus->turned)
@@ -168,7 +168,7 @@ void ec_ring_ends_note(const struct scan *sc, struct ec_slave **slaves, unsigned
 	struct ec_bus *bus = sc->bus;
 
 	lockdep_assert_held_write(&bus->topo);
-	if (ec_scan_is_partial(sc) || !sc->stands || !n)
+	if (ec_scan_is_partial(sc) || !sc->calm || !n)
 		return;
 	if (bus->links->ring.state == EC_RING_CLOSED)
 		bus->turned = sc->front < n ? slaves[sc->front]->device : 0;

@@ -50,7 +50,7 @@ struct scan {
 	unsigned int n_stretches;
 	unsigned int n_thrown;		/* of these */
 	bool moving;			/* the ring has changed since its addresses were read */
-	bool stands;			/* it is proved that it has not */
+	bool calm;			/* no slave has come or gone since then */
 	struct ec_slave **known;	/* slaves of the last scan by station address */
 	u8 *claims;			/* slaves that have the address now, up to 2 */
 	u16 *aliases;			/* first slave with each alias, ring position + 1 */

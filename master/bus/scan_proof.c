@@ -261,11 +261,11 @@ static int prove(struct proof *p)
 	int ret = ask_found(p);
 	bool counts, flaps = !ret && ring_flaps(p);
 
-	sc->stands = !ret && !flaps && ring_stands(p);
+	sc->calm = !ret && !flaps;
 	/* a flapping ring is not believed because it contradicts so often */
 	sc->bus->flaps = flaps ? sc->bus->flaps + 1 : 0;
 	flaps &= sc->bus->flaps <= FLAPS_MAX;
-	sc->moving = flaps || (!ret && sc->bus->thrown_away < NEW_MAX && !sc->stands);
+	sc->moving = flaps || (!ret && sc->bus->thrown_away < NEW_MAX && !ring_stands(p));
 	if (sc->moving)
 		leave_ports(sc);
 	counts = sc->moving;
@@ -334,7 +334,7 @@ int ec_scan_proof(struct scan *sc)
 
 	if (!ret && !change) {
 		sc->bus->thrown_away = 0;
-		sc->stands = true;
+		sc->calm = true;
 	}
 	/* an empty list needs no check of the bus */
 	if (ret || !sc->n || !change)

@@ -245,7 +245,7 @@ static void set_list(struct scan *sc, struct list *l)
 	take_ports(sc, l);
 	ec_known_update(bus, l->slaves, l->n, ec_scan_limit());
 	ec_ring_ends_note(sc, l->slaves, l->n);
-	ec_ring_places_note(bus, l->slaves, l->n, sc->stands && !ec_scan_is_partial(sc));
+	ec_ring_places_note(bus, l->slaves, l->n, sc->calm && !ec_scan_is_partial(sc));
 	note_aliases(sc, l);
 	WRITE_ONCE(bus->lists, bus->lists + 1);
 	for (i = 0; i < l->n; i++)
