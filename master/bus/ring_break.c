@@ -11,17 +11,6 @@ static bool ring_is_open(const struct ec_bus *bus)
 	return bus->links->ring.state == EC_RING_OPEN;
 }
 
-/* The port of a ring that was closed until now, from which a cable led to the backup device. */
-static void note_exit(struct ec_bus *bus)
-{
-	ec_for_each_slave(s, bus) {
-		if (ec_graph_free_port(s) < 0)
-			continue;
-		bus->break_at[0] = s->position;
-		bus->break_at[1] = ec_graph_free_port(s);
-	}
-}
-
 /* Where @s is in the list; @n: it is not. */
 static unsigned int index_of(struct ec_slave **slaves, unsigned int n, const struct ec_slave *s)
 {
@@ -51,6 +40,22 @@ static bool find_place(u32 *at, struct ec_slave **slaves, unsigned int front,
 	return i < front;
 }
 
+/* The port of a ring that was closed until now, from which a cable led to the backup device. */
+static void note_exit(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n)
+{
+	u32 *at = bus->break_at;
+
+	ec_for_each_slave(s, bus) {
+		if (ec_graph_free_port(s) < 0)
+			continue;
+		at[0] = index_of(slaves, n, s);
+		at[1] = ec_graph_free_port(s);
+		/* it is lost: where it hung */
+		if (at[0] == n && !find_place(at, slaves, n, s))
+			at[0] = n - 1;
+	}
+}
+
 /**
  * ec_ring_break_note() - the list of slaves changes: where will the ring be open?
  * @bus: bus, @front set; the graph is that of the list before
@@ -75,7 +80,7 @@ void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned i
 	at[0] = front ? front - 1 : EC_EVENT_NONE;
 	at[1] = front && open && was[0] == at[0] ? was[1] : EC_EVENT_NONE;
 	if (front && front == n && bus->ring_told[0] == EC_RING_CLOSED)
-		note_exit(bus);
+		note_exit(bus, slaves, n);
 }
 
 /**

@@ -103,3 +103,28 @@ void ring_open(struct bus *b, u32 front)
 	ring_state(b, EC_RING_OPEN, front, SLAVES);
 }
 
+/* Process data as @like has them, in domain 0: the slave of @config may be absent. */
+void ring_map_like(struct cyc *c, u32 config, const struct ec_slave *like)
+{
+	struct ec_ioc_sc_sync sync = { .config = config };
+	u32 sm, i, k;
+
+	for (sm = 0; sm < like->n_sms; sm++) {
+		const struct ec_pdo_list *l = &like->pdos.sm[sm];
+
+		if (!ec_pdo_list_bytes(l))
+			continue;
+		sync.sm = sm;
+		sync.dir = sm ? EC_CFG_DIR_INPUT : EC_CFG_DIR_OUTPUT;
+		KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_SYNC, &sync), 0);
+		cyc_pdo(c, config, EC_SC_PDO_ASSIGN_CLEAR, sm, 0, 0);
+		for (i = 0; i < l->n; i++) {
+			cyc_pdo(c, config, EC_SC_PDO_ASSIGN_ADD, sm, l->pdos[i].index, 0);
+			cyc_pdo(c, config, EC_SC_PDO_MAP_CLEAR, sm, l->pdos[i].index, 0);
+			for (k = 0; k < l->pdos[i].n_entries; k++)
+				cyc_pdo(c, config, EC_SC_PDO_MAP_ADD, sm, l->pdos[i].index,
+					ec_pdo_entry_value(&l->pdos[i].entries[k]));
+		}
+		cyc_map(c, config, sm, 0);
+	}
+}

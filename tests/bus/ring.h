@@ -55,5 +55,6 @@ void ring_cable(struct bus *b, bool cut, u32 i);
 void ring_state(struct bus *b, u8 state, u32 front, u32 n);
 void ring_closed(struct bus *b, u32 n);
 void ring_open(struct bus *b, u32 front);
+void ring_map_like(struct cyc *c, u32 config, const struct ec_slave *like);
 
 #endif
