@@ -63,6 +63,20 @@ struct bus *units_bus(struct kunit *test, u32 slaves)
 	return b;
 }
 
+/* A ring of them. */
+struct bus *units_ring(struct kunit *test, u32 slaves)
+{
+	char text[160];
+	struct bus *b;
+
+	snprintf(text, sizeof(text),
+		 "segment seed=34\nrepeat %u slave s io in=%u out=%u cable=50 cpu=yes\n"
+		 "wire s%u.1 -> master.1\n", slaves, UNITS_BITS, UNITS_BITS, slaves);
+	b = bus_up(test, text, slaves);
+	bus_idle(b);
+	return b;
+}
+
 /* Each output has the number of the cycle, and the slave in its highest bits. */
 static void count(struct cyc *c)
 {
@@ -96,4 +110,35 @@ u32 units_events(struct bus *b, u64 *from)
 	while (ec_event_ring_get(ring, from, &e))
 		n += e.kind == EC_EVENT_UNIT;
 	return n;
+}
+
+/* As units_app(), and the kernel runs the cycle. */
+struct kcyc *units_kernel(struct bus *b, u32 domains, u32 each, struct ec_ioc_cycle cfg)
+{
+	struct kcyc *a = kunit_kzalloc(b->test, sizeof(*a), GFP_KERNEL);
+
+	KUNIT_ASSERT_NOT_NULL(b->test, a);
+	a->c = units_app(b, domains, each);
+	cfg.period_ns = KCYC_PERIOD_NS;
+	cfg.cpu = -1;
+	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
+	return a;
+}
+
+void units_begin(struct kcyc *a)
+{
+	KUNIT_ASSERT_EQ_MSG(a->c->b->test, kcyc_activate(a), 0, "%s", a->c->b->app.reason);
+	kcyc_until_op(a);
+	kcyc_wait_cycles(a, 50);
+}
+
+/* @value for all slaves, then given for @domains. */
+void units_give(struct kcyc *a, u32 value, u64 domains)
+{
+	u32 i;
+
+	for (i = 0; i < bus_wanted(a->c->b)->n_configs; i++)
+		put_unaligned_le32(value, kcyc_outputs(a) +
+				   (cyc_pd(a->c, i, 0) - cyc_data(a->c, 0)));
+	kcyc_give_domains(a, domains);
 }

@@ -4,53 +4,23 @@
 
 #define LEASE	10
 
-static struct kcyc *app(struct bus *b, u32 domains, u32 each, struct ec_ioc_cycle cfg)
-{
-	struct kcyc *a = kunit_kzalloc(b->test, sizeof(*a), GFP_KERNEL);
-
-	KUNIT_ASSERT_NOT_NULL(b->test, a);
-	a->c = units_app(b, domains, each);
-	cfg.period_ns = KCYC_PERIOD_NS;
-	cfg.cpu = -1;
-	KUNIT_ASSERT_EQ(b->test, ec_ioc(&b->app, EC_IOC_CYCLE, &cfg), 0);
-	return a;
-}
-
-static void begin(struct kcyc *a)
-{
-	KUNIT_ASSERT_EQ_MSG(a->c->b->test, kcyc_activate(a), 0, "%s", a->c->b->app.reason);
-	kcyc_until_op(a);
-	kcyc_wait_cycles(a, 50);
-}
-
-/* @value for all slaves, then given for @domains. */
-static void give(struct kcyc *a, u32 value, u64 domains)
-{
-	u32 i;
-
-	for (i = 0; i < bus_wanted(a->c->b)->n_configs; i++)
-		put_unaligned_le32(value, kcyc_outputs(a) +
-				   (cyc_pd(a->c, i, 0) - cyc_data(a->c, 0)));
-	kcyc_give_domains(a, domains);
-}
-
 /* The application renews one unit and not the other. */
 static void lease_of_one(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 3);
-	struct kcyc *a = app(b, 3, 1, (struct ec_ioc_cycle){ });
+	struct kcyc *a = units_kernel(b, 3, 1, (struct ec_ioc_cycle){ });
 	u32 i;
 
 	units_put(b, 0, units_create(b, (struct ec_ioc_unit){ .lease_cycles = LEASE }, "zero"));
 	units_put(b, 1, units_create(b, (struct ec_ioc_unit){
 		.lease_cycles = LEASE, .flags = EC_UNIT_FLAG_LEASE_HOLD }, "hold"));
-	begin(a);
+	units_begin(a);
 	/* without any outputs so far no lease runs */
 	KUNIT_EXPECT_EQ(test, units_state(b, 0), EC_UNIT_RUN_COMPLETE | EC_UNIT_HAS_AUTHORITY);
-	give(a, 100, 7);
+	units_give(a, 100, 7);
 	kcyc_wait_cycles(a, 2);
 	for (i = 0; i < 50; i++) {
-		give(a, 101 + i, 6);
+		units_give(a, 101 + i, 6);
 		kcyc_wait_cycles(a, 1);
 	}
 	kcyc_wait_cycles(a, 1);
@@ -61,7 +31,7 @@ static void lease_of_one(struct kunit *test)
 			EC_UNIT_HAS_AUTHORITY | EC_UNIT_LEASE_ENDED | 1 << 16);
 	/* that one is renewed, the other is not: it is held */
 	for (i = 0; i < 50; i++) {
-		give(a, 201 + i, 5);
+		units_give(a, 201 + i, 5);
 		kcyc_wait_cycles(a, 1);
 	}
 	kcyc_wait_cycles(a, 1);
@@ -76,18 +46,18 @@ static void lease_of_one(struct kunit *test)
 static void lease_length(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 1);
-	struct kcyc *a = app(b, 1, 1, (struct ec_ioc_cycle){ });
+	struct kcyc *a = units_kernel(b, 1, 1, (struct ec_ioc_cycle){ });
 	u32 i, cycles;
 
 	units_put(b, 0, units_create(b, (struct ec_ioc_unit){ .lease_cycles = LEASE }, "a"));
-	begin(a);
+	units_begin(a);
 	for (i = 0; i < 20; i++) {
-		give(a, 7, 1);
+		units_give(a, 7, 1);
 		kcyc_wait_cycles(a, LEASE);
 		KUNIT_EXPECT_EQ(test, units_out(b, 0), 7u);
 	}
 	KUNIT_EXPECT_EQ(test, units_state(b, 0) >> 16, 0u);
-	give(a, 7, 1);
+	units_give(a, 7, 1);
 	for (cycles = 0; units_out(b, 0) != 0 && cycles < 50; cycles++)
 		kcyc_wait_cycles(a, 1);
 	KUNIT_EXPECT_GE(test, cycles, (u32)LEASE);
@@ -98,20 +68,20 @@ static void lease_length(struct kunit *test)
 static void lease_of_two_domains(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 2);
-	struct kcyc *a = app(b, 2, 1, (struct ec_ioc_cycle){ });
+	struct kcyc *a = units_kernel(b, 2, 1, (struct ec_ioc_cycle){ });
 	u32 u, i;
 
 	u = units_create(b, (struct ec_ioc_unit){ .lease_cycles = LEASE }, "a");
 	units_put(b, 0, u);
 	units_put(b, 1, u);
-	begin(a);
+	units_begin(a);
 	for (i = 0; i < 50; i++) {
-		give(a, 5, BIT(i % 2));
+		units_give(a, 5, BIT(i % 2));
 		kcyc_wait_cycles(a, 2);
 	}
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 5u);
 	for (i = 0; i < 50; i++) {
-		give(a, 5, 1);
+		units_give(a, 5, 1);
 		kcyc_wait_cycles(a, 1);
 	}
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 0u);
@@ -122,13 +92,13 @@ static void lease_of_two_domains(struct kunit *test)
 static void lease_takes_authority(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 1);
-	struct kcyc *a = app(b, 1, 1, (struct ec_ioc_cycle){ });
+	struct kcyc *a = units_kernel(b, 1, 1, (struct ec_ioc_cycle){ });
 	u32 i;
 
 	units_put(b, 0, units_create(b, (struct ec_ioc_unit){
 		.lease_cycles = LEASE, .flags = EC_UNIT_FLAG_AUTHORITY }, "a"));
-	begin(a);
-	give(a, 5, 1);
+	units_begin(a);
+	units_give(a, 5, 1);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 0u);
 	KUNIT_EXPECT_EQ(test, units_authority(b, 0, 1), 0);
@@ -138,12 +108,12 @@ static void lease_takes_authority(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 0u);
 	KUNIT_EXPECT_EQ(test, units_authority(b, 0, 1), -EINPROGRESS);
 	for (i = 0; i < 20; i++) {
-		give(a, 6, 1);
+		units_give(a, 6, 1);
 		kcyc_wait_cycles(a, 1);
 	}
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 0u);
 	KUNIT_EXPECT_EQ(test, units_authority(b, 0, 1), 0);
-	give(a, 6, 1);
+	units_give(a, 6, 1);
 	kcyc_wait_cycles(a, 2);
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 6u);
 }
@@ -159,18 +129,18 @@ static void held_from_buffer(struct kunit *test, struct ec_ioc_cycle cfg)
 	b = bus_up(test, "segment seed=35\nrepeat 4 slave s io in=32 out=32\n"
 		   "connect s2.1 -> s2.1\nconnect s2.2 -> s2.2\nconnect s2.3 -> s2.3\n", 4);
 	bus_idle(b);
-	a = app(b, 2, 2, cfg);
+	a = units_kernel(b, 2, 2, cfg);
 	units_put(b, 0, units_new(b, "a", EC_UNIT_POLICY_HOLD, 0));
-	begin(a);
+	units_begin(a);
 	for (i = 0; i < 1200; i++) {
-		give(a, 0x1000 + i, 3);
+		units_give(a, 0x1000 + i, 3);
 		kcyc_wait_cycles(a, 1);
 	}
 	KUNIT_EXPECT_NOT_NULL(test, bus_direct(b));
 	units_dead(b, 0, true);
 	for (i = 1; i <= 60; i++) {
 		/* the application leaves other values in each of its buffers */
-		give(a, 0x2000 + i, 3);
+		units_give(a, 0x2000 + i, 3);
 		kcyc_wait_cycles(a, 1);
 		if (i == 10)
 			held = units_out(b, 1);
@@ -186,7 +156,7 @@ static void held_from_buffer(struct kunit *test, struct ec_ioc_cycle cfg)
 	KUNIT_EXPECT_EQ(test, in[0] & 7, (int)held & 7);
 	units_dead(b, 0, false);
 	for (i = 0; i < 2000 && units_state(b, 0) >> 4 & 0xf; i++) {
-		give(a, 0x3000, 3);
+		units_give(a, 0x3000, 3);
 		kcyc_wait_cycles(a, 1);
 	}
 	kcyc_wait_cycles(a, 2);
@@ -210,11 +180,12 @@ static void unit_in_interrupt(struct kunit *test)
 static void safeop_in_interrupt(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 4);
-	struct kcyc *a = app(b, 2, 2, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_INTERRUPT });
+	struct kcyc *a = units_kernel(b, 2, 2, (struct ec_ioc_cycle){
+		.flags = EC_CYCLE_FLAG_INTERRUPT });
 	u32 i;
 
 	units_put(b, 0, units_new(b, "a", EC_UNIT_POLICY_SAFEOP, 0));
-	begin(a);
+	units_begin(a);
 	units_dead(b, 0, true);
 	kcyc_wait_cycles(a, 100);
 	KUNIT_EXPECT_EQ(test, READ_ONCE(bus_slave_at(b, 1)->al.status), EC_AL_SAFEOP);
@@ -228,7 +199,8 @@ static void safeop_in_interrupt(struct kunit *test)
 
 static struct kcyc *detachable(struct bus *b, struct ec_ioc_unit u, u32 domain)
 {
-	struct kcyc *a = app(b, 2, 1, (struct ec_ioc_cycle){ .flags = EC_CYCLE_FLAG_DETACH });
+	struct kcyc *a = units_kernel(b, 2, 1, (struct ec_ioc_cycle){
+		.flags = EC_CYCLE_FLAG_DETACH });
 
 	units_put(b, domain, units_create(b, u, "a"));
 	return a;
@@ -241,8 +213,8 @@ static void unit_detached(struct kunit *test)
 	struct bus *b = units_bus(test, 2);
 	struct kcyc *a = detachable(b, u, 0);
 
-	begin(a);
-	give(a, 9, 3);
+	units_begin(a);
+	units_give(a, 9, 3);
 	KUNIT_EXPECT_EQ(test, units_authority(b, 0, 1), 0);
 	kcyc_wait_cycles(a, 3);
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 9u);
@@ -256,7 +228,7 @@ static void unit_detached(struct kunit *test)
 	cyc_release(a->c);
 	a = detachable(b, u, 0);
 	KUNIT_ASSERT_EQ_MSG(test, kcyc_activate(a), 0, "%s", b->app.reason);
-	give(a, 11, 3);
+	units_give(a, 11, 3);
 	kcyc_wait_cycles(a, 3);
 	KUNIT_EXPECT_EQ(test, units_out(b, 0), 0u);
 	KUNIT_EXPECT_EQ(test, units_out(b, 1), 11u);
@@ -269,14 +241,14 @@ static void unit_detached(struct kunit *test)
 static void unit_with_division(struct kunit *test)
 {
 	struct bus *b = units_bus(test, 2);
-	struct kcyc *a = app(b, 2, 1, (struct ec_ioc_cycle){ });
+	struct kcyc *a = units_kernel(b, 2, 1, (struct ec_ioc_cycle){ });
 	struct ec_ioc_division d = { .domain = 1, .division = 10 };
 	u32 u = units_new(b, "a", EC_UNIT_POLICY_SAFEOP, 0), i;
 
 	units_put(b, 0, u);
 	units_put(b, 1, u);
 	KUNIT_ASSERT_EQ(test, ec_ioc(&b->app, EC_IOC_DIVISION, &d), 0);
-	begin(a);
+	units_begin(a);
 	kcyc_wait_cycles(a, 50);
 	for (i = 0; i < 40; i++) {
 		bus_fault(b, EC_SIM_FAULT_LOSE, -1, -1, 1, 0);
