@@ -38,8 +38,8 @@
 	  "check the cable of the device there; all slaves run on, but a break of the ring would stop some", \
 	  "ring open between %s and %s") \
 	X(RING_TURNED, "ring_turned", FAULT, "", \
-	  "exchange the cables of this slave, so that its port 0 leads towards the main device; until then no application is activated, as the order of the slaves changes when the ring opens", \
-	  "%s is connected the wrong way round in the ring") \
+	  "exchange the cables of this slave, so that its port 0 leads towards the main device; with a branch in the ring connect that to an earlier port than the ring (order of ports: 3, 1, 2), with one end; until then no application is activated, as the order of the slaves changes when the ring opens", \
+	  "%s is connected the wrong way round in the ring, or beside a branch at a wrong port") \
 	X(RING_EXCHANGED, "ring_exchanged", WARNING, "", \
 	  "exchange the cables of the two devices, or the names MASTER<n>_DEVICE and MASTER<n>_BACKUP", \
 	  "devices of the ring exchanged: %s, configured as backup device, is at port 0 of the first slave, and is used as main device") \

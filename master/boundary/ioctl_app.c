@@ -447,12 +447,18 @@ static int take_over(struct ec_call *call)
 static int check_ring(struct ec_call *call)
 {
 	struct ec_bus *bus = &call->master->bus;
-	const struct ec_slave *s;
+	const struct ec_slave *s, *branch;
+	unsigned int port;
 	int ret = 0;
 
 	down_read(&bus->topo);
 	s = ec_ring_ends_turned(bus);
-	if (s)
+	branch = s ? ec_ring_ends_branch(bus, &port) : NULL;
+	if (branch)
+		ret = ec_refuse(call, -EINVAL,
+				"frames of the main device do not pass slave %u (%.24s) of the ring because of a branch at slave %u, port %u or a later one: connect branches there before the ring (order of ports: 3, 1, 2), and none with both ends",
+				s->position, ec_slave_label(s), branch->position, port);
+	else if (s)
 		ret = ec_refuse(call, -EINVAL,
 				"slave %u (%.24s) is connected the wrong way round in the ring, so the positions of slaves change when it opens: exchange the cables of this slave, so that its port 0 leads towards the main device",
 				s->position, ec_slave_label(s));

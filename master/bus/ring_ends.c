@@ -190,6 +190,38 @@ struct ec_slave *ec_ring_ends_turned(const struct ec_bus *bus)
 }
 
 /**
+ * ec_ring_ends_branch() - a branch by which frames of the main device do not pass the whole ring
+ * @bus: bus
+ * @port: result: its port
+ *
+ * Frames pass the ports of a slave in the order 0, 3, 1, 2. A branch behind the port of the ring is
+ * reached by the backup device only; one that leads back to the same slave leads frames back to the
+ * device that has sent them. Both show as ports by which frames leave, without a known slave.
+ *
+ * Context: Topo held, or after ec_show_begin().
+ * Return: slave with the branch, or NULL: there is none.
+ */
+struct ec_slave *ec_ring_ends_branch(const struct ec_bus *bus, unsigned int *port)
+{
+	struct ec_slave *first = NULL;
+	unsigned int free = 0, p;
+
+	ec_bus_assert_stays(bus);
+	ec_for_each_slave(s, bus) {
+		if (s->position >= READ_ONCE(bus->front))
+			break;
+		for (p = 1; p < EC_MAX_PORT; p++)
+			free += ec_graph_is_open(s, p) && !s->graph.at[p];
+		if (free && !first) {
+			first = s;
+			*port = ec_graph_free_port(s);
+		}
+	}
+	/* that of a closed ring leads to the backup device */
+	return free > (READ_ONCE(bus->links->ring.state) == EC_RING_CLOSED) ? first : NULL;
+}
+
+/**
  * ec_ring_ends_report() - an event and a line if a slave is the wrong way round
  * @bus: bus with its new list
  *

@@ -14,6 +14,7 @@ bool ec_ring_ends_fit(struct ec_bus *bus, const struct ec_dg *dg);
 int ec_ring_ends_judge(struct scan *sc);
 void ec_ring_ends_note(const struct scan *sc, struct ec_slave **slaves, unsigned int n);
 struct ec_slave *ec_ring_ends_turned(const struct ec_bus *bus);
+struct ec_slave *ec_ring_ends_branch(const struct ec_bus *bus, unsigned int *port);
 void ec_ring_ends_report(struct ec_bus *bus);
 
 #endif

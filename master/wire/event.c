@@ -76,7 +76,7 @@ static const struct row kinds[] = {
 	KIND(RING_CLOSED, "ring_closed", INFO, "ring of %0 slave(s) closed", U("slaves")),
 	KIND(RING_EXCHANGED, "ring_exchanged", WARNING, SPECIAL, U("exchanged")),
 	KIND(RING_TURNED, "ring_turned", WARNING | SLAVE,
-	     "connected the wrong way round in the ring: let port 0 lead towards the main device; until then no application is activated"),
+	     "connected the wrong way round in the ring, or beside a branch at a wrong port: let port 0 lead towards the main device; until then no application is activated"),
 	/* only what fails has a line */
 	KIND(AL_STATE, "al_state", NONE | SLAVE, SPECIAL, AL("state"), AL("before"),
 	     U("slaves"), AL("lowest")),

@@ -243,7 +243,7 @@ static void event_texts_name_slave_and_values(struct kunit *test)
 	       "devices of the ring exchanged: the backup device is at port 0 of the first slave, and is the main device now; exchange the cables or the two names");
 	expect(test, E(RING_EXCHANGED, 0xffff, 0), "devices of the ring connected as configured");
 	expect(test, E(RING_TURNED, 7),
-	       "slave 7: connected the wrong way round in the ring: let port 0 lead towards the main device; until then no application is activated");
+	       "slave 7: connected the wrong way round in the ring, or beside a branch at a wrong port: let port 0 lead towards the main device; until then no application is activated");
 	expect(test, E(SLAVE_LOST, 0, EC_EVENT_NONE, 0, 1001, 2, 3, 4),
 	       "behind the main device: slave 0 (alias 1001, 0x00000002/0x00000003) disconnected, last seen 4 ms ago");
 	expect(test, E(SLAVE_FOUND, 5, 4, 1, 0, 2, 3),
