@@ -95,6 +95,7 @@ void ec_ring_places_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned 
 	if (bus->links->only)
 		return;
 	p->open = state == EC_RING_OPEN;
+	p->partial = !whole;
 	p->front = min(bus->front, n);
 	p->n_list = n;
 	p->sure = state == EC_RING_CLOSED && whole && n && !bus->turned;
@@ -159,6 +160,8 @@ int ec_ring_places_find(const struct ec_bus *bus, u32 place, u32 total)
 	ec_bus_assert_stays(bus);
 	if (p->sure || (!p->n && (!p->open || p->front >= p->n_list)))
 		return min_t(u32, place, INT_MAX);
+	if (!p->n && p->partial && place >= p->front)
+		return -EAGAIN;
 	if (!p->n)
 		return ec_ring_places_count(place, p->front, p->n_list, total);
 	if (place >= p->n)
@@ -179,6 +182,30 @@ bool ec_ring_places_misses(const struct ec_bus *bus)
 {
 	ec_bus_assert_stays(bus);
 	return bus->places.open && bus->places.n != bus->places.n_list;
+}
+
+/**
+ * ec_ring_places_cut() - is only a cable open where the ring is open?
+ * @bus: bus
+ *
+ * Context: Topo held, or after ec_show_begin(). Reads all positions.
+ * Return: whether the slaves before and behind the break followed each other in the closed ring:
+ * none is missing there.
+ */
+bool ec_ring_places_cut(const struct ec_bus *bus)
+{
+	const struct ec_ring_places *p = &bus->places;
+	u32 i = 0, front = p->front;
+
+	ec_bus_assert_stays(bus);
+	if (!p->open || !p->n || p->partial)
+		return false;
+	while (front && i < p->n && p->device[i] != bus->slaves[front - 1]->device)
+		i++;
+	/* the one that has to follow, or none */
+	i += !!front;
+	return front < p->n_list ? i < p->n && p->device[i] == bus->slaves[front]->device :
+				   i == p->n;
 }
 
 /**

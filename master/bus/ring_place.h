@@ -15,6 +15,7 @@ void ec_ring_places_forget(struct ec_bus *bus);
 int ec_ring_places_count(u32 place, u32 front, u32 n, u32 total);
 int ec_ring_places_find(const struct ec_bus *bus, u32 place, u32 total);
 bool ec_ring_places_misses(const struct ec_bus *bus);
+bool ec_ring_places_cut(const struct ec_bus *bus);
 bool ec_ring_places_open_between(const struct ec_bus *bus, u32 a, u32 b);
 u32 ec_ring_places_of(const struct ec_bus *bus, u32 index);
 

@@ -9,6 +9,7 @@
  * struct ec_ring_places - positions of a ring, changed with topo and ec_show_change_begin()
  * @open: the ring is open
  * @sure: it is closed, and a place in the list is a position
+ * @partial: the list is not that of the whole bus: slaves may be missing at any place of it
  * @front: slaves before the break
  * @n_list: slaves of the list
  * @n: slaves when it was closed, 0: it was not
@@ -19,6 +20,7 @@
 struct ec_ring_places {
 	bool open;
 	bool sure;
+	bool partial;
 	u32 front;
 	u32 n_list;
 	u32 n;

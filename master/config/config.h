@@ -195,6 +195,8 @@ struct ec_setup {
 	u8 group;
 	/** @heads: it is the first one of that group; topo held */
 	bool heads;
+	/** @in_path: frames pass it from one end of a ring to the other or to the break; topo held */
+	bool in_path;
 	/** @mailbox: claim of the worker, for the way through INIT */
 	struct ec_claim mailbox;
 	/** @pdo_refusal: the first PDO mapping or assignment refused since it was configured */
@@ -257,6 +259,8 @@ struct ec_wanted {
 	struct ec_unit *units[EC_MAX_DOMAINS];
 	/** @n_units: entries in @units */
 	unsigned int n_units;
+	/** @unsure: slaves behind the break of a ring may be of a group whose head is absent */
+	bool unsure;
 	/** @active: activated: the configurations do not change any more, workers use them */
 	bool active;
 	/** @before: the same of the running session that is to be taken over, NULL: none */

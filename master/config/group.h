@@ -26,6 +26,8 @@ struct ec_wanted;
  * @left: then: slaves of no group before the place of @at
  * @seen: then: slaves of the group so far, from its last head on
  * @counts: then: @left counts, as the slave with the alias of @at was passed
+ * @begun: then: one of its slaves was passed
+ * @outer: then: the group in which its first slave was found, NULL: none
  * @head: device number of the head at the last search, 0: there is none that may be used
  * @position: its ring position then, or that of the slave that is in the way
  * @cause: why there is none, EC_CAUSE_*; EC_CAUSE_NONE: the group is on the bus
@@ -48,6 +50,8 @@ struct ec_group {
 	u32 left;
 	u32 seen;
 	bool counts;
+	bool begun;
+	struct ec_group *outer;
 	u64 head;
 	u32 position;
 	u32 cause;
@@ -69,8 +73,11 @@ static inline bool ec_group_is_optional(const struct ec_group *g)
 	return g && !g->mandatory;
 }
 
-/* group_find.c */
+/* group_mark.c */
 void ec_groups_mark(struct ec_wanted *w);
+struct ec_slave *ec_group_neighbor(const struct ec_slave *s, unsigned int port);
+
+/* group_find.c */
 bool ec_groups_wait(const struct ec_wanted *w);
 u32 ec_groups_place(const struct ec_wanted *w, u16 alias, u16 position, u32 *alias_at);
 bool ec_group_find(struct ec_group *g, struct ec_slave **found);

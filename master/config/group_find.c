@@ -1,123 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /*
- * Where a hot connect group is on the bus. The head is what has its alias or identification, or
- * what is at its port; the members are the slaves from the head on, in the order of the ring, but
- * for those of a group that is connected behind one of them.
+ * Where a hot connect group is on the bus. The members are the slaves from the head on, in the
+ * order of the ring, but for those of a group that is connected behind one of them.
  */
 #include "../bus/graph.h"
 #include "../bus/ring_place.h"
 #include "../bus/slave.h"
 #include "config.h"
 #include "group.h"
-
-/*
- * The slave at whose port a group is known: that of its configuration, or the one which this means.
- * It is found in the pass that marks, before the slaves behind it.
- */
-static void begin_host(struct ec_group *g)
-{
-	g->seen = 0;
-	g->host = g->at ? g->at->slave : NULL;
-	g->left = g->at ? g->at->position : 0;
-	g->counts = g->at && !g->at->alias;
-}
-
-static bool is_what_it_expects(const struct ec_config *c, const struct ec_slave *s)
-{
-	return s->info.vendor == c->vendor && s->info.product == c->product;
-}
-
-/* Is @s, a slave of no group, at the place of the host? */
-static bool is_at_place(struct ec_group *g, const struct ec_slave *s)
-{
-	g->counts |= s->alias == g->at->alias;
-	return g->counts && !g->left--;
-}
-
-/* Is @s the host of @g? It was marked. */
-static void look_for_host(struct ec_group *g, const struct ec_slave *s)
-{
-	const struct ec_config *at = g->at;
-	u8 mark = ec_setup_of(s)->group;
-	bool found;
-
-	if (!at || g->host)
-		return;
-	if (at->group)
-		found = mark == at->group->index + 1 && at->group->seen == at->position + 1u;
-	else
-		found = !mark && is_at_place(g, s);
-	if (found && is_what_it_expects(at, s))
-		g->host = s;
-}
-
-/* Is @s a head of @g, whether it may be used or not? */
-static bool is_head(const struct ec_group *g, const struct ec_slave *s)
-{
-	switch (g->by) {
-	case EC_GROUP_BY_ALIAS:
-		return s->alias == g->value;
-	case EC_GROUP_BY_ID:
-		return s->identification == g->value;
-	default:
-		return g->host && g->host->graph.at[g->port] == s;
-	}
-}
-
-/* The group of which @s is a head. Alias and identification count more than its port. */
-static struct ec_group *headed_by(const struct ec_wanted *w, const struct ec_slave *s)
-{
-	struct ec_group *at_port = NULL;
-
-	ec_for_each_group(g, w) {
-		if (!is_head(g, s))
-			continue;
-		if (g->by != EC_GROUP_BY_PORT)
-			return g;
-		at_port = g;
-	}
-	return at_port;
-}
-
-static void mark_slave(struct ec_wanted *w, const struct ec_slave *s)
-{
-	const struct ec_slave *up = ec_graph_parent(s);
-	struct ec_setup *setup = ec_setup_of(s);
-	struct ec_group *head = headed_by(w, s);
-
-	setup->heads = head;
-	setup->group = head ? head->index + 1 : up ? ec_setup_of(up)->group : 0;
-	if (head)
-		head->seen = 0;
-	if (setup->group)
-		w->groups[setup->group - 1]->seen++;
-	ec_for_each_group(g, w)
-		look_for_host(g, s);
-}
-
-/**
- * ec_groups_mark() - note which slaves belong to hot connect groups
- * @w: what an application configures
- *
- * A slave belongs to the group of the nearest head towards the main device. These slaves do not
- * count for the ring positions of other configurations.
- *
- * Context: Process, lock of the session and topo held.
- */
-void ec_groups_mark(struct ec_wanted *w)
-{
-	lockdep_assert_held(w->lock);
-	lockdep_assert_held(&w->bus->topo);
-	if (!w->n_groups)
-		return;
-	ec_for_each_group(g, w)
-		begin_host(g);
-	/* a slave is behind its parent in the order of the ring */
-	ec_for_each_slave(s, w->bus)
-		mark_slave(w, s);
-	ec_for_each_group(g, w)
-		g->host = NULL;
-}
 
 /* Slaves of no group before place @end of the list. */
 static u32 count_plain(const struct ec_bus *bus, u32 end)
@@ -129,14 +19,31 @@ static u32 count_plain(const struct ec_bus *bus, u32 end)
 	return n;
 }
 
+/* Is a place in the list perhaps not that in the closed ring? */
+static bool counts_open(const struct ec_bus *bus)
+{
+	const struct ec_ring_places *p = &bus->places;
+
+	return p->open || (p->n && !p->sure);
+}
+
 /* Slaves of no group are missing at the break of a ring: how many others are before that one? */
 static int count_open(const struct ec_wanted *w, u32 at, u32 left)
 {
 	const struct ec_bus *bus = w->bus;
 	u32 place = count_plain(bus, at) + left;
-	int i = ec_ring_places_count(place, count_plain(bus, bus->places.front),
-				     count_plain(bus, bus->n_slaves), w->n_places);
+	u32 front = count_plain(bus, bus->places.front), n = count_plain(bus, bus->n_slaves);
+	int i = ec_ring_places_count(place, front, n, w->n_places);
 
+	/* it is closed, or about to be, and the list is not that of the closed ring */
+	if (!bus->places.open)
+		i = -EAGAIN;
+	/* if none is missing there, another one is */
+	else if (ec_ring_places_cut(bus))
+		i = place < front || n >= w->n_places ? (int)place : -EAGAIN;
+	/* one that counts may be of a group whose head is absent */
+	if (place >= front && (w->unsure || bus->places.partial))
+		i = -EAGAIN;
 	return i == -EAGAIN && !w->certain ? (int)place : i;
 }
 
@@ -164,7 +71,8 @@ u32 ec_groups_place(const struct ec_wanted *w, u16 alias, u16 position, u32 *ali
 	       (bus->slaves[at]->alias != alias || ec_setup_of(bus->slaves[at])->group))
 		at++;
 	*alias_at = at;
-	if (at < bus->n_slaves && ec_ring_places_misses(bus) && at < bus->places.front) {
+	if (at < bus->n_slaves && counts_open(bus) &&
+	    (!alias || at < bus->places.front)) {
 		int i = count_open(w, at, left);
 
 		if (i < 0)
@@ -183,11 +91,32 @@ static bool is_member(const struct ec_group *g, const struct ec_slave *s)
 	return ec_setup_of(s)->group == g->index + 1;
 }
 
+/* Behind the break of a ring a slave hangs nowhere: that it was marked is enough. */
 static bool hangs_behind(const struct ec_slave *s, const struct ec_slave *head)
 {
+	const struct ec_ring_places *p = &s->bus->places;
+
+	if (p->open && s->position >= p->front && head->position < p->front)
+		return true;
 	while (s && s != head)
 		s = ec_graph_parent(s);
 	return s;
+}
+
+/* In an open ring the way from one to the next may be the other one: those that run run on. */
+static bool all_run(const struct ec_group *g, struct ec_slave **found)
+{
+	unsigned int k;
+
+	if (!g->wanted->active || !g->wanted->bus->places.open || !g->n_members)
+		return false;
+	for (k = 0; k < g->n_members; k++) {
+		found[k] = g->members[k]->slave;
+		if (!found[k] || READ_ONCE(found[k]->stop.gone) ||
+		    ec_config_of(found[k]) != g->members[k])
+			return false;
+	}
+	return true;
 }
 
 static bool no(struct ec_group *g, u32 pos, const char *fmt, ...) __printf(3, 4);
@@ -248,7 +177,7 @@ static bool check_place(struct ec_group *g, const struct ec_slave *head)
 	if (g->at && !g->at->slave)
 		return no(g, head->position, "slave %s is absent, at whose port %u it has to be",
 			  g->at->name, g->port);
-	if (g->at && g->at->slave->graph.at[g->port] != head)
+	if (g->at && ec_group_neighbor(g->at->slave, g->port) != head)
 		return no(g, head->position, "slave %u is not at port %u of slave %u: connect it there",
 			  head->position, g->port, g->at->slave->position);
 	if (head->graph.upstream)
@@ -265,7 +194,7 @@ static bool check_member(struct ec_group *g, const struct ec_config *c, struct e
 
 	if (READ_ONCE(s->note.error) == EC_SLAVE_SCAN_FAILED)
 		return no(g, pos, "slave %u could not be read: see 'ethercat why'", pos);
-	if (!is_what_it_expects(c, s))
+	if (s->info.vendor != c->vendor || s->info.product != c->product)
 		return no(g, pos, "slave %u is 0x%08x/0x%08x, member %u is 0x%08x/0x%08x", pos,
 			  s->info.vendor, s->info.product, c->position, c->vendor, c->product);
 	if (serial && serial != s->info.serial)
@@ -276,6 +205,16 @@ static bool check_member(struct ec_group *g, const struct ec_config *c, struct e
 			  pos, pos);
 	if (has && has->wanted == g->wanted && has != c)
 		return no(g, pos, "slave %u has configuration %s", pos, has->name);
+	return true;
+}
+
+/* Always true. */
+static bool group_is_found(struct ec_group *g, const struct ec_slave *head)
+{
+	g->head = head->device;
+	g->position = head->position;
+	g->cause = EC_CAUSE_NONE;
+	g->why[0] = '\0';
 	return true;
 }
 
@@ -298,6 +237,8 @@ bool ec_group_find(struct ec_group *g, struct ec_slave **found)
 	lockdep_assert_held(g->wanted->lock);
 	lockdep_assert_held(&bus->topo);
 	g->head = 0;
+	if (all_run(g, found))
+		return group_is_found(g, found[0]);
 	head = find_head(g);
 	if (!head || !check_place(g, head))
 		return false;
@@ -313,9 +254,5 @@ bool ec_group_find(struct ec_group *g, struct ec_slave **found)
 			return false;
 		found[k] = bus->slaves[pos];
 	}
-	g->head = head->device;
-	g->position = head->position;
-	g->cause = EC_CAUSE_NONE;
-	g->why[0] = '\0';
-	return true;
+	return group_is_found(g, head);
 }

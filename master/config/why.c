@@ -177,6 +177,9 @@ static size_t absent(const struct ec_config *c, char *buf, size_t size, struct e
 		return scnprintf(buf, size, "none of the %u slave(s) on the bus has alias %u",
 				 bus->n_slaves, c->alias);
 	pos = ec_config_index(c);
+	/* between groups it is a place of the list, or there is none */
+	if (pos < 0 && c->wanted->n_groups)
+		place = c->position;
 	*cause = *EC_CAUSE(RING, .position = min_t(u32, place, EC_UAPI_NONE16));
 	if (pos == -EAGAIN)
 		return scnprintf(buf, size,

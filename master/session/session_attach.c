@@ -139,6 +139,10 @@ static void locate(struct ec_session *s)
 {
 	ec_session_mark(s);
 	s->wanted.n_places = 0;
+	/* all of them, before a place is looked for */
+	ec_for_each_config(c, &s->wanted)
+		if (!c->group && !c->alias)
+			s->wanted.n_places = max(s->wanted.n_places, c->position + 1u);
 	ec_for_each_config(c, &s->wanted)
 		ec_config_locate(c);
 }
@@ -220,7 +224,12 @@ void ec_session_settle_places(struct ec_session *s)
 	if (s->sessions->links->only || s == s->sessions->candidate)
 		return;
 	s->wanted.certain = true;
+	/* they may have got theirs where it was not */
+	ec_for_each_config(c, &s->wanted)
+		if (c->group && READ_ONCE(s->sessions->links->ring.state) == EC_RING_OPEN)
+			ec_session_detach(c);
 	attach_again(s);
+	ec_session_attach_groups(s);
 	if (counts_for_it(s))
 		ec_warn(s->sessions,
 			"the ring is open and was not seen closed: positions behind the break are counted for a ring of %u slaves, as configured; check that none is missing\n",

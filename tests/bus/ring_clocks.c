@@ -194,7 +194,10 @@ void clocks_configure(struct clocks *k, u32 ref, u32 n)
 	bus_idle(b);
 	k->c = cyc_new(b, 1000);
 	cyc_domain(k->c);
-	cyc_map_all(k->c, 0, n, 0);
+	if (k->map)
+		k->map(k);
+	else
+		cyc_map_all(k->c, 0, n, 0);
 	clocks_sync0(k, n);
 	clocks_flag(k);
 	if (ref) {

@@ -44,6 +44,7 @@
  * @open: the ring is open
  * @opened: how often it was opened
  * @empty: cycles without a reply of a slave
+ * @map: configures the slaves, in their order; NULL: by ring position
  */
 struct clocks {
 	struct bus *b;
@@ -74,6 +75,7 @@ struct clocks {
 	bool open;
 	u32 opened;
 	u32 empty;
+	void (*map)(struct clocks *k);
 };
 
 /* masks of slaves whose clock has 32 bits, without one, and that ignore FRMW */

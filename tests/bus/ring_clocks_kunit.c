@@ -256,6 +256,86 @@ static void clocks_lose_ref(struct kunit *test)
 	KUNIT_EXPECT_LE(test, end, GOAL_NS);
 }
 
+static void map_drive(struct cyc *c, u32 config)
+{
+	struct ec_ioc_sc_sync sm = { .config = config, .sm = 2, .dir = EC_CFG_DIR_OUTPUT };
+
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_SYNC, &sm), 0);
+	sm.sm = 3;
+	sm.dir = EC_CFG_DIR_INPUT;
+	KUNIT_ASSERT_EQ(c->b->test, ec_ioc(&c->b->app, EC_IOC_SC_SYNC, &sm), 0);
+	cyc_remap(c, config);
+	cyc_map(c, config, 2, 0);
+	cyc_map(c, config, 3, 0);
+}
+
+/* The third and the fourth slave are a hot connect group, known by its alias. */
+static void map_group(struct clocks *k)
+{
+	const struct ec_slave *like = bus_slave(k->b, 0);
+	struct ec_ioc_group g = {
+		.by = EC_GROUP_BY_ALIAS, .value = 60, .at = EC_UAPI_NONE32, .name = "x",
+	};
+	struct ec_ioc_group_config m = {
+		.vendor_id = like->info.vendor, .product_code = like->info.product,
+	};
+	u32 i;
+
+	cyc_map_all(k->c, 0, 2, 0);
+	KUNIT_ASSERT_EQ(k->b->test, ec_ioc(&k->b->app, EC_IOC_GROUP, &g), 0);
+	m.group = g.index;
+	for (m.member = 0; m.member < 2; m.member++) {
+		KUNIT_ASSERT_EQ(k->b->test, ec_ioc(&k->b->app, EC_IOC_GROUP_CONFIG, &m), 0);
+		map_drive(k->c, m.index);
+	}
+	for (i = 2; i < SLAVES - 2; i++) {
+		struct ec_ioc_slave_config sc = {
+			.position = i, .vendor_id = like->info.vendor,
+			.product_code = like->info.product,
+		};
+
+		KUNIT_ASSERT_EQ(k->b->test, ec_ioc(&k->b->app, EC_IOC_SLAVE_CONFIG, &sc), 0);
+		map_drive(k->c, sc.index);
+	}
+}
+
+/* The reference clock is in a group that is removed: the next one continues its line. */
+static void clocks_lose_group(struct kunit *test)
+{
+	struct clocks *k = clocks_new(clocks_bus(test));
+	s64 most, back, end;
+
+	k->map = map_group;
+	bus_command(k->b, "eeprom d3 word=4 value=60");
+	bus_plug_scanned(k->b, SLAVES, 5000);
+	clocks_activate(k, 2);
+	note_line(k);
+	k->lost = true;
+	k->absent = BIT(2) | BIT(3);
+	bus_command(k->b, "unplug d3.0");
+	bus_command(k->b, "unplug d4.1");
+	most = clocks_run(k, 2000);
+	KUNIT_EXPECT_NE(test, bus_status(k->b)->dc_ref, 0u);
+	ring_state(k->b, EC_RING_OPEN, 2, SLAVES - 2);
+	KUNIT_EXPECT_EQ(test, cyc_state(k->c, 0)->wc_state, EC_STATUS_WC_COMPLETE);
+	k->lost = false;
+	k->ref = ref_index(k);
+	bus_command(k->b, "plug d2.1 d3.0");
+	bus_command(k->b, "plug d4.1 d5.0");
+	back = clocks_run(k, 100);
+	KUNIT_EXPECT_NE(test, cyc_wait_op(k->c, 20000), ~0ull);
+	back = max(back, k->most);
+	k->absent = 0;
+	clocks_run(k, 3000);
+	end = clocks_run(k, 500);
+	ring_closed(k->b, SLAVES);
+	bus_figure("ring loses a group with the reference clock: clocks %lld ns from its line at most in 2 s; back: the others apart %lld ns at most, all %lld then",
+		   most, back, end);
+	KUNIT_EXPECT_LE(test, most, LOST_NS);
+	KUNIT_EXPECT_LE(test, back, GOAL_NS);
+	KUNIT_EXPECT_LE(test, end, GOAL_NS);
+}
+
 /* What is between two cuts stops; the clocks of the others go on. */
 static void clocks_second_cut(struct kunit *test)
 {
@@ -325,6 +405,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(clocks_power_off),
 	KUNIT_CASE(clocks_second_cut),
 	KUNIT_CASE_PARAM(clocks_lose_ref, loss_gen_params),
+	KUNIT_CASE(clocks_lose_group),
 	{}
 };
 
