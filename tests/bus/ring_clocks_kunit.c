@@ -309,7 +309,7 @@ static void clocks_lose_group(struct kunit *test)
 	bus_command(k->b, "eeprom d3 word=4 value=60");
 	bus_plug_scanned(k->b, SLAVES, 5000);
 	clocks_activate(k, 2);
-	note_line(k);
+	clocks_note_line(k);
 	k->lost = true;
 	k->absent = BIT(2) | BIT(3);
 	bus_command(k->b, "unplug d3.0");
@@ -319,7 +319,7 @@ static void clocks_lose_group(struct kunit *test)
 	ring_state(k->b, EC_RING_OPEN, 2, SLAVES - 2);
 	KUNIT_EXPECT_EQ(test, cyc_state(k->c, 0)->wc_state, EC_STATUS_WC_COMPLETE);
 	k->lost = false;
-	k->ref = ref_index(k);
+	k->ref = clocks_ref(k);
 	bus_command(k->b, "plug d2.1 d3.0");
 	bus_command(k->b, "plug d4.1 d5.0");
 	back = clocks_run(k, 100);
