@@ -56,6 +56,17 @@ static bool came(const struct ec_dg *dg, unsigned int side)
 	return dg->side_wkc[side] != EC_DG_NO_COPY;
 }
 
+/* Has one copy crossed and the other one returned? Then a cable has opened or closed meanwhile. */
+static bool is_torn(const struct ec_dg *dg)
+{
+	unsigned int side;
+
+	for (side = 0; side < EC_MAX_LINKS && dg->crossed; side++)
+		if (came(dg, side) && !(dg->crossed & BIT(side)))
+			return true;
+	return false;
+}
+
 /* A link whose copies never return although it is up is not used until one does. */
 static void note_copies(struct ec_bus *bus, const struct ec_dg *dg)
 {
@@ -124,6 +135,8 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 	ec_links_for_each(l, link)
 		if (!came(dg, link->side) && !last && !READ_ONCE(link->mute) && ec_link_is_up(link))
 			return false;
+	if (is_torn(dg))
+		return false;
 	if (READ_ONCE(l->ring.measured) && came(dg, EC_MAIN) &&
 	    dg->side_back[EC_MAIN] == bus->n_slaves)
 		return true;

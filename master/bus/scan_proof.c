@@ -334,7 +334,7 @@ int ec_scan_proof(struct scan *sc)
 
 	if (!ret && !change) {
 		sc->bus->thrown_away = 0;
-		sc->calm = true;
+		sc->calm = READ_ONCE(sc->bus->links->ring.front) == sc->front;
 	}
 	/* an empty list needs no check of the bus */
 	if (ret || !sc->n || !change)

@@ -38,7 +38,7 @@ static void expect_line(struct bus *b, u32 n)
 	KUNIT_EXPECT_FALSE(b->test, l->ring.news);
 	KUNIT_EXPECT_NULL(b->test, l->slots.copies);
 	KUNIT_EXPECT_NULL(b->test, l->link[EC_BACKUP].dev);
-	KUNIT_EXPECT_FALSE(b->test, b->m->bus.places.open);
+	KUNIT_EXPECT_FALSE(b->test, bus_table(b)->places.open);
 }
 
 static void expect_ring(struct bus *b)

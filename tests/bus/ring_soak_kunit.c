@@ -141,8 +141,8 @@ static bool has_path(const struct soak *s, u32 i)
 }
 
 /*
- * A cut counts before frames set out that may meet it. It comes before a repair that is requested in
- * the same cycle.
+ * A cut counts before frames set out that may meet it. It comes before a repair that is requested
+ * in the same cycle.
  */
 static void cable(struct soak *s, u32 at, bool open)
 {
