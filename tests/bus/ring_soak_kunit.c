@@ -188,6 +188,8 @@ static void begin(struct soak *s, struct fault *f, u64 now)
 		break;
 	case POWER:
 		s->off[f->at] = true;
+		/* it may end before the next look */
+		s->well[f->at] = 0;
 		command(s, "off", f->at, "");
 		break;
 	case MAILBOX:
