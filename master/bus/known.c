@@ -7,7 +7,7 @@
 
 #define IMAGES		256
 #define IMAGE_BYTES	65536
-#define MORE_LOST	256	/* disconnected devices, beside as many as were on the bus at a time */
+#define MORE_LOST	256	/* disconnected devices beside as many as the longest list had */
 
 static struct hlist_head *head_of(struct hlist_head *heads, u64 key)
 {

@@ -141,6 +141,9 @@ static void take_ready(struct ec_carry *c, struct ec_post *post)
 	list_del_init(&post->list);
 	WRITE_ONCE(c->n_ready, c->n_ready - 1);
 	post->state = EC_POST_IDLE;
+	/* else the thread wakes for it again and again */
+	if (list_empty(&c->later))
+		c->due_ns = U64_MAX;
 }
 
 /**

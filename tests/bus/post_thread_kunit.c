@@ -26,6 +26,31 @@ static void post_thread_rests(struct kunit *test)
 	KUNIT_EXPECT_LT(test, beside, 100ul);
 }
 
+static void never(struct ec_post *post)
+{
+}
+
+/* It does not wake for a post that was to be sent later, and is not sent at all. */
+static void post_thread_rests_without_later(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\n", 1);
+	struct ec_post *post = kunit_kzalloc(test, sizeof(*post), GFP_KERNEL);
+	u8 type[1];
+	struct ec_dg dg = EC_DG(EC_CMD_BRD, 0, EC_REG_TYPE, 1, type);
+	unsigned long before;
+
+	KUNIT_ASSERT_NOT_NULL(test, post);
+	bus_idle(b);
+	ec_post_init(post, bus_links(b), never);
+	post->dg = &dg;
+	post->n = 1;
+	before = bus_post_slept(b);
+	ec_post_send(post, ktime_get_ns() + 100 * NSEC_PER_MSEC);
+	KUNIT_EXPECT_TRUE(test, ec_post_recall(post));
+	msleep(10000);
+	KUNIT_EXPECT_LT(test, bus_post_slept(b) - before, 100ul);
+}
+
 /* the thread of the posts has work, more of it all the time, and gets no CPU */
 static void keep_cpu(struct bus *b, unsigned int ms)
 {
@@ -126,6 +151,7 @@ static void post_thread_has_fifo_1(struct kunit *test)
 
 static struct kunit_case cases[] = {
 	KUNIT_CASE(post_thread_rests),
+	KUNIT_CASE(post_thread_rests_without_later),
 	KUNIT_CASE(post_thread_has_fifo_1),
 	KUNIT_CASE(post_thread_starved_reported),
 	KUNIT_CASE(post_thread_at_rest_not_reported),
