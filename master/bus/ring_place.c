@@ -49,7 +49,7 @@ static void remember_all(struct ec_ring_places *p, struct ec_slave **slaves, uns
 }
 
 /* What each position has in an open ring of @n slaves: of those behind the break the last ones. */
-static void find_known(const struct ec_bus *bus, struct ec_ring_places *p, unsigned int n)
+static void place_known(const struct ec_bus *bus, struct ec_ring_places *p, unsigned int n)
 {
 	unsigned int i, at;
 
@@ -66,7 +66,7 @@ static void find_known(const struct ec_bus *bus, struct ec_ring_places *p, unsig
 }
 
 /* A device that is new may have replaced one that is absent, and no other. */
-static void find_new(struct ec_ring_places *p, struct ec_slave **slaves, unsigned int n)
+static void place_new(struct ec_ring_places *p, struct ec_slave **slaves, unsigned int n)
 {
 	unsigned int i, at;
 
@@ -103,10 +103,10 @@ void ec_ring_places_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned 
 		remember_all(p, slaves, n);
 		p->last = bus->known.last;
 	} else if (p->n) {
-		find_known(bus, p, n);
+		place_known(bus, p, n);
 		/* else the list has slaves that are where the scan has not been */
 		if (p->open && whole)
-			find_new(p, slaves, n);
+			place_new(p, slaves, n);
 	}
 }
 

@@ -21,7 +21,7 @@
 #define REST_NS		(20 * NSEC_PER_MSEC)	/* between two checks of posts, at most */
 #define RETRY_NS	(100 * NSEC_PER_USEC)	/* until a transmit buffer may be free */
 #define SLEEP_MIN_NS	(10 * NSEC_PER_USEC)
-#define TURN_NS		(50 * NSEC_PER_USEC)	/* a turn of the thread takes longer on a slow machine */
+#define TURN_NS		(50 * NSEC_PER_USEC)	/* a turn takes longer on a slow machine */
 #define SLOWEST		4	/* a device that sends at 25 Mbit/s instead of 100 */
 #define STUCK_CYCLES	100	/* a frame not sent after so many is too long for the cycle */
 #define STUCK_NS	(50 * NSEC_PER_MSEC)	/* if this time is over as well */
@@ -306,8 +306,8 @@ static enum hrtimer_restart starved(struct hrtimer *t)
 }
 
 /*
- * What brings the replies may be a thread of lower priority on this CPU: where a turn takes long, it
- * gets half of the time.
+ * What brings the replies may be a thread of lower priority on this CPU: where a turn takes long,
+ * it gets half of the time.
  */
 static u64 least_sleep(u64 took_ns)
 {

@@ -195,7 +195,7 @@ struct ec_setup {
 	u8 group;
 	/** @heads: it is the first one of that group; topo held */
 	bool heads;
-	/** @in_path: frames pass it from one end of a ring to the other or to the break; topo held */
+	/** @in_path: frames pass it from an end of a ring to the other, or the break; topo held */
 	bool in_path;
 	/** @mailbox: claim of the worker, for the way through INIT */
 	struct ec_claim mailbox;

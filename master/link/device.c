@@ -371,7 +371,7 @@ static bool has_already(struct ec_links *l, unsigned int as, const char *name)
 	return true;
 }
 
-static int release(struct ec_links *l, unsigned int as, const char *name, unsigned int *rival)
+static int let_go(struct ec_links *l, unsigned int as, const char *name, unsigned int *rival)
 {
 	const struct ec_links *other = rival_of(l, as, name);
 
@@ -414,7 +414,7 @@ int ec_device_release(struct ec_links *l, unsigned int as, const char *name, uns
 
 	rtnl_lock();
 	mutex_lock(&devices_lock);
-	ret = release(l, as, name, rival);
+	ret = let_go(l, as, name, rival);
 	mutex_unlock(&devices_lock);
 	rtnl_unlock();
 	if (!ret)
