@@ -21,7 +21,6 @@
 #define REST_NS		(20 * NSEC_PER_MSEC)	/* between two checks of posts, at most */
 #define RETRY_NS	(100 * NSEC_PER_USEC)	/* until a transmit buffer may be free */
 #define SLEEP_MIN_NS	(10 * NSEC_PER_USEC)
-#define TURN_NS		(50 * NSEC_PER_USEC)	/* a turn takes longer on a slow machine */
 #define SLOWEST		4	/* a device that sends at 25 Mbit/s instead of 100 */
 #define STUCK_CYCLES	100	/* a frame not sent after so many is too long for the cycle */
 #define STUCK_NS	(50 * NSEC_PER_MSEC)	/* if this time is over as well */
@@ -305,18 +304,9 @@ static enum hrtimer_restart starved(struct hrtimer *t)
 	return HRTIMER_NORESTART;
 }
 
-/*
- * What brings the replies may be a thread of lower priority on this CPU: where a turn takes long,
- * it gets half of the time.
- */
-static u64 least_sleep(u64 took_ns)
+static void sleep_until(struct ec_carry *c, u64 until)
 {
-	return took_ns <= TURN_NS ? SLEEP_MIN_NS : min_t(u64, took_ns, LOOK_NS);
-}
-
-static void sleep_until(struct ec_carry *c, u64 until, u64 began_ns)
-{
-	u64 now = ktime_get_ns(), at = max(until, now + least_sleep(now - began_ns));
+	u64 now = ktime_get_ns(), at = max(until, now + SLEEP_MIN_NS);
 	ktime_t limit = ns_to_ktime(at);
 
 	set_current_state(TASK_IDLE);
@@ -332,7 +322,7 @@ static void sleep_until(struct ec_carry *c, u64 until, u64 began_ns)
 }
 
 /* Sleep until a time (ktime), or a kick. With U64_MAX not if there are posts by now. */
-static void rest(struct ec_carry *c, u64 until, u64 began_ns)
+static void rest(struct ec_carry *c, u64 until)
 {
 	/* a kick that finds it at rest starts the timer again */
 	if (until == U64_MAX)
@@ -340,19 +330,18 @@ static void rest(struct ec_carry *c, u64 until, u64 began_ns)
 	WRITE_ONCE(c->rests, until == U64_MAX);
 	smp_mb();	/* @rests before the posts; pairs with ec_post_send() */
 	if (until != U64_MAX || !ec_carry_is_busy(c))
-		sleep_until(c, until, began_ns);
+		sleep_until(c, until);
 	WRITE_ONCE(c->rests, false);
 }
 
 static int run(void *data)
 {
 	struct ec_carry *c = data;
-	u64 looked = 0, began_ns;
+	u64 looked = 0;
 
 	if (fifo)
 		sched_set_fifo_low(current);
 	while (!kthread_should_stop()) {
-		began_ns = ktime_get_ns();
 		WRITE_ONCE(c->kicked, false);
 		smp_mb();	/* cleared before the posts are read */
 		if (ec_carry_has_left(c) && !ec_direct_push_on(c))
@@ -365,7 +354,7 @@ static int run(void *data)
 			else
 				WRITE_ONCE(c->watched, false);
 		}
-		rest(c, idle_until(c, looked), began_ns);
+		rest(c, idle_until(c, looked));
 	}
 	return 0;
 }
