@@ -135,7 +135,7 @@ bool ec_scan_see_ring(struct ec_bus *bus, const struct ec_dg *dg, bool last)
 	ec_links_for_each(l, link)
 		if (!came(dg, link->side) && !last && !READ_ONCE(link->mute) && ec_link_is_up(link))
 			return false;
-	if (is_torn(dg))
+	if (is_torn(dg) && !last)
 		return false;
 	if (READ_ONCE(l->ring.measured) && came(dg, EC_MAIN) &&
 	    dg->side_back[EC_MAIN] == bus->n_slaves)

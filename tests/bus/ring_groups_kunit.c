@@ -472,7 +472,7 @@ static void hot_random(struct kunit *test)
 	for (i = 0; i < RANDOM; i++) {
 		k = prandom_u32_state(&rnd) % ARRAY_SIZE(events);
 		bus_command(b, events[k]);
-		/* the odd ones mend */
+		/* the odd ones are repairs */
 		k = prandom_u32_state(&rnd) % (ARRAY_SIZE(events) / 2) * 2 + 1;
 		if (prandom_u32_state(&rnd) % 4)
 			bus_command(b, events[k]);
