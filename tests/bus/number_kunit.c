@@ -264,6 +264,33 @@ static void number_of_many_devices(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_table(b)->known.n_lost, 3u);
 }
 
+/*
+ * A device without serial number that loses its power is another one each time. What is kept of it
+ * is limited, and they share their image.
+ */
+static void number_lost_are_limited(struct kunit *test)
+{
+	struct bus *b = bus_up(test, "slave a EK1100\nslave d drive\n", 2);
+	const struct ec_known *k = &bus_table(b)->known;
+	const struct ec_image *image = NULL;
+	struct ec_lost *l;
+	u32 i;
+
+	bus_idle(b);
+	for (i = 0; i < 270; i++) {
+		bus_fault(b, EC_SIM_FAULT_POWER_OFF, 1, 0, 0, 0);
+		KUNIT_ASSERT_NE(test, bus_wait(b, 1, EC_AL_PREOP, 20000), ~0ull);
+		bus_fault(b, EC_SIM_FAULT_POWER_ON, 1, 0, 0, 0);
+		KUNIT_ASSERT_NE(test, bus_wait(b, 2, EC_AL_PREOP, 20000), ~0ull);
+	}
+	KUNIT_EXPECT_EQ(test, k->n_lost, 2u + 256u);
+	list_for_each_entry(l, &k->oldest, age) {
+		image = image ?: l->image;
+		KUNIT_EXPECT_TRUE(test, !l->image || l->image == image);
+	}
+	KUNIT_EXPECT_NOT_NULL(test, image);
+}
+
 /* Alias and offset mean the same slave in a configuration as in a command. */
 static void number_of_config_by_alias_further_upstream(struct kunit *test)
 {
@@ -288,6 +315,7 @@ static void number_of_config_by_alias_further_upstream(struct kunit *test)
 }
 
 static struct kunit_case cases[] = {
+	KUNIT_CASE(number_lost_are_limited),
 	KUNIT_CASE(number_is_one_of_four_addresses),
 	KUNIT_CASE(number_stays_with_device),
 	KUNIT_CASE(number_of_lost_device_is_refused),

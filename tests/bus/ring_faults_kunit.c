@@ -568,7 +568,7 @@ static void ring_copy_is_lost(struct kunit *test)
 }
 
 /*
- * The first slave has no power, and a contact flaps further on: no slave gets the outputs of another
+ * The first slave has no power, and a contact flaps further on: no slave has outputs of another
  * one, and none seems to be the wrong way round, however often scans contradict the ring.
  */
 static void ring_flaps_without_first(struct kunit *test)
