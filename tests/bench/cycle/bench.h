@@ -83,6 +83,7 @@ struct bench {
 	uint32_t entry;			/* of a refused system call */
 	unsigned int operational;
 	unsigned long long recorded;	/* records, with SETTLE cycles before */
+	uint64_t record_cycles;		/* cycles in that time, of the application or the kernel */
 	unsigned long long lost;	/* frames, while measured */
 	unsigned long long late;	/* frames */
 	unsigned int wc_errors;

@@ -270,6 +270,7 @@ static int run(struct bench *b)
 	bool syscalls = b->syscalls;
 	uint32_t cost[PARTS];
 	unsigned int ready = 0;
+	uint64_t first;
 
 	b->syscalls = false;	/* not while starting */
 	while (ready < b->ready) {
@@ -291,7 +292,11 @@ static int run(struct bench *b)
 	}
 	if (uploads_start(b) || (b->record && record_begin(b)))
 		return -1;
+	first = b->mode == MODE_OWN ? 0 : ecrt_master_cycle_count(b->master);
 	measure(b, &at);
+	/* a cycle of the kernel that was late is none */
+	b->record_cycles = b->mode == MODE_OWN ? SETTLE + b->cycles :
+			   ecrt_master_cycle_count(b->master) - first;
 	b->recorded = b->record ? record_end() : 0;
 	while (uploads_running())
 		one_cycle(b, &at, cost);
@@ -320,7 +325,8 @@ static void report(struct bench *b)
 	if (b->uploads)
 		printf("uploads_done %u\nupload_errors %u\n", b->uploads_done, b->upload_errors);
 	if (b->record)
-		printf("recorded %llu\n", b->recorded);
+		printf("recorded %llu\nrecord_cycles %llu\n", b->recorded,
+		       (unsigned long long)b->record_cycles);
 	if (b->extras)
 		printf("requests_done %u\n", b->requests_done);
 	printf("lost %llu\nlate_frames %llu\nwc_errors %u\ncall_errors %u\noverruns %u\n",
