@@ -23,7 +23,7 @@
 #define WAIT_MAX_NS	(2 * NSEC_PER_MSEC)
 #define POLL_US		40
 #define RETRIES		5
-#define TAKE_OVER	3	/* datagrams to take over one EEPROM */
+#define TAKE_OVER	3	/* datagrams to take over one EEPROM, or to begin once more */
 
 /* Take a result; true when the slave has answered what was asked. */
 static bool scan_sii_take(struct reader *r)
@@ -201,15 +201,23 @@ static void scan_sii_step(struct job *j, struct reader **rds, unsigned int n, u3
 	scan_sii_learn(j, ready, first);
 }
 
-/* Each of @rds reads at its own word; errors are acknowledged first. */
+/*
+ * Each of @rds reads at its own word. Errors are acknowledged first, and the PDI loses the EEPROM: a
+ * contact may have been open when that was done for all.
+ */
 static void start_apart(struct job *j, struct reader **rds, unsigned int n)
 {
-	static const u8 zero[2];
+	static const u8 force[1] = { EC_EEP_OWNER_FORCE }, zero[2];
 	unsigned int i, k = 0;
 
-	for (i = 0; i < n; i++)
+	for (i = 0; i < n; i++) {
+		u16 station = rds[i]->slave->station;
+
+		j->dg[k++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, force);
+		j->dg[k++] = EC_FPWR(station, EC_REG_EEP_OWNER, 1, zero);
 		if (get_unaligned_le16(rds[i]->reg) & EC_EEP_ERR_MASK)
-			j->dg[k++] = EC_FPWR(rds[i]->slave->station, EC_REG_EEP_CONTROL, 2, zero);
+			j->dg[k++] = EC_FPWR(station, EC_REG_EEP_CONTROL, 2, zero);
+	}
 	ec_xfer(j->bus->links, j->dg, k);
 	for (i = 0; i < n; i++) {
 		ec_scan_command(j->cmd[i], ec_scan_image_word(rds[i]));

@@ -20,12 +20,11 @@ static struct bus *prepare(struct kunit *test)
 	return b;
 }
 
-/* Plug in; all but @bad (or N) reach PREOP within @limit_ms with the right EEPROM. */
-static void others_fine(struct bus *b, u32 bad, u32 limit_ms)
+/* All but @bad (or N) are in PREOP, with the right EEPROM. */
+static void are_fine(struct bus *b, u32 bad)
 {
 	u32 i;
 
-	bus_plug_scanned(b, N, limit_ms);
 	for (i = 0; i < N; i++) {
 		struct ec_slave *s = bus_slave(b, i);
 
@@ -38,6 +37,13 @@ static void others_fine(struct bus *b, u32 bad, u32 limit_ms)
 		KUNIT_EXPECT_MEMEQ(b->test, s->eeprom.data, bus_esc(b, i)->eep.data,
 				   s->eeprom.bytes);
 	}
+}
+
+/* Plug in, and wait for that for @limit_ms. */
+static void others_fine(struct bus *b, u32 bad, u32 limit_ms)
+{
+	bus_plug_scanned(b, N, limit_ms);
+	are_fine(b, bad);
 }
 
 static void failed_with(struct bus *b, u32 position, const char *text)
@@ -77,6 +83,23 @@ static void scan_pdi_holds_eeprom_of_deaf(struct kunit *test)
 	bus_esc(b, 2)->mem[EC_REG_EEP_PDI] = 1;
 	bus_fault(b, EC_SIM_FAULT_MISS_BROADCAST, 2, 0, 1, 0);
 	others_fine(b, N, 1000);
+}
+
+/* The PDI of one gets its EEPROM while the others are read: what took it over was lost. */
+static void scan_pdi_takes_eeprom(struct kunit *test)
+{
+	struct bus *b = prepare(test);
+
+	bus_esc(b, 3)->cfg.eeprom_busy_ns = 6 * NSEC_PER_MSEC;
+	bus_plug(b);
+	while (get_unaligned_le32(bus_esc(b, 3)->mem + EC_REG_EEP_ADDRESS) != 4)
+		usleep_range(100, 101);
+	bus_esc(b, 3)->mem[EC_REG_EEP_OWNER] = EC_EEP_OWNER_PDI;
+	bus_wait(b, N, EC_AL_PREOP, 1500);
+	bus_idle(b);
+	are_fine(b, N);
+	/* at once */
+	KUNIT_EXPECT_EQ(test, bus_table(b)->lists, 1);
 }
 
 static void scan_slow_eeprom(struct kunit *test)
@@ -556,6 +579,7 @@ static struct kunit_case scan_fault_cases[] = {
 	KUNIT_CASE(scan_mixed_widths),
 	KUNIT_CASE(scan_pdi_holds_eeprom),
 	KUNIT_CASE(scan_pdi_holds_eeprom_of_deaf),
+	KUNIT_CASE(scan_pdi_takes_eeprom),
 	KUNIT_CASE(scan_slow_eeprom),
 	KUNIT_CASE(scan_refused_some),
 	KUNIT_CASE(scan_refused_all),
