@@ -2,7 +2,7 @@
 #
 # Runs the command of run.sh in a guest, and ends the guest. Sourced by guest-init.sh, or in a
 # unit of the guest's own init. Set before: ctl (control directory), in_root (command that
-# enters the root), kept (folder for the log), mark.
+# enters the root), kept (folder for the log), mark, late (seconds after which it hangs, 0: never).
 
 # A restart by sysrq skips the drivers' shutdown hooks: a module under test
 # that hangs there must not keep the result from being seen. QEMU is started
@@ -11,6 +11,21 @@ off() {
 	sync
 	echo b >/proc/sysrq-trigger
 	sleep 60
+}
+
+# Before the host ends a guest that hangs: programs, and what they and our threads wait for.
+stuck() {
+	sleep "$late"
+	for p in /proc/[0-9]*; do
+		read -r comm <$p/comm || continue
+		case $comm in
+		EtherCAT*|ec_*) ;;
+		*) [ "$(tr -d '\0' <$p/cmdline)" ] || continue ;;
+		esac
+		echo "${p#/proc/} $comm: $(tr '\0' ' ' <$p/cmdline | cut -c1-150)"
+		cat $p/task/*/stack
+	done >$ctl/stuck.tmp 2>/dev/null
+	mv $ctl/stuck.tmp $ctl/stuck
 }
 
 guest_run() {
@@ -32,6 +47,7 @@ guest_run() {
 		i=$((i + 1))
 	done
 	cat $kept/out >$port &
+	[ "${late:-0}" = 0 ] || stuck &
 	exec 7>$kept/out	# else the reader ends with the command, before the mark
 	env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
 		HOME=/root USER=root LOGNAME=root SHELL=/bin/sh TERM=dumb LANG=C.UTF-8 EC_VM=1 \

@@ -268,8 +268,8 @@ for d in ${dirs[@]+"${dirs[@]}"}; do
 	n=$((n + 1))
 done
 {
-	printf 'release=%q\nmodules=%q\nmark=%s\ninit=%q\nrw=%d\nro=%d\n' "$release" "$modules" \
-		"$mark" "$init" "$rw_count" "$n"
+	printf 'release=%q\nmodules=%q\nmark=%s\ninit=%q\nrw=%d\nro=%d\nlate=%d\n' "$release" "$modules" \
+		"$mark" "$init" "$rw_count" "$n" $((icount || timeout < 60 ? 0 : timeout - 30))
 } >"$ctl/env"
 quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 {
@@ -419,6 +419,7 @@ watch() {
 		echo "# run.sh: the guest hangs, before the command began"
 	fi
 	where
+	[ ! -s "$ctl/stuck" ] || sed 's/^/#   /' "$ctl/stuck"
 	[ ! -s "$ctl/started" ] && [ $SECONDS -lt "$end" ] || : >"$tmp/late"
 	kill -9 "$pid"
 } >&2
