@@ -81,6 +81,7 @@ failures() {
 		/^[ \t]*(not ok|FAIL |FAILED:|ERROR: |KERNEL REPORT|demo: FAILED)/ {
 			n = 0; max = most; print; next
 		}
+		/^[ \t]*(# )?ok / { max = 0 }
 		max > 12 && !/^#/ { max = 12 }
 		n++ < max' "$1" | head -n "${3:-200}"
 }
@@ -125,8 +126,10 @@ run() {
 	echo "$rc $((SECONDS - t0)) $(<"$log/$1.cpu")" >"$log/$1.end"
 }
 
-# what failed, by level: the last lines, since some readers keep no others; they keep some 50
-failed_names= why= costs=
+# what failed, by level: the last lines, since some readers keep no others; they keep some 50, 26
+# of which are the reasons of all levels together
+failed_names= costs=
+why=()
 report() {
 	local name=$1 rc seconds user sys names
 
@@ -145,7 +148,7 @@ report() {
 		names=$(grep -E '^[[:space:]]*(not ok|FAIL |FAILED:|ERROR: |demo: FAILED)' "$log/$name" |
 			head -n 20 | sed "s/^[[:space:]]*/$name: /")
 		failed_names+=${names:-"$name: ended with $rc"}$'\n'
-		why+=${why:+$'\n'}$(failures "$log/$name" 12 26 | sed "s/^/$name: /")
+		why+=("$(failures "$log/$name" 12 26 | sed "s/^/$name: /")")
 	fi
 	echo "=== $name: $seconds s, $((user + sys)) s of CPU"
 	costs+="$name $seconds/$((user + sys)), "
@@ -197,7 +200,7 @@ for l in ${behind[@]+"${behind[@]}"}; do
 	run "$l"
 	report "$l"
 done
-[ -z "$why" ] || head -n 40 <<<"$why"
+for text in ${why[@]+"${why[@]}"}; do head -n $((26 / ${#why[@]})) <<<"$text"; done
 printf '%s' "$failed_names"
 fold -s -w 100 <<<"seconds/of CPU: ${costs%, }; all: $SECONDS"
 grep -hs '^class A of ETG.1500: [0-9]' "$log/class-a"
