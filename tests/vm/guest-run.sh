@@ -47,8 +47,9 @@ guest_run() {
 		i=$((i + 1))
 	done
 	cat $kept/out >$port &
-	[ "${late:-0}" = 0 ] || stuck &
 	exec 7>$kept/out	# else the reader ends with the command, before the mark
+	# a child that ends would interrupt an open() of this shell
+	if [ "${late:-0}" != 0 ]; then stuck & fi
 	env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
 		HOME=/root USER=root LOGNAME=root SHELL=/bin/sh TERM=dumb LANG=C.UTF-8 EC_VM=1 \
 		$in_root /bin/sh /run/ec-vm-cmd </dev/null >$kept/out 2>&1 7>&-
