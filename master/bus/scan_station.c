@@ -184,11 +184,22 @@ static void scan_station_take_part(struct ec_slave *s, struct ec_slave *old)
 		swap(s->eeprom.counted, old->eeprom.counted);
 }
 
-/* If a slave could not be read here before, keep its cause, which is logged once, and its tries. */
-static void take_failure(struct scan *sc, struct ec_slave *s)
+/*
+ * The slave at @i, if it is one that could not be read before: by its address, or by its place if
+ * no slave of the list has that.
+ */
+static const struct ec_slave *unread_before(const struct scan *sc, unsigned int i)
 {
-	const struct ec_slave *old = ec_scan_unreadable(sc->bus, s->position);
+	const struct ec_slave *s = sc->known[ec_scan_address(sc, i)];
 
+	if (!s || !is_at(sc, i, s))
+		return ec_scan_unreadable(sc->bus, i);
+	return sc->claims[s->station] == 1 ? ec_scan_unreadable(sc->bus, s->position) : NULL;
+}
+
+/* If a slave could not be read before, keep its cause, which is logged once, and its tries. */
+static void take_failure(struct ec_slave *s, const struct ec_slave *old)
+{
 	if (!old)
 		return;
 	strscpy(s->note.why, old->note.why, sizeof(s->note.why));
@@ -328,13 +339,18 @@ static void restore_neighbors(struct scan *sc)
 			more |= restore(sc, i);
 }
 
-/* The slave at @i has an address of its own, at which it could be read up to now. */
-static bool is_addressed(const struct scan *sc, unsigned int i)
+/*
+ * The slave at @i has an address of its own, at which it has replied up to now: also if its EEPROM
+ * could not be read. With another address it would be another device.
+ */
+static bool is_addressed(const struct scan *sc, unsigned int i, const struct ec_slave *unread)
 {
 	u16 station = ec_scan_address(sc, i);
 
 	return !sc->fresh && sc->regs[i].there && station && station != NO_STATION &&
-	       sc->claims[station] == 1 && !ec_scan_unreadable(sc->bus, i);
+	       sc->claims[station] == 1 &&
+	       (!unread || (unread->station == station &&
+			    unread->note.cause.kind != EC_CAUSE_REGISTERS));
 }
 
 static bool has_alias_of(const struct scan *sc, unsigned int i, const struct ec_slave *s)
@@ -346,10 +362,11 @@ static bool has_alias_of(const struct scan *sc, unsigned int i, const struct ec_
 static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 {
 	u16 station = ec_scan_address(sc, i), old = station;
+	const struct ec_slave *unread = unread_before(sc, i);
 	struct ec_slave *known = sc->known[old], *s;
-	bool addressed = is_addressed(sc, i);
+	bool addressed = is_addressed(sc, i, unread);
 
-	*write = !addressed || known;
+	*write = !addressed || (known && known != unread);
 	sc->regs[i].own = addressed ? old : 0;
 	if (*write) {
 		station = ec_known_fresh_station(sc->bus, sc->known, sc->claims);
@@ -363,7 +380,7 @@ static int scan_station_add(struct scan *sc, unsigned int i, bool *write)
 		return -ENOMEM;
 	sc->slaves[i] = s;
 	s->position = i;
-	take_failure(sc, s);
+	take_failure(s, unread);
 	s->kept_station = sc->regs[i].there && old != NO_STATION && sc->claims[old] == 1 ? old : 0;
 	/* by its address it is the same */
 	if (known && sc->regs[i].there && sc->claims[old] == 1 && has_alias_of(sc, i, known)) {

@@ -238,11 +238,34 @@ static void loose_bus_empty_during_scan(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("SII read failed"), lines);
 }
 
+/* One that cannot be read when it is back keeps its address, and is the same when it can. */
+static void loose_unread_is_the_same(struct kunit *test)
+{
+	struct watch w = { 0 };
+	struct cyc *c = in_op(test, &w, 1000);
+	struct bus *b = c->b;
+	u16 station = bus_slave(b, 2)->station;
+	u64 device = bus_slave(b, 2)->device;
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_BUSY, 2, 0, 1, 0);
+	open_contact(b, ktime_get_ns(), 50 * NSEC_PER_MSEC, false);
+	cyc_run(c, 5000);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->note.error, EC_SLAVE_SCAN_FAILED);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->station, station);
+	bus_fault(b, EC_SIM_FAULT_EEPROM_BUSY, 2, 0, 0, 0);
+	KUNIT_ASSERT_NE(test, cyc_wait_op(c, 60000), ~0ull);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->station, station);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 2)->device, device);
+	untouched(c, &w);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(loose_other_branch_stays_in_op, contact_gen_params),
 	KUNIT_CASE(loose_address_of_another),
 	KUNIT_CASE(loose_addresses_overwritten),
 	KUNIT_CASE(loose_bus_empty_during_scan),
+	KUNIT_CASE(loose_unread_is_the_same),
 	{}
 };
 

@@ -269,7 +269,7 @@ for d in ${dirs[@]+"${dirs[@]}"}; do
 done
 {
 	printf 'release=%q\nmodules=%q\nmark=%s\ninit=%q\nrw=%d\nro=%d\nlate=%d\n' "$release" "$modules" \
-		"$mark" "$init" "$rw_count" "$n" $((icount || timeout < 60 ? 0 : timeout - 30))
+		"$mark" "$init" "$rw_count" "$n" $((timeout < 60 ? 0 : timeout - 30))
 } >"$ctl/env"
 quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 {
