@@ -202,8 +202,8 @@ static void scan_sii_step(struct job *j, struct reader **rds, unsigned int n, u3
 }
 
 /*
- * Each of @rds reads at its own word. Errors are acknowledged first, and the PDI loses the EEPROM: a
- * contact may have been open when that was done for all.
+ * Each of @rds reads at its own word. Errors are acknowledged first, and the PDI loses the EEPROM:
+ * a contact may have been open when that was done for all.
  */
 static void start_apart(struct job *j, struct reader **rds, unsigned int n)
 {

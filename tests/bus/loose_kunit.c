@@ -239,7 +239,7 @@ static void loose_bus_empty_during_scan(struct kunit *test)
 }
 
 /* One that cannot be read when it is back keeps its address, and is the same when it can. */
-static void loose_unread_is_the_same(struct kunit *test)
+static void loose_unread_stays_itself(struct kunit *test)
 {
 	struct watch w = { 0 };
 	struct cyc *c = in_op(test, &w, 1000);
@@ -265,7 +265,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(loose_address_of_another),
 	KUNIT_CASE(loose_addresses_overwritten),
 	KUNIT_CASE(loose_bus_empty_during_scan),
-	KUNIT_CASE(loose_unread_is_the_same),
+	KUNIT_CASE(loose_unread_stays_itself),
 	{}
 };
 

@@ -433,7 +433,8 @@ no_ring() { [ "$(rings)" = 0 ]; }
 	ethercat stop
 	wait_for 60 all_slaves_are PREOP 4
 	for after in 0.05 0.2 0.4 0.8; do
-		timeout -s KILL $after "$EC_BUILD/tool/ethercat" run "$f" 3>&- || true	# killed, or done
+		# killed, or done
+		timeout -s KILL $after "$EC_BUILD/tool/ethercat" run "$f" 3>&- || status=$?
 		! json '.masters[0].session == "none"' master || continue
 		# it was faster
 		all_slaves_are OP 4

@@ -2,7 +2,7 @@
 #
 # Runs the command of run.sh in a guest, and ends the guest. Sourced by guest-init.sh, or in a
 # unit of the guest's own init. Set before: ctl (control directory), in_root (command that
-# enters the root), kept (folder for the log), mark, late (seconds after which it hangs, 0: never).
+# enters the root), kept (folder for the log), mark, late (seconds after which it hangs, or 0).
 
 # A restart by sysrq skips the drivers' shutdown hooks: a module under test
 # that hangs there must not keep the result from being seen. QEMU is started

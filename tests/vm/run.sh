@@ -268,8 +268,8 @@ for d in ${dirs[@]+"${dirs[@]}"}; do
 	n=$((n + 1))
 done
 {
-	printf 'release=%q\nmodules=%q\nmark=%s\ninit=%q\nrw=%d\nro=%d\nlate=%d\n' "$release" "$modules" \
-		"$mark" "$init" "$rw_count" "$n" $((timeout < 60 ? 0 : timeout - 30))
+	printf 'release=%q\nmodules=%q\nmark=%s\ninit=%q\n' "$release" "$modules" "$mark" "$init"
+	printf 'rw=%d\nro=%d\nlate=%d\n' "$rw_count" "$n" $((timeout < 60 ? 0 : timeout - 30))
 } >"$ctl/env"
 quote() { printf "'%s' " "${1//\'/\'\\\'\'}"; }
 {
