@@ -287,6 +287,9 @@ static int do_wire(struct ec_desc *d)
 	}
 	n = &d->node[w.b];
 	n->wired = true;
+	n->place = (struct ec_desc_wire){
+		d->line, n->parent, n->parent_port, w.b, n->child_port, n->cable_ns,
+	};
 	n->parent = w.a;
 	n->parent_port = w.a_port;
 	n->child_port = w.b_port;
@@ -471,6 +474,7 @@ static int wire_all(struct ec_desc *d)
 {
 	struct ec_desc_word name;
 
+	ec_desc_add_loops(d);
 	for (u32 i = 0; i < d->n_nodes; i++) {
 		const struct ec_desc_node *n = &d->node[i];
 

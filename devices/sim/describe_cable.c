@@ -231,3 +231,61 @@ int ec_desc_under_way(struct ec_desc *d)
 	return !w.s ? 0 : ec_desc_fail(d, "invalid under_way '", &w,
 				       "': expected back, lost or random");
 }
+
+/* the slave hangs where it would without its wire statement, which becomes one more cable */
+static void add_cable(struct ec_desc *d, int slave)
+{
+	struct ec_desc_node *n = &d->node[slave];
+
+	d->wire[d->n_wires++] = (struct ec_desc_wire){
+		n->place.line, n->parent, n->parent_port, slave, n->child_port, n->cable_ns,
+	};
+	n->wired = false;
+	n->parent = n->place.a;
+	n->parent_port = n->place.a_port;
+	n->child_port = n->place.b_port;
+	n->cable_ns = n->place.cable_ns;
+}
+
+/* @first hangs behind itself: the last wire to a port that had no cable opens that */
+static int open_loop(struct ec_desc *d, int first)
+{
+	int at = first, found = -1;
+
+	do {
+		const struct ec_desc_node *n = &d->node[at];
+
+		if (n->wired && n->child_port != n->place.b_port &&
+		    (found < 0 || n->place.line > d->node[found].place.line))
+			found = at;
+		at = n->parent;
+	} while (at != first);
+	if (found < 0)
+		return -1;
+	add_cable(d, found);
+	return d->node[found].parent;
+}
+
+/**
+ * ec_desc_add_loops() - wires that begin behind the slave at which they end
+ * @d: description, all statements were read
+ *
+ * Such a wire replaces no cable, as the slave would be connected with itself only.
+ *
+ * Context: Process. May sleep.
+ */
+void ec_desc_add_loops(struct ec_desc *d)
+{
+	for (u32 i = 0; i < d->n_nodes; i++) {
+		int at = (int)i;
+
+		while (at >= 0 && (!d->node[at].walk || d->node[at].walk == i + 1)) {
+			if (d->node[at].walk) {
+				at = open_loop(d, at);
+				continue;
+			}
+			d->node[at].walk = i + 1;
+			at = d->node[at].parent;
+		}
+	}
+}

@@ -17,6 +17,14 @@ struct ec_desc_word {
 	bool used;
 };
 
+/* a wire between slaves that both hang elsewhere already, or back to a master */
+struct ec_desc_wire {
+	unsigned int line;
+	int a, a_port;
+	int b, b_port;
+	u32 cable_ns;
+};
+
 /* how a slave hangs in the segment */
 struct ec_desc_node {
 	struct ec_app *app;
@@ -26,6 +34,8 @@ struct ec_desc_node {
 	int child_port;
 	u32 cable_ns;
 	bool wired;	/* by a wire statement */
+	struct ec_desc_wire place;	/* the cable that it would have without that */
+	u32 walk;	/* in which it was passed, see ec_desc_add_loops() */
 	bool reached;	/* from a master */
 	int todo;	/* next one whose neighbours are looked at, -1: none */
 };
@@ -34,14 +44,6 @@ struct ec_desc_node {
 struct ec_desc_cable {
 	u64 ns;
 	bool swapped;	/* in port 1, the next slave is at port 0 */
-};
-
-/* a wire between slaves that both hang elsewhere already, or back to a master */
-struct ec_desc_wire {
-	unsigned int line;
-	int a, a_port;
-	int b, b_port;
-	u32 cable_ns;
 };
 
 /**
@@ -121,6 +123,7 @@ int ec_desc_end_of_wire(struct ec_desc *d, const struct ec_desc_word *w, int *sl
 int ec_desc_port(struct ec_desc *d, struct ec_sim_fault *f);
 int ec_desc_under_way(struct ec_desc *d);
 int ec_desc_own_ports(struct ec_desc *d, struct ec_app_config *c);
+void ec_desc_add_loops(struct ec_desc *d);
 
 /* describe_slave.c */
 int ec_desc_params(struct ec_desc *d, struct ec_app_params *p);

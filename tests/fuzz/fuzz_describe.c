@@ -10,6 +10,7 @@ const struct fuzz_seed fuzz_seeds[] = {
 	SEED("slave ai EL3062\nslave ao EL4002\nsine ai.1 amplitude=10 period=4ms offset=5\n"
 	     "ramp ai.2 amplitude=3 period=1s\nconst ai.1 value=-5\n"),
 	SEED("repeat 5 slave t io in=8 out=8 cpu=no alias=100\nwire t1.2 -> t5.1 cable=20\n"),
+	SEED("repeat 5 slave t io\nwire t5.1 -> t1.2\nwire t4.2 -> t2.3\nwire t3.2 -> t2.0\n"),
 	SEED("slave a EL7201 motor=AM8121\nslave b 750-354 serial=1 delay=2us clock=1s\n"
 	     "wire b.1 -> master.1\n"),
 	SEED("slave d drive\nfault at=1s lose frame=3\nfault mangle rate=100ppm port=1\n"

@@ -240,6 +240,54 @@ static void sim_describe_wiring(struct kunit *test)
 	}
 }
 
+/* @port of @slave has a cable to @peer, or none (-1) */
+static void expect_cable(struct kunit *test, u32 slave, u32 port, int peer)
+{
+	struct bed *b = test->priv;
+
+	KUNIT_EXPECT_EQ_MSG(test, ec_sim_at(b->sim, slave)->port[port].peer, peer,
+			    "slave %u, port %u", slave, port);
+}
+
+/* a wire to a slave that it begins behind is one more cable */
+static void sim_describe_wire_of_loop(struct kunit *test)
+{
+	static const char * const wires[] = {
+		"wire f.1 -> b.2 cable=20\n",
+		"wire f.1 -> b.2\nwire e.1 -> f.0\n",
+		"wire e.1 -> f.0\nwire a.1 -> b.0\nwire f.1 -> b.2\n",
+		"wire b.1 -> c.0\nwire f.1 -> b.2\nwire d.1 -> master.1\n",
+	};
+	char text[256];
+
+	for (u32 i = 0; i < ARRAY_SIZE(wires); i++) {
+		snprintf(text, sizeof(text), "slave a EL2008\nslave b EK1122\nslave c EL2008\n"
+			 "slave d EL2008\nbranch b 3\nslave e EL2008\nslave f EL2008\n%s",
+			 wires[i]);
+		bed_exit(test);
+		/* frames of the main device return by the loop */
+		app_bed_part(test, text, 4);
+		expect_cable(test, 1, 0, 0);
+		expect_cable(test, 1, 2, 5);
+		expect_cable(test, 5, 0, 4);
+		expect_cable(test, 5, 1, 1);
+	}
+}
+
+/* one loop inside of another; and a wire that closes none replaces the cable of its slave */
+static void sim_describe_wires_of_loops(struct kunit *test)
+{
+	app_bed_part(test, "slave a EK1122\nslave b EK1122\nslave c EL2008\n"
+		     "branch b 3\nslave d EL2008\nwire c.1 -> a.2\nwire d.1 -> b.2\n", 2);
+	expect_cable(test, 0, 2, 2);
+	expect_cable(test, 1, 2, 3);
+	expect_cable(test, 1, 0, 0);
+	bed_exit(test);
+	app_bed(test, "slave a EK1100\nslave b EL2008\nslave c EL2008\nwire a.2 -> c.1\n");
+	expect_cable(test, 0, 2, 2);
+	expect_cable(test, 1, 1, -1);
+}
+
 static void sim_describe_faults(struct kunit *test)
 {
 	struct bed *b = app_bed(test, "slave a EL2008\nslave b EL2008\n"
@@ -517,6 +565,8 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(sim_describe_options),
 	KUNIT_CASE(sim_describe_revisions),
 	KUNIT_CASE(sim_describe_wiring),
+	KUNIT_CASE(sim_describe_wire_of_loop),
+	KUNIT_CASE(sim_describe_wires_of_loops),
 	KUNIT_CASE(sim_describe_faults),
 	KUNIT_CASE(sim_describe_commands),
 	KUNIT_CASE(sim_describe_commands_many_slaves),
