@@ -31,10 +31,12 @@ struct end {
  * @wire: the segment
  * @lock: protects members of the ends that more than one of them depends on
  * @end: by master port
+ * @keeps: the card of the second end has a link without a master, too
  */
 struct ec_sim_link {
 	struct ec_sim_wire wire;
 	spinlock_t lock;
+	bool keeps;
 	struct end end[EC_SIM_PORTS];
 };
 
@@ -80,7 +82,7 @@ static void set_dev(struct end *e, struct ecdev *dev)
 	spin_unlock_bh(&l->lock);
 	/* a card that is off has no link: frames turn at the last slave */
 	if (e->port)
-		ec_sim_wire_card(&l->wire, e->port, dev);
+		ec_sim_wire_card(&l->wire, e->port, dev || READ_ONCE(l->keeps));
 	for (i = 0; i < EC_SIM_PORTS; i++)
 		runs |= READ_ONCE(l->end[i].dev) != NULL;
 	ec_sim_wire_run(&l->wire, runs);
@@ -208,6 +210,17 @@ err_free:
 int ec_sim_link_second(struct ec_sim_link *l, const char *name, const u8 *mac)
 {
 	return offer_end(l, 1, name, mac);
+}
+
+/**
+ * ec_sim_link_keep() - the card of the second end keeps its link when no master uses the device
+ * @l: link
+ *
+ * Context: Any.
+ */
+void ec_sim_link_keep(struct ec_sim_link *l)
+{
+	WRITE_ONCE(l->keeps, true);
 }
 
 /**

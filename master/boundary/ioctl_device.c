@@ -53,7 +53,7 @@ static int change(struct ec_call *call, unsigned int as, const char *name, const
 	ec_bus_rescan(&m->bus);
 	ret = ec_bus_wait_scan(&m->bus);
 	if (!ret && as == EC_BACKUP)
-		ec_ring_forget(&m->bus);
+		ec_ring_forget(&m->bus, !*name);
 	ret = ret ?: ec_device_use(&m->links, as, name);
 	back = ret ? ec_device_use(&m->links, as, was) : 0;
 	if (as == EC_BACKUP)

@@ -3,6 +3,7 @@
 #include "../link/links.h"
 #include "graph.h"
 #include "ring_break.h"
+#include "ring_exit.h"
 #include "ring_place.h"
 #include "slave.h"
 
@@ -144,16 +145,17 @@ struct ec_slave *ec_ring_break_neighbor(const struct ec_slave *s, u8 *port)
 /**
  * ec_ring_forget() - the bus will be another ring, or none
  * @bus: bus without slaves and without a device
+ * @line: it will be a line
  *
  * Context: Process. May sleep.
  */
-void ec_ring_forget(struct ec_bus *bus)
+void ec_ring_forget(struct ec_bus *bus, bool line)
 {
 	down_write(&bus->topo);
 	ec_show_change_begin(&bus->base->show);
 	WRITE_ONCE(bus->ring_told[0], EC_RING_NONE);
 	bus->turned = bus->turned_told = 0;
-	memset(&bus->exit, 0, sizeof(bus->exit));
+	ec_ring_exit_forget(bus, line);
 	ec_ring_places_forget(bus);
 	bus->places.open = false;
 	ec_show_change_end(&bus->base->show);

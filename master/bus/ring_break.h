@@ -12,7 +12,7 @@ void ec_ring_break_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned i
 bool ec_ring_break_is_news(const struct ec_bus *bus);
 struct ec_slave *ec_ring_break_neighbor(const struct ec_slave *s, u8 *port);
 void ec_ring_break_report(struct ec_bus *bus);
-void ec_ring_forget(struct ec_bus *bus);
+void ec_ring_forget(struct ec_bus *bus, bool line);
 void ec_ring_break_show(const struct ec_bus *bus, u32 *state, u32 *slave, u32 *port, u32 *next);
 
 #endif

@@ -34,11 +34,17 @@ struct ec_ring_places {
  * @device: number of its slave, 0: it has not
  * @port: port
  * @tried_ns: the last attempt (ktime)
+ * @station: of a line that was a ring: station address of the slave at its end, 0: no such line
+ * @open: likewise: loop control of that slave, with the port open
+ * @closed: likewise: the port was closed, and the slave is the one that shows it
  */
 struct ec_ring_exit {
 	u64 device;
 	u8 port;
 	u64 tried_ns;
+	u16 station;
+	u8 open;
+	bool closed;
 };
 
 #endif

@@ -11,6 +11,7 @@
 #include "identify.h"
 #include "leave_init.h"
 #include "ports_lost.h"
+#include "ring_exit.h"
 #include "scan.h"
 #include "scan_count.h"
 #include "scan_int.h"
@@ -31,7 +32,9 @@ static void reset_bus(struct ec_bus *bus)
 	static const u8 zero[256];
 	static const u8 init[2] = { EC_AL_INIT, 0 };
 
-	bwr(bus, EC_REG_DL_LOOPS, zero, 1);
+	/* no frame would return by a port that is closed for this reason */
+	if (!ec_ring_exit_is_closed(bus))
+		bwr(bus, EC_REG_DL_LOOPS, zero, 1);
 	bwr(bus, EC_REG_AL_CONTROL, init, 2);
 	bwr(bus, EC_REG_ECAT_MASK, zero, 2);
 	bwr(bus, EC_REG_FMMU(0), zero, 256);
@@ -345,6 +348,8 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 	u64 t0 = ktime_get_ns(), frames = ec_links_sent(bus->links);
 	int ret = scan_alloc(&sc);
 
+	if (!count)
+		ec_ring_exit_note(bus);
 	/* unless this scan finds it again */
 	bus->turned_seen = U32_MAX;
 	/* it may be begun again and again while a plug is pulled in, or for a port alone */

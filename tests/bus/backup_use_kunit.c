@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* A master gets a backup device, another one, or none, while it is there. */
 #include "ring.h"
+#include "devices/sim/esc_int.h"
 #include "master/boundary/ioctl.h"
 #include "master/link/device.h"
 
@@ -86,6 +87,12 @@ static void backup_use_line_becomes_ring(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, bus_log_lines("backup device none instead of bus0b"), 2u);
 	/* the reply of a frame that the ring has sent is not awaited */
 	KUNIT_EXPECT_EQ(test, bus_lost(b), 0ull);
+}
+
+/* Loop control of the last slave, as it is there. */
+static u8 loops_of_last(struct bus *b)
+{
+	return bus_esc(b, SLAVES - 1)->mem[EC_REG_DL_LOOPS];
 }
 
 /* The slaves behind the break are not reached any more, until it heals. */
@@ -195,6 +202,109 @@ static void backup_use_main_absent(struct kunit *test)
 	expect_ring(b);
 }
 
+/* The link of its card stays: the port there is closed, and opened when the cable is out. */
+static void backup_use_none_keeps_link(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	u32 i;
+
+	ec_sim_link_keep(b->link);
+	bus_idle(b);
+	for (i = 0; i < 2; i++) {
+		ring_closed(b, SLAVES);
+		use_backup(b, "");
+		expect_line(b, SLAVES);
+		KUNIT_EXPECT_EQ(test, loops_of_last(b), EC_LOOP_CLOSED << 2);
+		/* the next scans know it as well */
+		bus_rescan(b);
+		expect_line(b, SLAVES);
+		if (i) {
+			ring_cable(b, true, SLAVES);
+			msleep(1000);
+			bus_idle(b);
+			KUNIT_EXPECT_EQ(test, loops_of_last(b), 0);
+			expect_line(b, SLAVES);
+			ring_cable(b, false, SLAVES);
+		}
+		use_backup(b, "bus0b");
+		expect_ring(b);
+		KUNIT_EXPECT_EQ(test, loops_of_last(b), 0);
+	}
+	KUNIT_EXPECT_GE(test, bus_log_lines("keeps the link without the master"), 1u);
+	/* closed before, as the device was absent */
+	ec_sim_link_second_withdraw(b->link);
+	ec_sim_wire_card(ec_sim_link_wire(b->link), 1, true);
+	msleep(500);
+	bus_idle(b);
+	ring_open(b, SLAVES);
+	use_backup(b, "");
+	expect_line(b, SLAVES);
+	ring_run(ring_new(test, b), SLAVES);
+}
+
+/* The master waits for another main device. */
+static struct bus *main_is_absent(struct kunit *test)
+{
+	struct bus *b = bus_new(test, ring_eight);
+
+	KUNIT_ASSERT_EQ(test, ec_device_release(bus_links(b), EC_MAIN, "bus9", NULL), 0);
+	KUNIT_ASSERT_EQ(test, ec_device_use(bus_links(b), EC_MAIN, "bus9"), -ENODEV);
+	return b;
+}
+
+/* The device itself, as if it had been wanted all the time. */
+static void main_comes(struct bus *b)
+{
+	struct ec_links *l = bus_links(b);
+
+	KUNIT_ASSERT_EQ(b->test, ec_device_release(l, EC_MAIN, "bus0", NULL), 0);
+	KUNIT_ASSERT_EQ(b->test, ec_device_use(l, EC_MAIN, "bus0"), 0);
+}
+
+/* Its card has no link: all slaves are at the backup device, and run on when it comes. */
+static void backup_use_main_later(struct kunit *test)
+{
+	struct bus *b = main_is_absent(test);
+	struct ring *r;
+
+	bus_plug(b);
+	ec_sim_wire_card(ec_sim_link_wire(b->link), 0, false);
+	KUNIT_ASSERT_NE(test, bus_wait(b, SLAVES, EC_AL_PREOP, 10000), ~0ull);
+	bus_idle(b);
+	ring_open(b, 0);
+	KUNIT_EXPECT_NULL(test, bus_link(b, EC_MAIN)->dev);
+	r = ring_new(test, b);
+	ring_run(r, SLAVES);
+	cyc_run(r->c, 200);
+	ring_expect(r, "without the main device");
+	ec_sim_wire_card(ec_sim_link_wire(b->link), 0, true);
+	main_comes(b);
+	cyc_run(r->c, 2000);
+	ring_closed(b, SLAVES);
+	KUNIT_EXPECT_EQ(test, r->wrong, 0u);
+	r->lost = r->left = 0;
+	cyc_run(r->c, 200);
+	ring_expect(r, "the main device has come");
+}
+
+/* Its card has a link: no frame of the backup device is processed, or returns, until it comes. */
+static void backup_use_main_keeps_link(struct kunit *test)
+{
+	struct bus *b = main_is_absent(test);
+	struct ring *r;
+
+	bus_plug(b);
+	msleep(5000);
+	KUNIT_EXPECT_EQ(test, bus_n_slaves(b), 0u);
+	main_comes(b);
+	KUNIT_ASSERT_NE(test, bus_wait(b, SLAVES, EC_AL_PREOP, 10000), ~0ull);
+	expect_ring(b);
+	r = ring_new(test, b);
+	ring_run(r, SLAVES);
+	cyc_run(r->c, 200);
+	ring_expect(r, "a ring whose main device came late");
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(backup_use_line_becomes_ring),
 	KUNIT_CASE(backup_use_none_in_open_ring),
@@ -202,6 +312,9 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(backup_use_exchanged_ends),
 	KUNIT_CASE(backup_use_refused),
 	KUNIT_CASE(backup_use_main_absent),
+	KUNIT_CASE(backup_use_none_keeps_link),
+	KUNIT_CASE(backup_use_main_later),
+	KUNIT_CASE(backup_use_main_keeps_link),
 	{ }
 };
 

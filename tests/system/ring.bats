@@ -380,7 +380,15 @@ cut_and_heal() {
 	wait_for 20 ring closed
 	goes_on 100
 	app_ends 40
-	# without the ring, with the cable out, and again; not while a bridge has it
+	# without the ring, while the interface keeps its link, and again
+	ethercat device use --backup none
+	line_is $slaves
+	ethercat run
+	wait_for 60 all_slaves_are OP $slaves
+	ethercat stop
+	ethercat device use --backup veth2
+	wait_for 20 ring closed
+	# with the cable out; not while a bridge has it
 	tell cut i4.1
 	ip link set veth2 down
 	ethercat device use --backup none
