@@ -24,7 +24,8 @@
 #define NOTICED		500u		/* cycles: the master has noticed what was before */
 #define RESTED		2000u		/* cycles: nothing of it is to be done */
 #define RETURN		1500		/* 100 ms: a closed port is tried again after 80 s */
-#define GROWTH		(256 << 10)	/* bytes: slabs are filled by and by */
+/* bytes: slabs are filled by and by; KASAN keeps freed memory back */
+#define GROWTH		((IS_ENABLED(CONFIG_KASAN) ? 2048 : 256) << 10)
 
 static unsigned int minutes = 2;
 module_param(minutes, uint, 0444);
