@@ -126,7 +126,8 @@ may_not() {
 	may_not 'needs root (CAP_NET_ADMIN)' \
 		setpriv --bounding-set -net_admin --inh-caps -net_admin
 	# not the one of a namespace of one's own either
-	may_not 'needs root (CAP_NET_ADMIN)' "${nobody[@]}" unshare -Ur
+	may_not 'needs root (CAP_NET_ADMIN)' python3 "$BATS_TEST_DIRNAME/unchroot.py" \
+		"${nobody[@]}" unshare -Ur
 	chmod 664 /dev/EtherCAT0
 	may_not 'ermission' "${nobody[@]}"
 	chmod 660 /dev/EtherCAT0
