@@ -5,6 +5,9 @@
  * first frame, so that their delay after the send is constant. Nothing here
  * allocates, prints or waits.
  */
+#include <linux/hash.h>
+#include <linux/kernel.h>
+#include <linux/math64.h>
 #include "../carry/carry.h"
 #include "../clock/dc_state.h"
 #include "../clock/dc_time.h"
@@ -158,6 +161,19 @@ u32 ec_dc_datagrams_wanted(struct ec_dc_datagrams *k, u32 flags)
 #define PREDICT_US	(100ULL * 24 * 3600 * USEC_PER_SEC)	/* 1000 ppm of it fit in 64 bits */
 
 /*
+ * @parts of 1e-6 ns as whole ns, rounded by @now so that the mean is right. A fraction that is
+ * always omitted depends on the time since the last reply: slaves would take it for a rate.
+ */
+static s64 whole_ns(s64 parts, u64 now)
+{
+	s32 rest;
+	s64 up = parts + reciprocal_scale(hash_64(now, 32), USEC_PER_SEC);
+	s64 ns = div_s64_rem(up, USEC_PER_SEC, &rest);
+
+	return rest < 0 ? ns - 1 : ns;
+}
+
+/*
  * Slaves upstream of the reference clock, and all when it does not reply, take the time that was
  * sent: a prediction from its last replies, at its last rate as long as a cycle is in holdover.
  */
@@ -168,7 +184,7 @@ static u64 predicted(const struct ec_dc_datagrams *k, u64 now)
 
 	if (!k->time)
 		return ec_dc_clock_at(k->dc, now);
-	return k->time + since + div_s64(us * k->ppb, USEC_PER_SEC);
+	return k->time + since + whole_ns(us * k->ppb, now);
 }
 
 #define RATE_NS	(100 * NSEC_PER_MSEC)

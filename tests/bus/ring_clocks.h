@@ -32,12 +32,13 @@
  * @deaf: mask of slaves that ignore FRMW
  * @wander_ppb: how much faster the clock of the computer is than at first
  * @wander_ns: when that has begun (ktime)
- * @wandered: how far it was ahead then, ns
+ * @wandered: how far it was ahead then, 1e-9 ns
  * @random: of that
  * @lost: the reference clock is one of them: its line is continued
- * @then_ns: when its line was noted, as the clock of the computer would be without wander, ns
+ * @then_ns: when its line was noted (ktime)
  * @then: its time then
- * @ppb: how much faster it was than that, 1e-9
+ * @then_ahead: how far the clock of the computer was ahead then, 1e-9 ns
+ * @ppb: how much faster the reference clock is than that without wander, 1e-9
  * @most: largest difference from that line, ns
  * @was: difference of each clock in the last cycle, ns
  * @jump: largest change of one in a cycle, ns
@@ -68,6 +69,7 @@ struct clocks {
 	bool lost;
 	u64 then_ns;
 	u64 then;
+	s64 then_ahead;
 	s64 ppb;
 	s64 most;
 	s64 was[SLAVES];
@@ -87,10 +89,10 @@ struct kinds {
 
 u64 clock_of(const struct clocks *k, u32 i, u64 now);
 u64 clocks_line(const struct clocks *k, u64 now);
-u64 clocks_true(const struct clocks *k, u64 now);
 s64 clocks_run(struct clocks *k, u32 cycles);
 struct bus *clocks_bus_of(struct kunit *test, u32 back_ns, struct kinds kinds);
 struct bus *clocks_bus(struct kunit *test);
+struct bus *clocks_bus_line(struct kunit *test);
 void clocks_configure(struct clocks *k, u32 ref, u32 n);
 void clocks_begin(struct clocks *k);
 void clocks_activate(struct clocks *k, u32 ref);

@@ -397,7 +397,46 @@ static void clocks_reply_equals(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, valid, 5u);
 }
 
+#define SENDS	1000
+
+/* What is predicted on average so long after the last reply, less that time; 1e-3 ns. */
+static s64 predicted_after(struct ec_dc_datagrams *k, u32 since_ns)
+{
+	struct ec_frame_buf fb;
+	u8 frame[64];
+	s64 sum = 0;
+	u32 i;
+
+	for (i = 1; i <= SENDS; i++) {
+		k->time_ns = i * 1000003ull;
+		ec_frame_begin(&fb, frame, sizeof(frame));
+		ec_dc_datagrams_fill(k, &fb, 0, EC_SEND_FLAG_SYNC_SLAVES, k->time_ns + since_ns);
+		sum += k->sent - k->time - since_ns;
+	}
+	return sum;
+}
+
+/* Clocks that take the predicted time take no rate from late sends: parts of a ns count. */
+static void clocks_predicted(struct kunit *test)
+{
+	struct ec_dc *dc = kunit_kzalloc(test, sizeof(*dc), GFP_KERNEL);
+	static const s32 rates[] = { 13400, -13400, 600, -50 };
+	u32 i, us;
+
+	KUNIT_ASSERT_NOT_NULL(test, dc);
+	for (i = 0; i < ARRAY_SIZE(rates); i++)
+		for (us = 960; us <= 1040; us += 10) {
+			struct ec_dc_datagrams k = {
+				.dc = dc, .ppb = rates[i], .time = 1ull << 60, .wkc = 1,
+			};
+			s64 off = predicted_after(&k, us * 1000) - rates[i] * (s64)us / 1000;
+
+			KUNIT_EXPECT_LE_MSG(test, abs(off), 60, "%d ppb, %u us", rates[i], us);
+		}
+}
+
 static struct kunit_case cases[] = {
+	KUNIT_CASE(clocks_predicted),
 	KUNIT_CASE(clocks_reply_equals),
 	KUNIT_CASE_PARAM(clocks_cut, cut_gen_params),
 	KUNIT_CASE(clocks_random),

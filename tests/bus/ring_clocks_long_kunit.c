@@ -13,11 +13,16 @@
 #define PARTS		4u
 #define SECOND		1000u	/* cycles */
 #define SHORT		20u	/* seconds */
-#define SHORT_FIRST	20u	/* of @runs, then: one led by the application, and the lost ones */
+#define SHORT_FIRST	21u	/* of @runs, then: one led by the application, and the lost ones */
+#define SHORT_END	30u
 
 static unsigned int minutes;
 module_param(minutes, uint, 0444);
 MODULE_PARM_DESC(minutes, "Minutes of each case, at most 11; 0: some cases, for seconds");
+
+static unsigned int first;
+module_param(first, uint, 0444);
+MODULE_PARM_DESC(first, "Number of the first case");
 
 #define NOWHERE	CUTS	/* no cable is cut */
 
@@ -27,13 +32,30 @@ struct run {
 	u32 ref;
 	bool leads;
 	u32 absent;	/* while it is lost */
+	bool line;	/* no ring */
+	bool late;	/* not after a minute, but after four */
 };
 
 static const struct run runs[] = {
 	{ 0, 0 }, { 1, 0 }, { 2, 0 }, { 3, 0 }, { 4, 0 }, { 5, 0 }, { 6, 0 }, { 7, 0 }, { 8, 0 },
 	{ 0, 7 }, { 1, 7 }, { 2, 7 }, { 3, 7 }, { 4, 7 }, { 5, 7 }, { 6, 7 }, { 7, 7 }, { 8, 7 },
 	{ 4, 3 }, { 3, 3 }, { 4, 0, true }, { 4, 7, true },
-	{ NOWHERE, 0, false, 0x01 }, { 4, 0, false, 0x0f }, { 2, 5, false, 0x3c },
+	{ NOWHERE, 0, .absent = 0x01 },
+	{ NOWHERE, 3, .absent = 0x08 },
+	{ NOWHERE, 7, .absent = 0x80 },
+	{ 4, 0, .absent = 0x0f },
+	{ 2, 5, .absent = 0x3c },
+	{ 6, 3, .absent = 0x38 },
+	{ NOWHERE, 7, .absent = 0x80, .line = true },
+	{ NOWHERE, 3, .absent = 0xf8, .line = true },
+	{ NOWHERE, 0, .absent = 0x01, .late = true },
+	{ NOWHERE, 3, .absent = 0x08, .late = true },
+	{ NOWHERE, 7, .absent = 0x80, .late = true },
+	{ 4, 0, .absent = 0x0f, .late = true },
+	{ 2, 5, .absent = 0x3c, .late = true },
+	{ 6, 3, .absent = 0x38, .late = true },
+	{ NOWHERE, 7, .absent = 0x80, .line = true, .late = true },
+	{ NOWHERE, 3, .absent = 0xf8, .line = true, .late = true },
 };
 
 /* the present one, which lives longer than a case */
@@ -46,7 +68,7 @@ static struct {
 	s64 healed;	/* in the second behind that */
 	s64 after;
 	s64 lost;	/* of all from the line of the reference clock that is lost, in 2 s */
-	s64 line;	/* of the next one from it at last */
+	s64 line;	/* in all the time then */
 	struct rnd_state random;
 } now;
 
@@ -59,14 +81,16 @@ static u32 cycles(void)
 
 static const void *next_part(const void *prev, char *desc)
 {
-	const char *next = prev ? (const char *)prev + 1 : numbers + !minutes * SHORT_FIRST * PARTS;
+	const char *begin = numbers + (minutes ? first : SHORT_FIRST) * PARTS;
+	const char *next = prev ? (const char *)prev + 1 : begin;
 	u32 i = (next - numbers) / PARTS;
 
-	if (i >= ARRAY_SIZE(runs))
+	if (i >= (minutes ? ARRAY_SIZE(runs) : SHORT_END))
 		return NULL;
-	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "before %u, reference %u%s%s, part %u", runs[i].at,
-		 runs[i].ref, runs[i].leads ? " led" : "", runs[i].absent ? " lost" : "",
-		 (u32)(next - numbers) % PARTS + 1);
+	snprintf(desc, KUNIT_PARAM_DESC_SIZE, "%sbefore %u, reference %u%s%s%s, part %u",
+		 runs[i].line ? "line, " : "", runs[i].at, runs[i].ref,
+		 runs[i].leads ? " led" : "", runs[i].absent ? " lost" : "",
+		 runs[i].late ? " late" : "", (u32)(next - numbers) % PARTS + 1);
 	return next;
 }
 
@@ -91,7 +115,7 @@ static void begin(struct kunit *test, const struct run *r)
 
 	long_exit(NULL);
 	prandom_seed_state(&now.random, 37);
-	b = clocks_bus(test);
+	b = r->line ? clocks_bus_line(test) : clocks_bus(test);
 	now.k.b = b;
 	test->priv = NULL;
 	k = clocks_new(b);
@@ -104,28 +128,26 @@ static void begin(struct kunit *test, const struct run *r)
 	now.c.ctx = &now.k;
 }
 
-/* Its line goes on for two seconds, then counts that of the next one. */
+/* Its line goes on until it is found again. */
 static void lose(const struct run *r)
 {
 	struct clocks *k = &now.k;
 
 	clocks_note_line(k);
-	k->lost = true;
 	k->absent = r->absent;
 	clocks_power(k, r->ref, false);
 	now.lost = clocks_run(k, 2 * SECOND);
-	k->lost = false;
-	k->ref = clocks_ref(k);
 }
 
-static void note_lost(void)
+/* Then counts that of the next one. */
+static void forget(void)
 {
 	struct clocks *k = &now.k;
-	u64 at = ktime_get_ns();
 
-	k->lost = true;
-	now.line = abs((s64)(clock_of(k, k->ref, at) - clocks_line(k, at)));
+	now.line = now.open;
 	k->lost = false;
+	k->ref = clocks_ref(k);
+	now.open = clocks_run(k, SECOND);
 }
 
 static void find_again(struct kunit *test, const struct run *r)
@@ -147,26 +169,28 @@ static void expect(struct kunit *test, const struct run *r)
 
 	if (r->absent)
 		snprintf(lost, sizeof(lost),
-			 ", lost then: %lld ns from its line in 2 s, the next one %lld at last",
-			 now.lost, now.line);
-	bus_figure("ring for %u s, cut before slave %u, reference slave %u%s%s: clocks apart %lld ns before, %lld in the second after it, %lld in %u s then, %lld in the second after it has healed, then %lld",
-		   cycles() / SECOND, r->at, r->ref,
+			 ", lost then%s: %lld ns from its line in 2 s, %lld in %u s",
+			 r->late ? ", late" : "", now.lost, now.line, cycles() / SECOND / 2);
+	bus_figure("%s for %u s, cut before slave %u, reference slave %u%s%s: clocks apart %lld ns before, %lld in the second after it, %lld in %u s then, %lld in the second after it has healed, then %lld",
+		   r->line ? "line" : "ring", cycles() / SECOND, r->at, r->ref,
 		   r->leads ? " synchronized to the application" : "", lost, now.before, now.second,
-		   now.open, cycles() / SECOND / 2, now.healed, now.after);
+		   now.open, r->absent ? 1 : cycles() / SECOND / 2, now.healed, now.after);
 	KUNIT_EXPECT_LE(test, now.before, GOAL_NS);
 	KUNIT_EXPECT_LE(test, now.second, GOAL_NS);
 	KUNIT_EXPECT_LE(test, now.open, GOAL_NS);
 	KUNIT_EXPECT_LE(test, now.healed, GOAL_NS);
 	KUNIT_EXPECT_LE(test, now.after, GOAL_NS);
 	KUNIT_EXPECT_LE(test, now.lost, LOST_NS);
+	KUNIT_EXPECT_LE(test, now.line, LOST_NS);
 }
 
 static void part(struct kunit *test, const struct run *r, u32 i)
 {
 	struct clocks *k = &now.k;
+	u32 before = r->late ? cycles() * 2 / 5 : cycles() / 10;
 
 	if (i == 0) {
-		now.before = clocks_run(k, cycles() / 12);
+		now.before = clocks_run(k, before);
 		cable(r, true);
 		now.second = clocks_run(k, SECOND);
 		if (r->absent)
@@ -177,14 +201,15 @@ static void part(struct kunit *test, const struct run *r, u32 i)
 		if (r->at != NOWHERE && !r->absent)
 			ring_open(k->b, r->at);
 		if (r->absent)
-			note_lost();
+			forget();
 		cable(r, false);
 		if (r->absent)
 			find_again(test, r);
 		else
 			now.healed = clocks_run(k, SECOND);
-		now.after = clocks_run(k, cycles() * 5 / 12);
-		ring_closed(k->b, SLAVES);
+		now.after = clocks_run(k, cycles() / 2 - before);
+		if (!r->line)
+			ring_closed(k->b, SLAVES);
 	}
 	KUNIT_EXPECT_TRUE(test, r->absent && i < PARTS - 1 ? true : cyc_all_op(k->c));
 	clocks_on_grid(k);
