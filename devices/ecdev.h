@@ -24,6 +24,8 @@ struct notifier_block;
  * @stop: mandatory. Releases the device; no frame is delivered after the return
  * @tx_get: mandatory. A free transmit buffer of EC_ETH_MAX bytes, or NULL
  *	when the hardware still owns all of them. In an RCU read section
+ * @stays: a buffer of @tx_get keeps its frame until @tx_get returns it again, at least until
+ *	ecdev_withdraw() has returned
  * @tx_send: mandatory. Sends @len bytes (at least EC_ETH_MIN) from a buffer
  *	@tx_get returned. Return: 0, -ENETDOWN, -EBUSY (frame not sent). With @tx_flush
  *	it may leave only then. In the same RCU read section as @tx_get and @tx_flush
@@ -46,6 +48,7 @@ struct ecdev_ops {
 	int (*start)(void *priv, struct ecdev *dev);
 	void (*stop)(void *priv);
 	u8 *(*tx_get)(void *priv);
+	bool stays;
 	int (*tx_send)(void *priv, u8 *buf, size_t len);
 	void (*tx_flush)(void *priv);
 	void (*poll)(void *priv);

@@ -322,6 +322,7 @@ const struct ecdev_ops ec_card_ops = {
 	.start = intel_start,
 	.stop = intel_stop,
 	.tx_get = intel_tx_get,
+	.stays = true,
 	.tx_send = intel_tx_send,
 	.tx_flush = intel_tx_flush,
 	.poll = intel_poll,

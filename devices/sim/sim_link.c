@@ -8,6 +8,8 @@
 #include "sim_link.h"
 #include "sim_wire.h"
 
+#define TX_BUFS	64
+
 /**
  * struct end - one virtual device: an end of the segment
  * @link: both ends
@@ -15,7 +17,8 @@
  * @offer: handle of the offer, NULL: none
  * @dev: the same while a master uses the device, known before the first frame
  * @polled: that master polls
- * @txbuf: transmit buffer; one sender at a time
+ * @tx_next: transmit buffer that is next in turn; one sender at a time
+ * @tx: transmit buffers
  */
 struct end {
 	struct ec_sim_link *link;
@@ -23,7 +26,8 @@ struct end {
 	struct ecdev *offer;
 	struct ecdev *dev;
 	bool polled;
-	u8 txbuf[EC_ETH_MAX];
+	unsigned int tx_next;
+	u8 tx[TX_BUFS][EC_ETH_MAX];
 };
 
 /**
@@ -103,14 +107,17 @@ static u8 *link_tx_get(void *priv)
 {
 	struct end *e = priv;
 
-	return e->txbuf;
+	return e->tx[e->tx_next];
 }
 
 static int link_tx_send(void *priv, u8 *buf, size_t len)
 {
 	struct end *e = priv;
+	int ret = ec_sim_wire_send(&e->link->wire, e->port, buf, len);
 
-	return ec_sim_wire_send(&e->link->wire, e->port, buf, len);
+	if (!ret)
+		e->tx_next = (e->tx_next + 1) % TX_BUFS;
+	return ret;
 }
 
 static void link_poll(void *priv)
@@ -143,6 +150,7 @@ static const struct ecdev_ops link_ops = {
 	.start = link_start,
 	.stop = link_stop,
 	.tx_get = link_tx_get,
+	.stays = true,
 	.tx_send = link_tx_send,
 	.poll = link_poll,
 	.cycle = link_cycle,
@@ -176,7 +184,7 @@ static int offer_end(struct ec_sim_link *l, int port, const char *name, const u8
 struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct ec_sim *sim,
 				       u64 start_ns)
 {
-	struct ec_sim_link *l = kzalloc(sizeof(*l), GFP_KERNEL);
+	struct ec_sim_link *l = kvzalloc(sizeof(*l), GFP_KERNEL);
 	int ret;
 
 	if (!l)
@@ -194,7 +202,7 @@ struct ec_sim_link *ec_sim_link_create(const char *name, const u8 *mac, struct e
 err_wire:
 	ec_sim_wire_exit(&l->wire);
 err_free:
-	kfree(l);
+	kvfree(l);
 	return ERR_PTR(ret);
 }
 
@@ -260,5 +268,5 @@ void ec_sim_link_destroy(struct ec_sim_link *l)
 	ecdev_withdraw(l->end[0].offer);
 	ec_sim_wire_exit(&l->wire);
 	ec_sim_free(l->wire.sim);
-	kfree(l);
+	kvfree(l);
 }

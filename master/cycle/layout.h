@@ -57,6 +57,8 @@ struct ec_cyc_dgram {
 	u16 of_backup;
 	/** @of_open: struct ec_cycle.opened then */
 	u16 of_open;
+	/** @cut: likewise, bytes of the data that were those of the main link, see ec_merge_data() */
+	u16 cut;
 	/** @first_copy: first area that is copied into it, in struct ec_layout.areas */
 	u32 first_copy;
 	/** @n_copies: areas that are copied into it */

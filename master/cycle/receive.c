@@ -127,8 +127,11 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
 		take_inputs(c, d, f, data, complete);
 }
 
-/* Take the data of a reply. Return: ECAT events of the slaves in its IRQ fields. */
-static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
+/*
+ * Take the data of a reply, or of the two of an open ring. Return: ECAT events of the slaves in its
+ * IRQ fields.
+ */
+static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f, bool two)
 {
 	struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
 	const u8 *data = f->slot->reply + EC_FRAME_HDR + EC_DGRAM_HDR;
@@ -145,7 +148,7 @@ static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f)
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
 		irq |= get_unaligned_le16(data - 2);
-		take_dgram(c, d, f, data);
+		take_dgram(c, d, f, likely(!two) ? data : ec_ring_data(c, f, d, data, &irq));
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
 	if (unlikely(f->riding.mask))
@@ -372,9 +375,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (has_reply(c, f, slot, &now)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
-			if (unlikely(!only))
-				ec_ring_join(c, f, slot);
-			irq |= take_frame(c, f);
+			irq |= take_frame(c, f, unlikely(!only) && ec_ring_join(c, f, slot));
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);
 			else

@@ -42,45 +42,75 @@ static bool changes_meet(const u8 *a, const u8 *b, const u8 *sent, size_t len)
  * healed? Its inputs would be joined of two moments. If each copy has passed as many slaves as that
  * of the last frame, the same ones have processed it.
  */
-static bool is_doubtful(const struct ec_cycle *c, struct ec_cyc_dgram *d,
-			const struct ec_slot *slot, size_t at)
+static bool is_doubtful(const struct ec_cycle *c, struct ec_cyc_dgram *d, u16 wa, u16 wb,
+			const u8 *a, const u8 *b, const u8 *sent)
 {
-	const u8 *a = slot->got[EC_MAIN] + at, *b = slot->got[EC_BACKUP] + at;
-	u16 wa = get_unaligned_le16(a + d->len), wb = get_unaligned_le16(b + d->len);
 	bool same = d->of_open == c->opened && d->of_main == wa && d->of_backup == wb;
 
 	d->of_open = c->opened;
 	d->of_main = wa;
 	d->of_backup = wb;
-	if (!wa || !wb || likely(same))
+	if (!wa || !wb)
 		return false;
-	return !ec_cyc_is_complete(d, wa + wb) ||
-	       changes_meet(a, b, slot->frame + EC_ETH_HDR + at, d->len);
+	if (likely(same))
+		return !sent;
+	return !sent || !ec_cyc_is_complete(d, wa + wb) || changes_meet(a, b, sent, d->len);
 }
 
-/* The copies of both ends of an open ring, without those datagrams that are not certain. */
-static void join_open(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot,
-		      bool both)
+/**
+ * ec_ring_data() - a datagram of an open ring, of which the copies of both ends were processed
+ * @c: active cycle
+ * @f: frame, for which ec_ring_join() has returned true
+ * @d: a datagram of it
+ * @at: its data in the reply
+ * @irq: result: with the ECAT events of all slaves
+ *
+ * Mostly slaves of one side only have processed it: its copy is taken as it is.
+ *
+ * Context: The cycle owner, in the RCU read section of the receive. RT-safe.
+ * Return: its data, with working counter; 0 of one that is not certain, as if no slave had processed
+ * it.
+ */
+const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_cyc_dgram *d,
+		       const u8 *at, u16 *irq)
 {
-	struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
-	size_t at = EC_FRAME_HDR + EC_DGRAM_HDR;
-	u8 *to = c->links->slots.merged;
+	const struct ec_slot *slot = f->slot;
+	size_t pos = at - slot->reply;
+	const u8 *a = slot->got[EC_MAIN] + pos, *b = slot->got[EC_BACKUP] + pos, *sent;
+	u16 wa = get_unaligned_le16(a + d->len), wb = get_unaligned_le16(b + d->len);
+	u8 *to = c->links->slots.merged + pos;
+
+	*irq |= get_unaligned_le16(a - 2) | get_unaligned_le16(b - 2);
+	if (wb)
+		c->from_backup |= BIT_ULL(d->domain);
+	sent = ec_slot_sent(slot);
+	if (sent)
+		sent += EC_ETH_HDR + pos;
+	if (unlikely(is_doubtful(c, d, wa, wb, a, b, sent)))
+		wa = wb = 0;
+	else if (!wb)
+		return a;
+	else if (!wa)
+		return b;
+	else
+		ec_merge_data(to, a, b, sent, d->len, &d->cut);
+	put_unaligned_le16(wa + wb, to + d->len);
+	return to;
+}
+
+/* Does the backup link contribute to the domains of a frame of which it alone has a copy? */
+static void note_backup(struct ec_cycle *c, const struct ec_cyc_flight *f)
+{
+	const struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
+	const u8 *data = f->slot->got[EC_BACKUP] + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 
-	if (both) {
-		ec_merge_frame(to, slot->got[EC_MAIN], slot->got[EC_BACKUP], ec_slot_body(slot),
-			       slot->eth_len - EC_ETH_HDR);
-		slot->reply = to;
-	}
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
-		if (get_unaligned_le16(slot->got[EC_BACKUP] + at + d->len))
+		if (get_unaligned_le16(data + d->len))
 			c->from_backup |= BIT_ULL(d->domain);
-		/* as if no slave had processed it */
-		if (both && unlikely(is_doubtful(c, d, slot, at)))
-			put_unaligned_le16(0, to + at + d->len);
-		at += d->len + EC_DGRAM_OVERHEAD;
+		data += d->len + EC_DGRAM_OVERHEAD;
 	}
 }
 
@@ -94,21 +124,37 @@ static void join_open(struct ec_cycle *c, const struct ec_cyc_flight *f, struct 
  * ring was just breaking or healing: their values would be those of two moments.
  *
  * Context: The cycle owner. RT-safe: bounded, no sleep, no allocation.
+ * Return: true: both copies have data; ec_ring_data() has those of each datagram.
  */
-void ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot)
+bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot)
 {
 	u8 processed = slot->back & ~slot->blank, crossed = processed & slot->crossed;
+	const u8 *sent;
 
 	if (!f->count)
-		return;
+		return false;
 	note_mute(c, slot->sides & ~slot->back);
 	ec_links_note_ring(c->links, slot);
 	if (unlikely(c->crossed != !!crossed)) {
 		c->crossed = crossed;
 		c->opened++;
 	}
-	if (is_power_of_2(crossed))
+	if (is_power_of_2(crossed)) {
 		slot->reply = slot->got[__ffs(crossed)];
-	else if (processed & BIT(EC_BACKUP))
-		join_open(c, f, slot, processed & BIT(EC_MAIN));
+		return false;
+	}
+	if (!(processed & BIT(EC_BACKUP)))
+		return false;
+	if (!(processed & BIT(EC_MAIN))) {
+		note_backup(c, f);
+		return false;
+	}
+	slot->reply = slot->got[EC_MAIN];
+	sent = ec_slot_sent(slot);
+	if (f->riding.mask && sent) {
+		slot->reply = c->links->slots.merged;
+		ec_merge_frame(c->links->slots.merged, slot->got[EC_MAIN], slot->got[EC_BACKUP],
+			       sent + EC_ETH_HDR, slot->eth_len - EC_ETH_HDR);
+	}
+	return true;
 }

@@ -5,6 +5,8 @@
 
 #include "cycle.h"
 
-void ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot);
+const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_cyc_dgram *d,
+		       const u8 *at, u16 *irq);
+bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot);
 
 #endif

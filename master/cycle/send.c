@@ -120,12 +120,20 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->riding = send->riding;
 }
 
+/* What rides in a frame of both ends is joined in any case, with what was sent. */
+static u8 *get_both(struct ec_cycle *c, struct ec_tx *tx)
+{
+	tx->sides = c->links->sides;
+	tx->link = NULL;
+	return atomic_read(&c->riders->queued) ? NULL : ec_links_tx_get_both(c->links, tx);
+}
+
 /* One frame from datagram @g on; returns the first datagram of the next. */
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_links *l = c->links;
 	/* the clock datagrams of a ring go one way, process data both ways */
-	bool alone = unlikely(!l->only) && send->dc;
+	bool alone = unlikely(!l->only) && send->dc, both;
 	struct ec_slot *slot = NULL;
 	struct ec_tx tx;
 	unsigned int count;
@@ -140,15 +148,19 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
-	if (unlikely(alone))
-		frame = ec_links_tx_get(l, BIT(EC_MAIN), &tx);
+	both = unlikely(!l->only) && !alone;
+	if (unlikely(both))
+		frame = get_both(c, &tx);
 	else
-		frame = ec_links_tx_get(l, l->sides, &tx);
+		frame = ec_links_tx_get(l, unlikely(alone) ? BIT(EC_MAIN) : l->sides, &tx);
 	frame = frame ?: slot->frame;
 	count = fill(c, slot, frame, g, send, alone);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	ret = ec_links_transmit(l, slot, frame, &tx, send->now);
+	if (unlikely(both) && frame != slot->frame)
+		ret = ec_links_transmit_both(l, slot, frame, &tx, send->now);
+	else
+		ret = ec_links_transmit(l, slot, frame, &tx, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
 		ec_links_count(l, tx.sides, tx_errors);

@@ -174,6 +174,7 @@ static void withdraw(struct ec_link *link, struct ecdev *dev)
 	ec_access_shut(l);
 	WRITE_ONCE(link->dev, NULL);
 	WRITE_ONCE(link->up, false);
+	ec_slots_forget_sent(&l->slots);
 	/* the way of all frames of a ring changes */
 	WRITE_ONCE(l->ring.news, !l->only);
 	if (l->ops && l->ops->changed)

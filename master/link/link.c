@@ -108,6 +108,46 @@ static u8 live(const struct ec_links *l, u8 sides)
 	return up ?: sides;
 }
 
+/** struct leaving - a frame in buffers of the devices that send it */
+struct leaving {
+	/** @sides: mask of their links */
+	u8 sides;
+	/** @full: mask of links without a buffer */
+	u8 full;
+	/** @dev: the devices */
+	struct ecdev *dev[EC_MAX_LINKS];
+	/** @buf: their buffers */
+	u8 *buf[EC_MAX_LINKS];
+};
+
+/* Return: 0: at least one link has sent it; or -errno, the slot is in BUILD again. */
+static int leave(struct ec_links *l, struct ec_slot *slot, const struct leaving *f)
+{
+	size_t len = ec_slot_padded(slot);
+	u8 unsent = 0, full = f->full;
+	int ret = 0, err;
+	unsigned int i;
+
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (!(f->sides & BIT(i)))
+			continue;
+		f->buf[i][7] |= i;
+		err = ec_link_send_buf(&l->link[i], f->dev[i], f->buf[i], len);
+		if (likely(!err))
+			continue;
+		unsent |= BIT(i);
+		if (err == -EBUSY)
+			full |= BIT(i);
+		ret = err;
+	}
+	/* a frame whose reply was received counts as sent */
+	if (unlikely(unsent) && ec_slot_disarm(slot, unsent))
+		return ret;
+	if (unlikely(full))
+		ec_links_count(l, full, tx_errors);
+	return 0;
+}
+
 /**
  * ec_links_send() - send a frame on several links
  * @l: links
@@ -125,46 +165,83 @@ static u8 live(const struct ec_links *l, u8 sides)
  */
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
-	struct ecdev *dev[EC_MAX_LINKS];
-	u8 *buf[EC_MAX_LINKS], unsent = 0, full = 0;
-	int ret = -ENODEV, err;
+	struct leaving f = { .sides = live(l, sides) };
+	int ret = -ENODEV;
 	unsigned int i;
 
-	sides = live(l, sides);
 	for (i = 0; i < EC_MAX_LINKS; i++) {
-		if (!(sides & BIT(i)))
+		if (!(f.sides & BIT(i)))
 			continue;
-		buf[i] = ec_link_tx_get(&l->link[i], &dev[i]);
-		if (likely(buf[i]))
+		f.buf[i] = ec_link_tx_get(&l->link[i], &f.dev[i]);
+		if (likely(f.buf[i]))
 			continue;
-		sides &= ~BIT(i);
-		if (!dev[i])
+		f.sides &= ~BIT(i);
+		if (!f.dev[i])
 			continue;
-		full |= BIT(i);
+		f.full |= BIT(i);
 		ret = -EBUSY;
 	}
-	if (!sides)
+	if (!f.sides)
 		return ret;
-	ec_slot_arm(&l->slots, slot, slot->frame, sides, now);
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		if (!(sides & BIT(i)))
-			continue;
-		memcpy(buf[i], slot->frame, ec_slot_padded(slot));
-		buf[i][7] |= i;
-		err = ec_link_send_buf(&l->link[i], dev[i], buf[i], ec_slot_padded(slot));
-		if (likely(!err))
-			continue;
-		unsent |= BIT(i);
-		if (err == -EBUSY)
-			full |= BIT(i);
-		ret = err;
-	}
-	/* a frame whose reply was received counts as sent */
-	if (unsent && ec_slot_disarm(slot, unsent))
-		return ret;
-	if (unlikely(full))
-		ec_links_count(l, full, tx_errors);
-	return 0;
+	slot->sent = slot->frame;
+	ec_slot_arm(&l->slots, slot, slot->frame, f.sides, now);
+	for (i = 0; i < EC_MAX_LINKS; i++)
+		if (f.sides & BIT(i))
+			memcpy(f.buf[i], slot->frame, ec_slot_padded(slot));
+	return leave(l, slot, &f);
+}
+
+/**
+ * ec_links_tx_get_both() - a transmit buffer in which a frame of the cycle may be built for a ring
+ * @l: two links
+ * @tx: result, for ec_links_transmit_both()
+ *
+ * It is the buffer of the main device, where the frame stays, so that the copies can be compared
+ * with it; that saves a copy of the frame. The next frame that is sent has to be the one built here.
+ *
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
+ * Return: EC_ETH_MAX bytes. NULL: the frame has to be built in its slot, and ec_links_transmit()
+ * sends it, on the links that can.
+ */
+u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx)
+{
+	const struct ecdev *main = READ_ONCE(l->link[EC_MAIN].dev);	/* may be withdrawn now */
+	u8 *frame;
+
+	tx->sides = l->sides;
+	tx->link = NULL;
+	/* by its number the frame is known again */
+	if (!main || !main->ops->stays || !l->slots.numbered || live(l, l->sides) != l->sides)
+		return NULL;
+	frame = ec_link_tx_get(&l->link[EC_MAIN], &tx->dev);
+	tx->copy = ec_link_tx_get(&l->link[EC_BACKUP], &tx->backup);
+	return tx->copy ? frame : NULL;
+}
+
+/**
+ * ec_links_transmit_both() - send a frame on both links of a ring
+ * @l: links
+ * @slot: the slot is back in BUILD on failure
+ * @frame: where it was built: in a buffer of ec_links_tx_get_both()
+ * @tx: result of that
+ * @now: time
+ *
+ * Context: The owner of the bus access, in the RCU read section of ec_links_tx_get_both(). RT-safe.
+ * Return: as ec_links_send().
+ */
+int ec_links_transmit_both(struct ec_links *l, struct ec_slot *slot, u8 *frame,
+			   const struct ec_tx *tx, u64 now)
+{
+	const struct leaving f = {
+		.sides = tx->sides,
+		.dev = { tx->dev, tx->backup },
+		.buf = { frame, tx->copy },
+	};
+
+	slot->sent = frame;
+	ec_slot_arm(&l->slots, slot, frame, tx->sides, now);
+	memcpy(tx->copy, frame, ec_slot_padded(slot));
+	return leave(l, slot, &f);
 }
 
 /**

@@ -248,6 +248,10 @@ struct ec_tx {
 	struct ecdev *dev;
 	/** @sides: mask of the links */
 	u8 sides;
+	/** @backup: for a frame of both links, built in a buffer of @dev: device of the backup link */
+	struct ecdev *backup;
+	/** @copy: and its buffer */
+	u8 *copy;
 };
 
 /**
@@ -270,6 +274,10 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
 		tx->link = is_power_of_2(sides) ? &l->link[__ffs(sides)] : NULL;
 	return tx->link ? ec_link_tx_get(tx->link, &tx->dev) : NULL;
 }
+
+u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx);
+int ec_links_transmit_both(struct ec_links *l, struct ec_slot *slot, u8 *frame,
+			   const struct ec_tx *tx, u64 now);
 
 /**
  * ec_ring_way() - on which link does an acyclic datagram reach its slave?

@@ -223,3 +223,18 @@ void ec_slot_unkeep(struct ec_slots *s, struct ec_slot *slot)
 	ec_slot_choose(slot);
 	raw_spin_unlock_irqrestore(&s->both, flags);
 }
+
+/**
+ * ec_slots_forget_sent() - the buffers of a device are not used any more
+ * @s: slots
+ *
+ * Context: Process, while the links have no bus access.
+ */
+void ec_slots_forget_sent(struct ec_slots *s)
+{
+	unsigned int i;
+
+	for (i = 0; i < EC_SLOTS; i++)
+		if (s->slot[i].sent != s->slot[i].frame)
+			s->slot[i].sent = NULL;
+}

@@ -67,13 +67,21 @@ struct ec_slot {
 	 * in the memory of the device, see struct ec_link.keep
 	 */
 	const u8 *reply;
-	/** @got: the same of each link that has returned a copy, but for blank ones */
+	/**
+	 * @got: the same of each link that has returned a copy; if that is blank, what was sent
+	 * may stand for it
+	 */
 	const u8 *got[EC_MAX_LINKS];
 	/**
 	 * @copy: memory for the copy of each link, behind the EtherType; with one link that of
 	 * @frame
 	 */
 	u8 *copy[EC_MAX_LINKS];
+	/**
+	 * @sent: with two links: where the sent Ethernet frame is: @frame, or a buffer of a device,
+	 * see ec_slot_sent()
+	 */
+	const u8 *sent;
 	/**
 	 * @frame: the sent Ethernet frame, or only headers of its datagrams, see ec_slot_arm();
 	 * with one link the received copy overwrites it
@@ -116,6 +124,7 @@ bool ec_slot_cancel(struct ec_slot *slot, u64 now_ns);
 bool ec_slot_settle(struct ec_slot *slot);
 bool ec_slot_disarm(struct ec_slot *slot, u8 sides);
 void ec_slot_unkeep(struct ec_slots *s, struct ec_slot *slot);
+void ec_slots_forget_sent(struct ec_slots *s);
 
 /* initial values of a slot that was just taken */
 static inline struct ec_slot *ec_slot_taken(struct ec_slot *slot)
@@ -199,15 +208,13 @@ static inline bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
 	return side < EC_MAX_LINKS && slot->sides & ~slot->back & BIT(side);
 }
 
-/* The reply is the copy of the first link that has one, or what was sent. */
+/* The reply is the copy of the first link that has one, best one that slaves have processed. */
 static inline void ec_slot_choose(struct ec_slot *slot)
 {
-	u8 copies = slot->back & ~slot->blank;
+	u8 copies = (slot->back & ~slot->blank) ?: slot->back;
 
 	if (copies)
 		slot->reply = slot->got[copies & BIT(0) ? 0 : 1];
-	else if (slot->back)
-		slot->reply = slot->frame + EC_ETH_HDR;
 }
 
 /* Leave the state FILL: with the last copy the slot is DONE. */
@@ -234,11 +241,15 @@ static inline bool ec_slot_complete(struct ec_slot *slot)
 static inline bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, bool keep,
 				bool blank)
 {
-	if (blank && slot->sides != BIT(side)) {
+	if (slot->sides == BIT(side))
+		blank = false;
+	if (blank)
 		WRITE_ONCE(slot->blank, slot->blank | BIT(side));
-	} else if (keep) {
+	if (keep) {
 		slot->got[side] = data;
 		slot->kept |= BIT(side);
+	} else if (blank && slot->sent == slot->frame) {
+		slot->got[side] = slot->frame + EC_ETH_HDR;
 	} else {
 		slot->got[side] = slot->copy[side];
 		memcpy(slot->copy[side] + EC_FRAME_HDR, data + EC_FRAME_HDR,
@@ -258,6 +269,24 @@ static inline size_t ec_slot_padded(const struct ec_slot *slot)
 static inline u8 *ec_slot_body(struct ec_slot *slot)
 {
 	return slot->frame + EC_ETH_HDR;
+}
+
+/**
+ * ec_slot_sent() - the frame of a slot as it was sent on two links
+ * @slot: slot in state DONE
+ *
+ * A buffer of a device may have been used again: then it has another number.
+ *
+ * Context: The owner of the bus access, in an RCU read section. RT-safe.
+ * Return: the Ethernet frame, or NULL.
+ */
+static inline const u8 *ec_slot_sent(const struct ec_slot *slot)
+{
+	const u8 *sent = slot->sent;
+
+	if (sent == slot->frame || (sent && get_unaligned_le32(sent + 8) == slot->seq))
+		return sent;
+	return NULL;
 }
 
 /*

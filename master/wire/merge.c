@@ -16,30 +16,77 @@ static u64 merge_bits(u64 a, u64 b, u64 sent)
 	return b ^ ((a ^ b) & (a ^ sent));
 }
 
+/* Are @len bytes alike? */
+static bool is_same(const u8 *a, const u8 *b, size_t len)
+{
+	const u8 *end = a + len, *pieces = a + len / MERGE_PIECE * MERGE_PIECE;
+	u64 other;
+
+	for (; a != pieces; a += MERGE_PIECE, b += MERGE_PIECE) {
+		other = get_unaligned_le64(a) ^ get_unaligned_le64(b);
+		other |= get_unaligned_le64(a + 8) ^ get_unaligned_le64(b + 8);
+		other |= get_unaligned_le64(a + 16) ^ get_unaligned_le64(b + 16);
+		other |= get_unaligned_le64(a + 24) ^ get_unaligned_le64(b + 24);
+		if (other)
+			return false;
+	}
+	for (; a != end; a++, b++)
+		if (*a != *b)
+			return false;
+	return true;
+}
+
 /*
  * Bits that slaves of either side have changed; each bit belongs to a slave of one side. One that
  * both copies have reached, as a break has just healed, has changed both in the same way. Mostly a
- * piece belongs to one side.
+ * piece belongs to one side. Return: end of the last piece that has changed in @a.
  */
-static void merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
+static size_t merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
 {
-	size_t i, j;
+	size_t i, j, end = 0;
 
 	memcpy(to, b, len);
 	for (i = 0; i + MERGE_PIECE <= len; i += MERGE_PIECE) {
-		u64 changed = 0;
-
-		for (j = i; j < i + MERGE_PIECE; j += sizeof(u64))
-			changed |= get_unaligned_le64(a + j) ^ get_unaligned_le64(sent + j);
-		if (!changed)
+		if (is_same(a + i, sent + i, MERGE_PIECE))
 			continue;
 		for (j = i; j < i + MERGE_PIECE; j += sizeof(u64))
 			put_unaligned_le64(merge_bits(get_unaligned_le64(a + j),
 						      get_unaligned_le64(b + j),
 						      get_unaligned_le64(sent + j)), to + j);
+		end = j;
 	}
-	for (; i < len; i++)
+	for (; i < len; i++) {
+		if (a[i] == sent[i])
+			continue;
 		to[i] = (u8)merge_bits(a[i], b[i], sent[i]);
+		end = len;
+	}
+	return end;
+}
+
+/**
+ * ec_merge_data() - merge the data of one datagram that slaves at both ends have processed
+ * @to: result; none of the others
+ * @a: data of one copy
+ * @b: data of the other copy
+ * @sent: data as both were sent
+ * @len: bytes of each
+ * @cut: bytes that belong to @a, as it was the last time, and is now: mostly the slaves have their
+ *	data in the order in which they are connected. Then the rest is @b, and nothing has to be
+ *	merged. Any value is right
+ *
+ * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ */
+void ec_merge_data(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len, u16 *cut)
+{
+	size_t at = *cut;
+
+	if (at > len || !is_same(a + at, sent + at, len - at) || !is_same(b, sent, at)) {
+		*cut = merge_changed(to, a, b, sent, len);
+		return;
+	}
+	memcpy(to, a, at);
+	memcpy(to + at, b + at, len - at);
 }
 
 static void merge_or(u8 *to, const u8 *a, const u8 *b, size_t len)

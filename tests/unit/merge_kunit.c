@@ -125,12 +125,41 @@ static void merge_length_beyond_frame_ends_it(struct kunit *test)
 	KUNIT_EXPECT_EQ(test, merged(0), 1);
 }
 
+/* What belongs to one copy is known from the last time, or wrong; or the copies alternate. */
+static void merge_any_cut_is_right(struct kunit *test)
+{
+	unsigned int guess, apart, i;
+	u8 right[75];
+	u16 cut;
+
+	for (apart = 0; apart < 2; apart++) {
+		merge_build();
+		for (i = 0; i < 75; i += 6)
+			at[apart || i < 36 ? 1 : 2][2][i] = i;
+		for (i = 3; apart && i < 75; i += 6)
+			at[2][2][i] = i;
+		for (i = 0; i < 75; i++)
+			right[i] = at[1][2][i] != 0xa5 ? at[1][2][i] : at[2][2][i];
+		for (guess = 0; guess <= 76; guess++) {
+			cut = guess;
+			ec_merge_data(at[3][2], at[1][2], at[2][2], at[0][2], 75, &cut);
+			KUNIT_ASSERT_MEMEQ(test, at[3][2], right, 75);
+			i = cut;
+			memset(at[3][2], 0, 75);
+			ec_merge_data(at[3][2], at[1][2], at[2][2], at[0][2], 75, &cut);
+			KUNIT_ASSERT_MEMEQ(test, at[3][2], right, 75);
+			KUNIT_ASSERT_EQ(test, cut, i);
+		}
+	}
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(merge_processed_copy_is_taken),
 	KUNIT_CASE(merge_broadcast_counts_both_sides),
 	KUNIT_CASE(merge_bits_are_of_their_side),
 	KUNIT_CASE(merge_same_change_of_both_sides_stays),
 	KUNIT_CASE(merge_length_beyond_frame_ends_it),
+	KUNIT_CASE(merge_any_cut_is_right),
 	{}
 };
 
