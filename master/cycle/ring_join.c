@@ -131,6 +131,11 @@ bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_s
 	u8 processed = slot->back & ~slot->blank, crossed = processed & slot->crossed;
 	const u8 *sent;
 
+	/* both were received, and the one that was processed has passed all slaves, as the last */
+	if (likely(is_power_of_2(crossed) && crossed == processed && c->crossed &&
+		   slot->back == slot->sides && !c->mute &&
+		   READ_ONCE(c->links->ring.state) == EC_RING_CLOSED))
+		return false;
 	if (!f->count)
 		return false;
 	note_mute(c, slot->sides & ~slot->back);

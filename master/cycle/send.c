@@ -39,6 +39,7 @@ struct send {
 	u64 queued;	/* domains */
 	u64 now;
 	u32 dc;		/* clock datagrams still to be sent */
+	bool both;	/* frames of a ring are built in a buffer of the main device */
 	struct ec_riding riding;	/* of the last frame */
 	struct ec_cyc_wire wire;
 };
@@ -120,20 +121,27 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->riding = send->riding;
 }
 
-/* What rides in a frame of both ends is joined in any case, with what was sent. */
-static u8 *get_both(struct ec_cycle *c, struct ec_tx *tx)
+/*
+ * In a ring clock datagrams go one way, process data both ways. What rides in a frame is joined, with
+ * the frame as it was sent: it has to be in the slot.
+ */
+static noinline u8 *get_buffer(struct ec_cycle *c, const struct send *send, bool alone,
+			       struct ec_tx *tx)
 {
-	tx->sides = c->links->sides;
+	struct ec_links *l = c->links;
+
+	if (alone)
+		return ec_links_tx_get(l, BIT(EC_MAIN), tx);
+	tx->sides = l->sides;
 	tx->link = NULL;
-	return atomic_read(&c->riders->queued) ? NULL : ec_links_tx_get_both(c->links, tx);
+	return send->both && !atomic_read(&c->riders->queued) ? ec_links_tx_get_both(l, tx) : NULL;
 }
 
 /* One frame from datagram @g on; returns the first datagram of the next. */
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_links *l = c->links;
-	/* the clock datagrams of a ring go one way, process data both ways */
-	bool alone = unlikely(!l->only) && send->dc, both;
+	bool alone = unlikely(!l->only) && send->dc;
 	struct ec_slot *slot = NULL;
 	struct ec_tx tx;
 	unsigned int count;
@@ -148,16 +156,15 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
-	both = unlikely(!l->only) && !alone;
-	if (unlikely(both))
-		frame = get_both(c, &tx);
+	if (likely(l->only))
+		frame = ec_links_tx_get(l, l->sides, &tx);
 	else
-		frame = ec_links_tx_get(l, unlikely(alone) ? BIT(EC_MAIN) : l->sides, &tx);
+		frame = get_buffer(c, send, alone, &tx);
 	frame = frame ?: slot->frame;
 	count = fill(c, slot, frame, g, send, alone);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	if (unlikely(both) && frame != slot->frame)
+	if (unlikely(send->both) && !alone && frame != slot->frame)
 		ret = ec_links_transmit_both(l, slot, frame, &tx, send->now);
 	else
 		ret = ec_links_transmit(l, slot, frame, &tx, send->now);
@@ -273,9 +280,12 @@ int ec_cycle_do_send(struct ec_cycle *c, const struct ec_ioc_send *what)
 	if (what->flags & EC_CYC_CLOCKS)
 		send.dc = ec_dc_datagrams_wanted(&c->clock, what->flags);
 	rcu_read_lock();
-	/* first, so that its delay after the send is constant */
-	if (unlikely(!l->only) && send.dc)
-		send_behind(c, &send);
+	if (unlikely(!l->only)) {
+		send.both = ec_links_keep_sent(l);
+		/* first, so that its delay after the send is constant */
+		if (send.dc)
+			send_behind(c, &send);
+	}
 	/* frames that are repeated go behind all others: a disturbance may last a while */
 	do {
 		while (g < c->layout.n_dgrams || send.dc) {

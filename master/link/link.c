@@ -112,39 +112,44 @@ static u8 live(const struct ec_links *l, u8 sides)
 struct leaving {
 	/** @sides: mask of their links */
 	u8 sides;
+	/** @unsent: mask of links that have refused it */
+	u8 unsent;
 	/** @full: mask of links without a buffer */
 	u8 full;
-	/** @dev: the devices */
-	struct ecdev *dev[EC_MAX_LINKS];
-	/** @buf: their buffers */
-	u8 *buf[EC_MAX_LINKS];
+	/** @err: the last reason */
+	int err;
 };
 
-/* Return: 0: at least one link has sent it; or -errno, the slot is in BUILD again. */
-static int leave(struct ec_links *l, struct ec_slot *slot, const struct leaving *f)
+/* a link refuses a frame */
+static noinline void note_refusal(struct leaving *f, unsigned int side, int err)
 {
-	size_t len = ec_slot_padded(slot);
-	u8 unsent = 0, full = f->full;
-	int ret = 0, err;
-	unsigned int i;
+	f->unsent |= BIT(side);
+	if (err == -EBUSY)
+		f->full |= BIT(side);
+	f->err = err;
+}
 
-	for (i = 0; i < EC_MAX_LINKS; i++) {
-		if (!(f->sides & BIT(i)))
-			continue;
-		f->buf[i][7] |= i;
-		err = ec_link_send_buf(&l->link[i], f->dev[i], f->buf[i], len);
-		if (likely(!err))
-			continue;
-		unsent |= BIT(i);
-		if (err == -EBUSY)
-			full |= BIT(i);
-		ret = err;
-	}
+/* one of its links */
+static __always_inline void leave(struct ec_links *l, const struct ec_slot *slot, unsigned int side,
+				  struct ecdev *dev, u8 *buf, struct leaving *f)
+{
+	int err;
+
+	buf[7] |= side;
+	err = ec_link_send_buf(&l->link[side], dev, buf, ec_slot_padded(slot));
+	if (unlikely(err))
+		note_refusal(f, side, err);
+}
+
+/* Return: 0: at least one link has sent it; or -errno, the slot is in BUILD again. */
+static __always_inline int has_left(struct ec_links *l, struct ec_slot *slot,
+				    const struct leaving *f)
+{
 	/* a frame whose reply was received counts as sent */
-	if (unlikely(unsent) && ec_slot_disarm(slot, unsent))
-		return ret;
-	if (unlikely(full))
-		ec_links_count(l, full, tx_errors);
+	if (unlikely(f->unsent) && ec_slot_disarm(slot, f->unsent))
+		return f->err;
+	if (unlikely(f->full))
+		ec_links_count(l, f->full, tx_errors);
 	return 0;
 }
 
@@ -165,55 +170,68 @@ static int leave(struct ec_links *l, struct ec_slot *slot, const struct leaving 
  */
 int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 {
-	struct leaving f = { .sides = live(l, sides) };
-	int ret = -ENODEV;
+	struct leaving f = { .sides = live(l, sides), .err = -ENODEV };
+	struct ecdev *dev[EC_MAX_LINKS];
+	u8 *buf[EC_MAX_LINKS];
 	unsigned int i;
 
 	for (i = 0; i < EC_MAX_LINKS; i++) {
 		if (!(f.sides & BIT(i)))
 			continue;
-		f.buf[i] = ec_link_tx_get(&l->link[i], &f.dev[i]);
-		if (likely(f.buf[i]))
+		buf[i] = ec_link_tx_get(&l->link[i], &dev[i]);
+		if (likely(buf[i]))
 			continue;
 		f.sides &= ~BIT(i);
-		if (!f.dev[i])
+		if (!dev[i])
 			continue;
 		f.full |= BIT(i);
-		ret = -EBUSY;
+		f.err = -EBUSY;
 	}
 	if (!f.sides)
-		return ret;
+		return f.err;
 	slot->sent = slot->frame;
 	ec_slot_arm(&l->slots, slot, slot->frame, f.sides, now);
-	for (i = 0; i < EC_MAX_LINKS; i++)
-		if (f.sides & BIT(i))
-			memcpy(f.buf[i], slot->frame, ec_slot_padded(slot));
-	return leave(l, slot, &f);
+	for (i = 0; i < EC_MAX_LINKS; i++) {
+		if (!(f.sides & BIT(i)))
+			continue;
+		memcpy(buf[i], slot->frame, ec_slot_padded(slot));
+		leave(l, slot, i, dev[i], buf[i], &f);
+	}
+	return has_left(l, slot, &f);
 }
 
 /**
- * ec_links_tx_get_both() - a transmit buffer in which a frame of the cycle may be built for a ring
+ * ec_links_keep_sent() - may frames of the cycle be built in buffers of the main device in a ring?
  * @l: two links
- * @tx: result, for ec_links_transmit_both()
  *
- * It is the buffer of the main device, where the frame stays, so that the copies can be compared
- * with it; that saves a copy of the frame. The next frame that is sent has to be the one built here.
+ * They may if it keeps them, so that the copies can be compared with them: that saves a copy of each
+ * frame. By its number a frame is known again. Both links have to work.
  *
  * Context: The owner of the bus access, in an RCU read section. RT-safe.
- * Return: EC_ETH_MAX bytes. NULL: the frame has to be built in its slot, and ec_links_transmit()
- * sends it, on the links that can.
+ * Return: whether they may, by ec_links_tx_get_both().
+ */
+bool ec_links_keep_sent(const struct ec_links *l)
+{
+	const struct ecdev *main = READ_ONCE(l->link[EC_MAIN].dev);	/* may be withdrawn now */
+
+	return main && main->ops->stays && l->slots.numbered && live(l, l->sides) == l->sides;
+}
+
+/**
+ * ec_links_tx_get_both() - a transmit buffer in which a frame may be built for both ends of a ring
+ * @l: two links, for which ec_links_keep_sent() has returned true
+ * @tx: result, for ec_links_transmit_both()
+ *
+ * The next frame that is sent has to be the one built here.
+ *
+ * Context: The owner of the bus access, in the RCU read section of ec_links_keep_sent(). RT-safe.
+ * Return: EC_ETH_MAX bytes in the main device. NULL: the frame has to be built in its slot, and
+ * ec_links_transmit() sends it, on the links that can.
  */
 u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx)
 {
-	const struct ecdev *main = READ_ONCE(l->link[EC_MAIN].dev);	/* may be withdrawn now */
-	u8 *frame;
+	u8 *frame = ec_link_tx_get(&l->link[EC_MAIN], &tx->dev);
 
-	tx->sides = l->sides;
-	tx->link = NULL;
-	/* by its number the frame is known again */
-	if (!main || !main->ops->stays || !l->slots.numbered || live(l, l->sides) != l->sides)
-		return NULL;
-	frame = ec_link_tx_get(&l->link[EC_MAIN], &tx->dev);
 	tx->copy = ec_link_tx_get(&l->link[EC_BACKUP], &tx->backup);
 	return tx->copy ? frame : NULL;
 }
@@ -232,16 +250,14 @@ u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx)
 int ec_links_transmit_both(struct ec_links *l, struct ec_slot *slot, u8 *frame,
 			   const struct ec_tx *tx, u64 now)
 {
-	const struct leaving f = {
-		.sides = tx->sides,
-		.dev = { tx->dev, tx->backup },
-		.buf = { frame, tx->copy },
-	};
+	struct leaving f = { 0 };
 
 	slot->sent = frame;
 	ec_slot_arm(&l->slots, slot, frame, tx->sides, now);
 	memcpy(tx->copy, frame, ec_slot_padded(slot));
-	return leave(l, slot, &f);
+	leave(l, slot, EC_MAIN, tx->dev, frame, &f);
+	leave(l, slot, EC_BACKUP, tx->backup, tx->copy, &f);
+	return has_left(l, slot, &f);
 }
 
 /**
@@ -270,10 +286,18 @@ void ec_link_poll(struct ec_link *link)
 void ec_links_poll_each(struct ec_links *l)
 {
 	struct ec_link *link;
+	bool keep = true;
 
+	ec_links_for_each(l, link) {
+		const struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
+
+		keep &= !dev || dev->ops->keeps;
+	}
+	WRITE_ONCE(l->slots.one_thread, keep);
 	ec_links_for_each(l, link)
 		if (l->sides & BIT(link->side))
 			ec_link_poll_cycle(link);
+	WRITE_ONCE(l->slots.one_thread, false);
 }
 
 /**

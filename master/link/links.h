@@ -275,6 +275,7 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
 	return tx->link ? ec_link_tx_get(tx->link, &tx->dev) : NULL;
 }
 
+bool ec_links_keep_sent(const struct ec_links *l);
 u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx);
 int ec_links_transmit_both(struct ec_links *l, struct ec_slot *slot, u8 *frame,
 			   const struct ec_tx *tx, u64 now);

@@ -35,7 +35,7 @@ static __always_inline enum ec_match hold_slot(struct ec_slot *slot, u32 seq, u8
 /* Fill the slot of a master with two links. Return: @last: the slot is DONE. */
 static __always_inline enum ec_match fill_copy(const struct ec_link *by, struct ec_slot *slot,
 					       u32 seq, u8 side, const u8 *data, size_t len,
-					       bool *last)
+					       bool keep, bool *last)
 {
 	u16 touched = 0;
 	enum ec_match what = hold_slot(slot, seq, side, data, len, &touched);
@@ -44,7 +44,7 @@ static __always_inline enum ec_match fill_copy(const struct ec_link *by, struct 
 		return what;
 	if (side != by->side)
 		slot->crossed |= BIT(side);
-	*last = ec_slot_take(slot, side, data, READ_ONCE(by->keep) && !slot->done, !touched);
+	*last = ec_slot_take(slot, side, data, keep, !touched);
 	return what;
 }
 
@@ -60,22 +60,11 @@ static noinline enum ec_match fill_locked(struct ec_slots *s, const struct ec_li
 
 	raw_spin_lock_irqsave(&s->both, flags);
 	done = slot->done;
-	what = fill_copy(by, slot, seq, side, data, len, &last);
+	what = fill_copy(by, slot, seq, side, data, len, READ_ONCE(by->keep) && !done, &last);
 	raw_spin_unlock_irqrestore(&s->both, flags);
 	if (last && done)
 		done(slot);
 	return what;
-}
-
-/* Does the thread that polls this device for the cycle poll the other one, too? */
-static __always_inline bool one_thread(const struct ec_link *by)
-{
-	const struct ecdev *other;
-
-	if (!READ_ONCE(by->keep))
-		return false;
-	other = READ_ONCE(by->links->link[!by->side].dev);
-	return !other || other->ops->keeps;
 }
 
 static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link *by,
@@ -85,8 +74,8 @@ static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link 
 	u32 seq = s->numbered ? get_unaligned_le32(src + 2) : READ_ONCE(slot->seq);
 	bool last;
 
-	if (one_thread(by) && !slot->done)
-		return fill_copy(by, slot, seq, src[1], data, len, &last);
+	if (READ_ONCE(by->keep) && s->one_thread && !slot->done)
+		return fill_copy(by, slot, seq, src[1], data, len, true, &last);
 	return fill_locked(s, by, slot, seq, src[1], data, len);
 }
 

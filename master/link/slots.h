@@ -101,6 +101,8 @@ struct ec_slots {
 	u8 *merged;
 	/** @both: with a second link: both may receive their copies of a frame at the same time */
 	raw_spinlock_t both;
+	/** @one_thread: that which polls both links for the cycle now delivers all their frames */
+	bool one_thread;
 	/** @hint: where the search for a free slot begins */
 	atomic_t hint;
 	/** @seq: sequence number of the last frame */
@@ -209,7 +211,7 @@ static inline bool ec_slot_awaits(const struct ec_slot *slot, u8 side)
 }
 
 /* The reply is the copy of the first link that has one, best one that slaves have processed. */
-static inline void ec_slot_choose(struct ec_slot *slot)
+static __always_inline void ec_slot_choose(struct ec_slot *slot)
 {
 	u8 copies = (slot->back & ~slot->blank) ?: slot->back;
 
@@ -218,7 +220,7 @@ static inline void ec_slot_choose(struct ec_slot *slot)
 }
 
 /* Leave the state FILL: with the last copy the slot is DONE. */
-static inline bool ec_slot_complete(struct ec_slot *slot)
+static __always_inline bool ec_slot_complete(struct ec_slot *slot)
 {
 	bool complete = slot->back == slot->sides;
 
@@ -238,8 +240,8 @@ static inline bool ec_slot_complete(struct ec_slot *slot)
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  * Return: whether it was the last copy: @done is to be called.
  */
-static inline bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data, bool keep,
-				bool blank)
+static __always_inline bool ec_slot_take(struct ec_slot *slot, u8 side, const u8 *data,
+					 bool keep, bool blank)
 {
 	if (slot->sides == BIT(side))
 		blank = false;
