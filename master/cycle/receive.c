@@ -254,7 +254,7 @@ static void receive_judge(struct ec_cycle *c, struct ec_status *page)
 		WRITE_ONCE(st->age, judge_age(c, d, i));
 		note_wkc(c, d, i, wkc, state);
 	}
-	if (unlikely(!c->links->only))
+	if (unlikely(c->from_backup | c->shown_backup))
 		show_backup(c, page);
 	if (ec_units_of(c) && !ec_units_are_calm(c->units, steady))
 		ec_units_judge(c, c->sent | c->back);
@@ -324,6 +324,16 @@ static bool has_reply(const struct ec_cycle *c, const struct ec_cyc_flight *f,
 	return unlikely(!c->links->only) && has_copies(c, f, slot, now);
 }
 
+/* In a ring: are both copies of a frame needed? The reply is chosen. */
+static bool has_two(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot)
+{
+	bool two;
+
+	if (likely(f->count && !f->riding.mask && ec_ring_is_steady(c, slot, &two)))
+		return two;
+	return ec_ring_join(c, f, slot);
+}
+
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
 	return is_overdue(c, f, now) && ec_slot_cancel(f->slot, *now);
@@ -375,7 +385,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (has_reply(c, f, slot, &now)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
-			irq |= take_frame(c, f, unlikely(!only) && ec_ring_join(c, f, slot));
+			irq |= take_frame(c, f, unlikely(!only) && has_two(c, f, slot));
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);
 			else

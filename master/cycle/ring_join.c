@@ -76,7 +76,9 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 {
 	const struct ec_slot *slot = f->slot;
 	size_t pos = at - slot->reply;
-	const u8 *a = slot->got[EC_MAIN] + pos, *b = slot->got[EC_BACKUP] + pos, *sent;
+	/* with data it is in @copy, or in memory of the device that is the master's until the next poll */
+	u8 *a = (u8 *)slot->got[EC_MAIN] + pos;
+	const u8 *b = slot->got[EC_BACKUP] + pos, *sent;
 	u16 wa = get_unaligned_le16(a + d->len), wb = get_unaligned_le16(b + d->len);
 	u8 *to = c->links->slots.merged + pos;
 
@@ -93,7 +95,7 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 	else if (!wa)
 		return b;
 	else
-		ec_merge_data(to, a, b, sent, d->len, &d->cut);
+		to = ec_merge_data(to, a, b, sent, d->len, &d->cut);
 	put_unaligned_le16(wa + wb, to + d->len);
 	return to;
 }
@@ -131,11 +133,6 @@ bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_s
 	u8 processed = slot->back & ~slot->blank, crossed = processed & slot->crossed;
 	const u8 *sent;
 
-	/* both were received, and the one that was processed has passed all slaves, as the last */
-	if (likely(is_power_of_2(crossed) && crossed == processed && c->crossed &&
-		   slot->back == slot->sides && !c->mute &&
-		   READ_ONCE(c->links->ring.state) == EC_RING_CLOSED))
-		return false;
 	if (!f->count)
 		return false;
 	note_mute(c, slot->sides & ~slot->back);

@@ -214,26 +214,11 @@ bool ec_links_keep_sent(const struct ec_links *l)
 {
 	const struct ecdev *main = READ_ONCE(l->link[EC_MAIN].dev);	/* may be withdrawn now */
 
-	return main && main->ops->stays && l->slots.numbered && live(l, l->sides) == l->sides;
-}
-
-/**
- * ec_links_tx_get_both() - a transmit buffer in which a frame may be built for both ends of a ring
- * @l: two links, for which ec_links_keep_sent() has returned true
- * @tx: result, for ec_links_transmit_both()
- *
- * The next frame that is sent has to be the one built here.
- *
- * Context: The owner of the bus access, in the RCU read section of ec_links_keep_sent(). RT-safe.
- * Return: EC_ETH_MAX bytes in the main device. NULL: the frame has to be built in its slot, and
- * ec_links_transmit() sends it, on the links that can.
- */
-u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx)
-{
-	u8 *frame = ec_link_tx_get(&l->link[EC_MAIN], &tx->dev);
-
-	tx->copy = ec_link_tx_get(&l->link[EC_BACKUP], &tx->backup);
-	return tx->copy ? frame : NULL;
+	if (!main || !main->ops->stays || !l->slots.numbered)
+		return false;
+	return likely(READ_ONCE(l->link[EC_MAIN].up) && READ_ONCE(l->link[EC_BACKUP].up) &&
+		      !READ_ONCE(l->link[EC_MAIN].mute) && !READ_ONCE(l->link[EC_BACKUP].mute)) ||
+	       live(l, l->sides) == l->sides;
 }
 
 /**

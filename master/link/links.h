@@ -132,7 +132,8 @@ static inline bool ec_links_attached(const struct ec_links *l)
 {
 	const struct ec_link *only = READ_ONCE(l->only);
 
-	return likely(only) ? !!READ_ONCE(only->dev) : ec_links_one_attached(l);
+	return likely(only) ? !!READ_ONCE(only->dev) :
+			      READ_ONCE(l->link[EC_MAIN].dev) || ec_links_one_attached(l);
 }
 
 static inline bool ec_links_any_device(const struct ec_links *l)
@@ -276,7 +277,26 @@ static __always_inline u8 *ec_links_tx_get(struct ec_links *l, u8 sides, struct 
 }
 
 bool ec_links_keep_sent(const struct ec_links *l);
-u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx);
+
+/**
+ * ec_links_tx_get_both() - a transmit buffer in which a frame may be built for both ends of a ring
+ * @l: two links, for which ec_links_keep_sent() has returned true
+ * @tx: result, for ec_links_transmit_both()
+ *
+ * The next frame that is sent has to be the one built here.
+ *
+ * Context: The owner of the bus access, in the RCU read section of ec_links_keep_sent(). RT-safe.
+ * Return: EC_ETH_MAX bytes in the main device. NULL: the frame has to be built in its slot, and
+ * ec_links_transmit() sends it, on the links that can.
+ */
+static inline u8 *ec_links_tx_get_both(struct ec_links *l, struct ec_tx *tx)
+{
+	u8 *frame = ec_link_tx_get(&l->link[EC_MAIN], &tx->dev);
+
+	tx->copy = ec_link_tx_get(&l->link[EC_BACKUP], &tx->backup);
+	return tx->copy ? frame : NULL;
+}
+
 int ec_links_transmit_both(struct ec_links *l, struct ec_slot *slot, u8 *frame,
 			   const struct ec_tx *tx, u64 now);
 

@@ -67,6 +67,35 @@ static noinline enum ec_match fill_locked(struct ec_slots *s, const struct ec_li
 	return what;
 }
 
+/*
+ * The copy of a frame with one datagram, as the cycle has them, whose address slaves do not count:
+ * same() in few steps. It stays in the memory of the device. Return: false: nothing was changed.
+ */
+static __always_inline bool fill_plain(const struct ec_link *by, struct ec_slot *slot, u32 seq,
+				       u8 side, const u8 *data, size_t len)
+{
+	const u8 *sent = ec_slot_body(slot) + EC_FRAME_HDR, *got = data + EC_FRAME_HDR;
+	unsigned int body, n;
+
+	if (!ec_slot_hold(slot, EC_SLOT_SENT, seq))
+		return false;
+	body = slot->eth_len - EC_ETH_HDR - EC_FRAME_HDR;
+	n = body - EC_DGRAM_OVERHEAD;
+	if (!ec_slot_awaits(slot, side) || len < body + EC_FRAME_HDR ||
+	    get_unaligned_le16(data) != (EC_FRAME_TYPE_DGRAM << 12 | body) ||
+	    get_unaligned_le16(sent + 6) != n ||
+	    (get_unaligned_le64(sent) ^ get_unaligned_le64(got)) &
+	    (EC_SAME_HEADER | (u64)EC_DGRAM_MORE << 48)) {
+		ec_slot_release(slot, EC_SLOT_SENT);
+		return false;
+	}
+	if (side != by->side)
+		slot->crossed |= BIT(side);
+	ec_slot_take(slot, side, data, true,
+		     !(get_unaligned_le16(got + 8) | get_unaligned_le16(got + EC_DGRAM_HDR + n)));
+	return true;
+}
+
 static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link *by,
 				       struct ec_slot *slot, const u8 *src, const u8 *data,
 				       size_t len)
@@ -74,9 +103,11 @@ static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link 
 	u32 seq = s->numbered ? get_unaligned_le32(src + 2) : READ_ONCE(slot->seq);
 	bool last;
 
-	if (READ_ONCE(by->keep) && s->one_thread && !slot->done)
-		return fill_copy(by, slot, seq, src[1], data, len, true, &last);
-	return fill_locked(s, by, slot, seq, src[1], data, len);
+	if (!READ_ONCE(by->keep) || !s->one_thread || slot->done)
+		return fill_locked(s, by, slot, seq, src[1], data, len);
+	if (likely(fill_plain(by, slot, seq, src[1], data, len)))
+		return EC_MATCH_DONE;
+	return fill_copy(by, slot, seq, src[1], data, len, true, &last);
 }
 
 /*

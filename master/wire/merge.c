@@ -16,22 +16,40 @@ static u64 merge_bits(u64 a, u64 b, u64 sent)
 	return b ^ ((a ^ b) & (a ^ sent));
 }
 
-/* Are @len bytes alike? */
+/* Are two pieces alike? */
+static bool is_same_piece(const u8 *a, const u8 *b)
+{
+	u64 other = 0;
+	size_t i;
+
+	for (i = 0; i < MERGE_PIECE; i += sizeof(u64))
+		other |= get_unaligned_le64(a + i) ^ get_unaligned_le64(b + i);
+	return !other;
+}
+
+/* the bits in which 4 words differ */
+static __always_inline u64 other_bits(const u8 *a, const u8 *b)
+{
+	u64 other = get_unaligned_le64(a) ^ get_unaligned_le64(b);
+
+	other |= get_unaligned_le64(a + 8) ^ get_unaligned_le64(b + 8);
+	other |= get_unaligned_le64(a + 16) ^ get_unaligned_le64(b + 16);
+	return other | (get_unaligned_le64(a + 24) ^ get_unaligned_le64(b + 24));
+}
+
+/* Are @len bytes alike? Mostly they are. */
 static bool is_same(const u8 *a, const u8 *b, size_t len)
 {
-	const u8 *end = a + len, *pieces = a + len / MERGE_PIECE * MERGE_PIECE;
-	u64 other;
+	size_t i, pieces = len & ~(size_t)63;
 
-	for (; a != pieces; a += MERGE_PIECE, b += MERGE_PIECE) {
-		other = get_unaligned_le64(a) ^ get_unaligned_le64(b);
-		other |= get_unaligned_le64(a + 8) ^ get_unaligned_le64(b + 8);
-		other |= get_unaligned_le64(a + 16) ^ get_unaligned_le64(b + 16);
-		other |= get_unaligned_le64(a + 24) ^ get_unaligned_le64(b + 24);
-		if (other)
+	for (i = 0; i < pieces; i += 64)
+		if (other_bits(a + i, b + i) | other_bits(a + i + 32, b + i + 32))
 			return false;
-	}
-	for (; a != end; a++, b++)
-		if (*a != *b)
+	for (; i + sizeof(u64) <= len; i += sizeof(u64))
+		if (get_unaligned_le64(a + i) != get_unaligned_le64(b + i))
+			return false;
+	for (; i < len; i++)
+		if (a[i] != b[i])
 			return false;
 	return true;
 }
@@ -47,7 +65,7 @@ static size_t merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, si
 
 	memcpy(to, b, len);
 	for (i = 0; i + MERGE_PIECE <= len; i += MERGE_PIECE) {
-		if (is_same(a + i, sent + i, MERGE_PIECE))
+		if (is_same_piece(a + i, sent + i))
 			continue;
 		for (j = i; j < i + MERGE_PIECE; j += sizeof(u64))
 			put_unaligned_le64(merge_bits(get_unaligned_le64(a + j),
@@ -66,8 +84,8 @@ static size_t merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, si
 
 /**
  * ec_merge_data() - merge the data of one datagram that slaves at both ends have processed
- * @to: result; none of the others
- * @a: data of one copy
+ * @to: memory for the result; none of the others
+ * @a: data of one copy; the result may be written there
  * @b: data of the other copy
  * @sent: data as both were sent
  * @len: bytes of each
@@ -76,17 +94,18 @@ static size_t merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, si
  *	merged. Any value is right
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
+ * Return: the result: @to or @a.
  */
-void ec_merge_data(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len, u16 *cut)
+u8 *ec_merge_data(u8 *to, u8 *a, const u8 *b, const u8 *sent, size_t len, u16 *cut)
 {
 	size_t at = *cut;
 
 	if (at > len || !is_same(a + at, sent + at, len - at) || !is_same(b, sent, at)) {
 		*cut = merge_changed(to, a, b, sent, len);
-		return;
+		return to;
 	}
-	memcpy(to, a, at);
-	memcpy(to + at, b + at, len - at);
+	memcpy(a + at, b + at, len - at);
+	return a;
 }
 
 static void merge_or(u8 *to, const u8 *a, const u8 *b, size_t len)

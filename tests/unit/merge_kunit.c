@@ -129,7 +129,7 @@ static void merge_length_beyond_frame_ends_it(struct kunit *test)
 static void merge_any_cut_is_right(struct kunit *test)
 {
 	unsigned int guess, apart, i;
-	u8 right[75];
+	u8 right[75], copy[75], *got;
 	u16 cut;
 
 	for (apart = 0; apart < 2; apart++) {
@@ -142,13 +142,16 @@ static void merge_any_cut_is_right(struct kunit *test)
 			right[i] = at[1][2][i] != 0xa5 ? at[1][2][i] : at[2][2][i];
 		for (guess = 0; guess <= 76; guess++) {
 			cut = guess;
-			ec_merge_data(at[3][2], at[1][2], at[2][2], at[0][2], 75, &cut);
-			KUNIT_ASSERT_MEMEQ(test, at[3][2], right, 75);
+			memcpy(copy, at[1][2], 75);
+			got = ec_merge_data(at[3][2], copy, at[2][2], at[0][2], 75, &cut);
+			KUNIT_ASSERT_MEMEQ(test, got, right, 75);
 			i = cut;
+			memcpy(copy, at[1][2], 75);
 			memset(at[3][2], 0, 75);
-			ec_merge_data(at[3][2], at[1][2], at[2][2], at[0][2], 75, &cut);
-			KUNIT_ASSERT_MEMEQ(test, at[3][2], right, 75);
+			got = ec_merge_data(at[3][2], copy, at[2][2], at[0][2], 75, &cut);
+			KUNIT_ASSERT_MEMEQ(test, got, right, 75);
 			KUNIT_ASSERT_EQ(test, cut, i);
+			KUNIT_ASSERT_PTR_EQ(test, got, apart ? at[3][2] : copy);
 		}
 	}
 }
