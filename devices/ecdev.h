@@ -34,7 +34,8 @@ struct notifier_block;
  * @poll: optional. Delivers received frames through ecdev_receive(). Also
  *	called with @cycle off when a frame is overdue. In an RCU read section
  * @keeps: the frames that @poll has delivered stay as they are until it is called again, while
- *	@cycle is on, and the master may write to them; and until a grace period has ended after the device has stopped by itself
+ *	@cycle is on, and the master may write to them; and until a grace period has ended after
+ *	the device has stopped by itself
  * @cycle: optional. On: the caller polls, the device needs no interrupts
  * @link_up: mandatory. A bit test; callable from the cycle
  * @speed: optional. Mbit/s of the link when it is up, as @link_up knows it

@@ -51,13 +51,12 @@ struct ec_cyc_dgram {
 	u16 spare;
 	/** @full: working counter with all slaves */
 	u16 full;
-	/** @of_main: in a ring: that of the last copy of the main link, if both were processed */
-	u16 of_main;
-	/** @of_backup: likewise of the backup link */
-	u16 of_backup;
-	/** @of_open: struct ec_cycle.opened then */
-	u16 of_open;
-	/** @cut: likewise, bytes of the data that were those of the main link, see ec_merge_data() */
+	/**
+	 * @of: in a ring: working counters of the last copies, if both were processed, and struct
+	 * ec_cycle.opened then
+	 */
+	u64 of;
+	/** @cut: likewise, bytes of the main link in the last data, see ec_merge_data() */
 	u16 cut;
 	/** @first_copy: first area that is copied into it, in struct ec_layout.areas */
 	u32 first_copy;

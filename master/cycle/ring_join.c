@@ -45,11 +45,10 @@ static bool changes_meet(const u8 *a, const u8 *b, const u8 *sent, size_t len)
 static bool is_doubtful(const struct ec_cycle *c, struct ec_cyc_dgram *d, u16 wa, u16 wb,
 			const u8 *a, const u8 *b, const u8 *sent)
 {
-	bool same = d->of_open == c->opened && d->of_main == wa && d->of_backup == wb;
+	u64 of = (u64)c->opened << 32 | (u32)wa << 16 | wb;
+	bool same = d->of == of;
 
-	d->of_open = c->opened;
-	d->of_main = wa;
-	d->of_backup = wb;
+	d->of = of;
 	if (!wa || !wb)
 		return false;
 	if (likely(same))
@@ -68,15 +67,15 @@ static bool is_doubtful(const struct ec_cycle *c, struct ec_cyc_dgram *d, u16 wa
  * Mostly slaves of one side only have processed it: its copy is taken as it is.
  *
  * Context: The cycle owner, in the RCU read section of the receive. RT-safe.
- * Return: its data, with working counter; 0 of one that is not certain, as if no slave had processed
- * it.
+ * Return: its data, with working counter; 0 of one that is not certain, as if no slave had
+ * processed it.
  */
 const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_cyc_dgram *d,
 		       const u8 *at, u16 *irq)
 {
 	const struct ec_slot *slot = f->slot;
 	size_t pos = at - slot->reply;
-	/* with data it is in @copy, or in memory of the device that is the master's until the next poll */
+	/* in memory of the slot, or of the device until its next poll */
 	u8 *a = (u8 *)slot->got[EC_MAIN] + pos;
 	const u8 *b = slot->got[EC_BACKUP] + pos, *sent;
 	u16 wa = get_unaligned_le16(a + d->len), wb = get_unaligned_le16(b + d->len);

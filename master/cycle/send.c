@@ -122,11 +122,11 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 }
 
 /*
- * In a ring clock datagrams go one way, process data both ways. What rides in a frame is joined, with
- * the frame as it was sent: it has to be in the slot.
+ * In a ring clock datagrams go one way, process data both ways. What rides in a frame is joined
+ * with the frame that was sent, which has to be in the slot.
  */
-static noinline u8 *get_buffer(struct ec_cycle *c, const struct send *send, bool alone,
-			       struct ec_tx *tx)
+static noinline u8 *ring_buffer(struct ec_cycle *c, const struct send *send, bool alone,
+				struct ec_tx *tx)
 {
 	struct ec_links *l = c->links;
 
@@ -159,7 +159,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 	if (likely(l->only))
 		frame = ec_links_tx_get(l, l->sides, &tx);
 	else
-		frame = get_buffer(c, send, alone, &tx);
+		frame = ring_buffer(c, send, alone, &tx);
 	frame = frame ?: slot->frame;
 	count = fill(c, slot, frame, g, send, alone);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);

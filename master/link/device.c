@@ -106,6 +106,17 @@ static void report(struct ec_link *link, bool attached)
 		l->ops->device(l, link, attached);
 }
 
+/* Does no other thread deliver frames while the cycle owner polls the devices? */
+static void note_threads(struct ec_links *l)
+{
+	const struct ec_link *link;
+	bool one = true;
+
+	ec_links_for_each(l, link)
+		one &= !link->dev || link->dev->ops->keeps;
+	WRITE_ONCE(l->slots.one_thread, one);
+}
+
 /* The device changes between two calls of the cycle owner: each of them uses one device. */
 static void device_publish(struct ecdev *dev, struct ec_link *link)
 {
@@ -119,6 +130,7 @@ static void device_publish(struct ecdev *dev, struct ec_link *link)
 		dev->ops->cycle(dev->priv, true);
 	ec_access_shut(l);
 	WRITE_ONCE(link->dev, dev);
+	note_threads(l);
 	if (l->ops && l->ops->changed)
 		l->ops->changed(l);
 	ec_access_reopen(l);
@@ -174,6 +186,7 @@ static void withdraw(struct ec_link *link, struct ecdev *dev)
 	ec_access_shut(l);
 	WRITE_ONCE(link->dev, NULL);
 	WRITE_ONCE(link->up, false);
+	note_threads(l);
 	ec_slots_forget_sent(&l->slots);
 	/* the way of all frames of a ring changes */
 	WRITE_ONCE(l->ring.news, !l->only);

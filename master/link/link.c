@@ -121,7 +121,7 @@ struct leaving {
 };
 
 /* a link refuses a frame */
-static noinline void note_refusal(struct leaving *f, unsigned int side, int err)
+static noinline void note_refused(struct leaving *f, unsigned int side, int err)
 {
 	f->unsent |= BIT(side);
 	if (err == -EBUSY)
@@ -130,15 +130,13 @@ static noinline void note_refusal(struct leaving *f, unsigned int side, int err)
 }
 
 /* one of its links */
-static __always_inline void leave(struct ec_links *l, const struct ec_slot *slot, unsigned int side,
-				  struct ecdev *dev, u8 *buf, struct leaving *f)
+static __always_inline void leave_by(struct ec_link *link, struct ecdev *dev, u8 *buf, size_t len,
+				     struct leaving *f)
 {
-	int err;
+	int err = ec_link_send_buf(link, dev, buf, len);
 
-	buf[7] |= side;
-	err = ec_link_send_buf(&l->link[side], dev, buf, ec_slot_padded(slot));
 	if (unlikely(err))
-		note_refusal(f, side, err);
+		note_refused(f, link->side, err);
 }
 
 /* Return: 0: at least one link has sent it; or -errno, the slot is in BUILD again. */
@@ -195,7 +193,8 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
 		if (!(f.sides & BIT(i)))
 			continue;
 		memcpy(buf[i], slot->frame, ec_slot_padded(slot));
-		leave(l, slot, i, dev[i], buf[i], &f);
+		buf[i][7] |= i;
+		leave_by(&l->link[i], dev[i], buf[i], ec_slot_padded(slot), &f);
 	}
 	return has_left(l, slot, &f);
 }
@@ -204,8 +203,8 @@ int ec_links_send(struct ec_links *l, struct ec_slot *slot, u8 sides, u64 now)
  * ec_links_keep_sent() - may frames of the cycle be built in buffers of the main device in a ring?
  * @l: two links
  *
- * They may if it keeps them, so that the copies can be compared with them: that saves a copy of each
- * frame. By its number a frame is known again. Both links have to work.
+ * They may if it keeps them, so that the copies can be compared with them: that saves a copy of
+ * each frame. By its number a frame is known again. Both links have to work.
  *
  * Context: The owner of the bus access, in an RCU read section. RT-safe.
  * Return: whether they may, by ec_links_tx_get_both().
@@ -235,13 +234,15 @@ bool ec_links_keep_sent(const struct ec_links *l)
 int ec_links_transmit_both(struct ec_links *l, struct ec_slot *slot, u8 *frame,
 			   const struct ec_tx *tx, u64 now)
 {
+	size_t len = ec_slot_padded(slot);
 	struct leaving f = { 0 };
 
 	slot->sent = frame;
 	ec_slot_arm(&l->slots, slot, frame, tx->sides, now);
-	memcpy(tx->copy, frame, ec_slot_padded(slot));
-	leave(l, slot, EC_MAIN, tx->dev, frame, &f);
-	leave(l, slot, EC_BACKUP, tx->backup, tx->copy, &f);
+	memcpy(tx->copy, frame, len);
+	tx->copy[7] |= EC_BACKUP;
+	leave_by(&l->link[EC_MAIN], tx->dev, frame, len, &f);
+	leave_by(&l->link[EC_BACKUP], tx->backup, tx->copy, len, &f);
 	return has_left(l, slot, &f);
 }
 
@@ -271,18 +272,10 @@ void ec_link_poll(struct ec_link *link)
 void ec_links_poll_each(struct ec_links *l)
 {
 	struct ec_link *link;
-	bool keep = true;
 
-	ec_links_for_each(l, link) {
-		const struct ecdev *dev = READ_ONCE(link->dev);	/* may be withdrawn now */
-
-		keep &= !dev || dev->ops->keeps;
-	}
-	WRITE_ONCE(l->slots.one_thread, keep);
 	ec_links_for_each(l, link)
 		if (l->sides & BIT(link->side))
 			ec_link_poll_cycle(link);
-	WRITE_ONCE(l->slots.one_thread, false);
 }
 
 /**

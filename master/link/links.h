@@ -249,7 +249,7 @@ struct ec_tx {
 	struct ecdev *dev;
 	/** @sides: mask of the links */
 	u8 sides;
-	/** @backup: for a frame of both links, built in a buffer of @dev: device of the backup link */
+	/** @backup: device of the backup link, for a frame of both that is built for @dev */
 	struct ecdev *backup;
 	/** @copy: and its buffer */
 	u8 *copy;

@@ -67,6 +67,13 @@ static noinline enum ec_match fill_locked(struct ec_slots *s, const struct ec_li
 	return what;
 }
 
+/* Does the thread that delivers this frame for the cycle deliver the other copy as well? */
+static __always_inline bool is_alone(const struct ec_slots *s, const struct ec_link *by,
+				     const struct ec_slot *slot)
+{
+	return READ_ONCE(by->keep) && READ_ONCE(s->one_thread) && !slot->done;
+}
+
 /*
  * The copy of a frame with one datagram, as the cycle has them, whose address slaves do not count:
  * same() in few steps. It stays in the memory of the device. Return: false: nothing was changed.
@@ -103,11 +110,9 @@ static noinline enum ec_match fill_two(struct ec_slots *s, const struct ec_link 
 	u32 seq = s->numbered ? get_unaligned_le32(src + 2) : READ_ONCE(slot->seq);
 	bool last;
 
-	if (!READ_ONCE(by->keep) || !s->one_thread || slot->done)
-		return fill_locked(s, by, slot, seq, src[1], data, len);
-	if (likely(fill_plain(by, slot, seq, src[1], data, len)))
-		return EC_MATCH_DONE;
-	return fill_copy(by, slot, seq, src[1], data, len, true, &last);
+	if (is_alone(s, by, slot))
+		return fill_copy(by, slot, seq, src[1], data, len, true, &last);
+	return fill_locked(s, by, slot, seq, src[1], data, len);
 }
 
 /*
@@ -156,8 +161,11 @@ static __always_inline enum ec_match match(struct ec_slots *s, const struct ec_l
 	if (READ_ONCE(slot->seq) != seq)
 		return atomic_read(&slot->state) == EC_SLOT_SENT ? EC_MATCH_LATE :
 								   EC_MATCH_UNMATCHED;
-	return unlikely(s->copies) ? fill_two(s, by, slot, src, data, len) :
-				     fill_slot(by, slot, seq, src[1], data, len);
+	if (likely(!s->copies))
+		return fill_slot(by, slot, seq, src[1], data, len);
+	if (likely(is_alone(s, by, slot) && fill_plain(by, slot, seq, src[1], data, len)))
+		return EC_MATCH_DONE;
+	return fill_two(s, by, slot, src, data, len);
 }
 
 static __always_inline enum ec_match receive(struct ec_link *link, const u8 *src,

@@ -17,7 +17,7 @@ static u64 merge_bits(u64 a, u64 b, u64 sent)
 }
 
 /* Are two pieces alike? */
-static bool is_same_piece(const u8 *a, const u8 *b)
+static bool is_piece_unchanged(const u8 *a, const u8 *b)
 {
 	u64 other = 0;
 	size_t i;
@@ -28,7 +28,7 @@ static bool is_same_piece(const u8 *a, const u8 *b)
 }
 
 /* the bits in which 4 words differ */
-static __always_inline u64 other_bits(const u8 *a, const u8 *b)
+static inline u64 other_bits(const u8 *a, const u8 *b)
 {
 	u64 other = get_unaligned_le64(a) ^ get_unaligned_le64(b);
 
@@ -38,7 +38,7 @@ static __always_inline u64 other_bits(const u8 *a, const u8 *b)
 }
 
 /* Are @len bytes alike? Mostly they are. */
-static bool is_same(const u8 *a, const u8 *b, size_t len)
+static bool is_unchanged(const u8 *a, const u8 *b, size_t len)
 {
 	size_t i, pieces = len & ~(size_t)63;
 
@@ -65,7 +65,7 @@ static size_t merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, si
 
 	memcpy(to, b, len);
 	for (i = 0; i + MERGE_PIECE <= len; i += MERGE_PIECE) {
-		if (is_same_piece(a + i, sent + i))
+		if (is_piece_unchanged(a + i, sent + i))
 			continue;
 		for (j = i; j < i + MERGE_PIECE; j += sizeof(u64))
 			put_unaligned_le64(merge_bits(get_unaligned_le64(a + j),
@@ -100,7 +100,7 @@ u8 *ec_merge_data(u8 *to, u8 *a, const u8 *b, const u8 *sent, size_t len, u16 *c
 {
 	size_t at = *cut;
 
-	if (at > len || !is_same(a + at, sent + at, len - at) || !is_same(b, sent, at)) {
+	if (at > len || !is_unchanged(a + at, sent + at, len - at) || !is_unchanged(b, sent, at)) {
 		*cut = merge_changed(to, a, b, sent, len);
 		return to;
 	}

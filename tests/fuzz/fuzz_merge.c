@@ -22,8 +22,10 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 {
 	size_t each = len / 3, at = EC_FRAME_HDR, size;
 	u8 *a = malloc(each), *b = malloc(each), *sent = malloc(each), *to = malloc(each);
+	u8 *copy = malloc(each), *all;
+	u16 none = 0xffff, cut = len ? data[len - 1] : 0;
 
-	MUST(a && b && sent && to);
+	MUST(a && b && sent && to && copy);
 	memcpy(sent, data, each);
 	memcpy(a, data + each, each);
 	memcpy(b, data + 2 * each, each);
@@ -42,6 +44,11 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 			break;
 		at += size;
 	}
+	/* data are merged alike, wherever those of one copy are said to end */
+	all = ec_merge_data(to, a, b, sent, each, &none);
+	MUST(all == to);
+	MUST(!memcmp(ec_merge_data(copy, a, b, sent, each, &cut), to, each));
+	free(copy);
 	free(a);
 	free(b);
 	free(sent);
