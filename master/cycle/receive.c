@@ -48,7 +48,7 @@ static bool holds_last(const struct ec_cycle *c, const struct ec_cyc_dgram *d,
 }
 
 /* Inputs of a datagram that at least one slave has processed. */
-static void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
+static __always_inline void take_inputs(struct ec_cycle *c, struct ec_cyc_dgram *d,
 			const struct ec_cyc_flight *f, const u8 *data, bool complete)
 {
 	const struct ec_cyc_area *in = &c->layout.areas[d->first_input];
@@ -101,8 +101,8 @@ static noinline bool is_better(struct ec_cyc_dgram *d, struct ec_cyc_domain *dom
  * Inputs and working counter of one datagram. A reply to an older send must not overwrite the
  * data of a newer one.
  */
-static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
-		       const struct ec_cyc_flight *f, const u8 *data)
+static __always_inline void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
+				       const struct ec_cyc_flight *f, const u8 *data)
 {
 	struct ec_cyc_domain *dom = &c->domains[d->domain];
 	u16 wkc = get_unaligned_le16(data + d->len);
@@ -131,7 +131,7 @@ static void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *d,
  * Take the data of a reply, or of the two of an open ring. Return: ECAT events of the slaves in its
  * IRQ fields.
  */
-static u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f, bool two)
+static __always_inline u16 take_frame(struct ec_cycle *c, const struct ec_cyc_flight *f, bool two)
 {
 	struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
 	const u8 *data = f->slot->reply + EC_FRAME_HDR + EC_DGRAM_HDR;
@@ -334,6 +334,13 @@ static bool has_two(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec
 	return ec_ring_join(c, f, slot);
 }
 
+/* a branch of its own, so that a master with one device needs nothing of it */
+static __always_inline u16 take_ring(struct ec_cycle *c, const struct ec_cyc_flight *f,
+				     struct ec_slot *slot)
+{
+	return take_frame(c, f, has_two(c, f, slot));
+}
+
 static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64 *now)
 {
 	return is_overdue(c, f, now) && ec_slot_cancel(f->slot, *now);
@@ -385,7 +392,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 		if (has_reply(c, f, slot, &now)) {
 			if (unlikely(f->missed) && f->send != c->send)
 				ec_links_count(l, slot->back & ~f->in_time, late);
-			irq |= take_frame(c, f, unlikely(!only) && has_two(c, f, slot));
+			irq |= likely(only) ? take_frame(c, f, false) : take_ring(c, f, slot);
 			if (likely(slot->back == slot->sides))
 				ec_slot_release(slot, EC_SLOT_FREE);
 			else

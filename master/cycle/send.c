@@ -141,7 +141,8 @@ static noinline u8 *ring_buffer(struct ec_cycle *c, const struct send *send, boo
 static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *send)
 {
 	struct ec_links *l = c->links;
-	bool alone = unlikely(!l->only) && send->dc;
+	struct ec_link *only = l->only;
+	bool alone = unlikely(!only) && send->dc;
 	struct ec_slot *slot = NULL;
 	struct ec_tx tx;
 	unsigned int count;
@@ -156,18 +157,21 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		return c->layout.n_dgrams;
 	}
 	/* one copy less than through the slot */
-	if (likely(l->only))
-		frame = ec_links_tx_get(l, l->sides, &tx);
-	else
+	if (likely(only)) {
+		tx.link = only;
+		tx.sides = l->sides;
+		frame = ec_link_tx_get(only, &tx.dev);
+	} else {
 		frame = ring_buffer(c, send, alone, &tx);
+	}
 	frame = frame ?: slot->frame;
 	count = fill(c, slot, frame, g, send, alone);
 	send->wire.ns += ec_frame_wire_ns(slot->eth_len);
 	send->wire.frames++;
-	if (unlikely(send->both) && !alone && frame != slot->frame)
-		ret = ec_links_transmit_both(l, slot, frame, &tx, send->now);
-	else
+	if (likely(only) || !send->both || alone || frame == slot->frame)
 		ret = ec_links_transmit(l, slot, frame, &tx, send->now);
+	else
+		ret = ec_links_transmit_both(l, slot, frame, &tx, send->now);
 	/* unlike an acyclic frame it cannot wait */
 	if (ret == -EBUSY)
 		ec_links_count(l, tx.sides, tx_errors);
