@@ -87,14 +87,15 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 	sent = ec_slot_sent(slot);
 	if (sent)
 		sent += EC_ETH_HDR + pos;
-	if (unlikely(is_doubtful(c, d, wa, wb, a, b, sent)))
-		wa = wb = 0;
-	else if (!wb)
+	if (unlikely(is_doubtful(c, d, wa, wb, a, b, sent))) {
+		put_unaligned_le16(0, to + d->len);
+		return to;
+	}
+	if (!wb)
 		return a;
-	else if (!wa)
+	if (!wa)
 		return b;
-	else
-		to = ec_merge_data(to, a, b, sent, d->len, &d->cut);
+	to = ec_merge_data(to, a, b, sent, d->len, &d->cut);
 	put_unaligned_le16(wa + wb, to + d->len);
 	return to;
 }

@@ -101,7 +101,7 @@ struct ec_slots {
 	u8 *merged;
 	/** @both: with a second link: both may receive their copies of a frame at the same time */
 	raw_spinlock_t both;
-	/** @one_thread: who polls both links for the cycle delivers all frames of their devices */
+	/** @one_thread: the thread that polls both links for the cycle delivers all of their frames */
 	bool one_thread;
 	/** @hint: where the search for a free slot begins */
 	atomic_t hint;
@@ -274,7 +274,7 @@ static inline u8 *ec_slot_body(struct ec_slot *slot)
 }
 
 /**
- * ec_slot_sent() - the frame of a slot as it was sent on two links
+ * ec_slot_sent() - the frame of a slot that was sent on two links
  * @slot: slot in state DONE
  *
  * A buffer of a device may have been used again: then it has another number.

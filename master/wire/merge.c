@@ -89,7 +89,7 @@ static size_t merge_changed(u8 *to, const u8 *a, const u8 *b, const u8 *sent, si
  * @b: data of the other copy
  * @sent: data as both were sent
  * @len: bytes of each
- * @cut: bytes that belong to @a, as it was the last time, and is now: mostly the slaves have their
+ * @cut: bytes that belong to @a, of the last time, and now: mostly the slaves have their
  *	data in the order in which they are connected. Then the rest is @b, and nothing has to be
  *	merged. Any value is right
  *
