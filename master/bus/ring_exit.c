@@ -2,8 +2,8 @@
 /*
  * The card of the backup device may have a link although no driver receives there: frames of the
  * main device leave the last slave for it and do not return. Slaves still execute them: so the
- * master closes that port, until the device is attached again. The same when the master is told to
- * do without a backup device: then until the link is lost.
+ * master closes that port, until the device is attached again. The same when the master is
+ * configured to do without a backup device: then until the link is lost.
  */
 #include <linux/ktime.h>
 #include "../base/report.h"

@@ -64,7 +64,7 @@ static bool is_doubtful(const struct ec_cycle *c, struct ec_cyc_dgram *d, u16 wa
  * @at: its data in the reply
  * @irq: result: with the ECAT events of all slaves
  *
- * Mostly slaves of one side only have processed it: its copy is taken as it is.
+ * Mostly slaves of one side only have processed it: its copy is taken unchanged.
  *
  * Context: The cycle owner, in the RCU read section of the receive. RT-safe.
  * Return: its data, with working counter; 0 of one that is not certain, as if no slave had

@@ -101,7 +101,7 @@ struct ec_slots {
 	u8 *merged;
 	/** @both: with a second link: both may receive their copies of a frame at the same time */
 	raw_spinlock_t both;
-	/** @one_thread: the thread that polls both links for the cycle delivers all of their frames */
+	/** @one_thread: the thread that polls both links for the cycle delivers all frames */
 	bool one_thread;
 	/** @hint: where the search for a free slot begins */
 	atomic_t hint;

@@ -35,8 +35,31 @@ static void vectors_merge_both_sides_of_break(struct kunit *test)
 	KUNIT_EXPECT_MEMEQ(test, to, want, sizeof(want));
 }
 
+/* 72 bytes of an LRW: the first one is of a slave of one side, two are of slaves of the other. */
+static void vectors_merge_data_of_both_sides(struct kunit *test)
+{
+	static const u8 sent[72] = { [0] = 0x10, [35] = 0x20, [71] = 0x30 };
+	static const u8 first[72] = { [0] = 0x7f, [35] = 0x20, [71] = 0x30 };
+	static const u8 backup[72] = { [0] = 0x10, [35] = 0x21, [71] = 0xee };
+	static const u8 want[72] = { [0] = 0x7f, [35] = 0x21, [71] = 0xee };
+	u8 copy[72], to[72], *got;
+	u16 cut = 0;
+
+	memcpy(copy, first, sizeof(copy));
+	got = ec_merge_data(to, copy, backup, sent, sizeof(to), &cut);
+	KUNIT_EXPECT_PTR_EQ(test, got, to);
+	KUNIT_EXPECT_MEMEQ(test, got, want, sizeof(want));
+	/* the bytes up to it are of the first copy, the others of the second */
+	KUNIT_EXPECT_TRUE(test, cut > 0 && cut <= 35);
+	memcpy(copy, first, sizeof(copy));
+	got = ec_merge_data(to, copy, backup, sent, sizeof(to), &cut);
+	KUNIT_EXPECT_PTR_EQ(test, got, copy);
+	KUNIT_EXPECT_MEMEQ(test, got, want, sizeof(want));
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(vectors_merge_both_sides_of_break),
+	KUNIT_CASE(vectors_merge_data_of_both_sides),
 	{}
 };
 

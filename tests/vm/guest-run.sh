@@ -20,15 +20,18 @@ stuck() {
 }
 
 look() {
-	for p in /proc/[0-9]*; do
-		read -r comm <$p/comm || continue
-		case $comm in
-		EtherCAT*|ec_*) ;;
-		*) [ "$(tr -d '\0' <$p/cmdline)" ] || continue ;;
-		esac
-		echo "${p#/proc/} $comm: $(tr '\0' ' ' <$p/cmdline | cut -c1-150)"
-		cat $p/task/*/stack
-	done >$ctl/stuck.tmp 2>/dev/null
+	{
+		dmesg | tail -n 30
+		for p in /proc/[0-9]*; do
+			read -r comm <$p/comm || continue
+			case $comm in
+			EtherCAT*|ec_*) ;;
+			*) [ "$(tr -d '\0' <$p/cmdline)" ] || continue ;;
+			esac
+			echo "${p#/proc/} $comm: $(tr '\0' ' ' <$p/cmdline | cut -c1-150)"
+			cat $p/task/*/stack
+		done
+	} >$ctl/stuck.tmp 2>/dev/null
 	mv $ctl/stuck.tmp $ctl/stuck
 }
 
