@@ -161,8 +161,8 @@ revision() { ethercat upload -p2 -t uint32 0x1018 1 | grep 0x00000002; }
 	taskset 2 chrt -f 2 prlimit --rttime=60000000 sh -c 'while :; do :; done' &
 	spinner=$!
 	wait_for 60 runs_as $spinner sh
-	# the thread has work: lost frames of this would be its own. Mailbox messages that it does not
-	# send leave with frames of the monitor, which may take longer than the request
+	# the thread has work: lost frames of this would be its own. Messages that it does not send
+	# leave with frames of the monitor, which may take longer than the request
 	revision || status=$?
 	wait_for 30 log_has "$line: a thread of higher priority keeps its CPU, perhaps [01]; lost"
 	kill -KILL $spinner
