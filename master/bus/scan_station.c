@@ -185,15 +185,18 @@ static void scan_station_take_part(struct ec_slave *s, struct ec_slave *old)
 }
 
 /*
- * The slave at @i, if it is one that could not be read before: by its address, or by its place if
- * no slave of the list has that.
+ * The slave at @i, if it is one that could not be read before: by its address. By its place only if
+ * no slave of the list has that, and the one that was there replies nowhere: it could be elsewhere.
  */
 static const struct ec_slave *unread_before(const struct scan *sc, unsigned int i)
 {
 	const struct ec_slave *s = sc->known[ec_scan_address(sc, i)];
 
-	if (!s || !is_at(sc, i, s))
-		return ec_scan_unreadable(sc->bus, i);
+	if (!s || !is_at(sc, i, s)) {
+		const struct ec_slave *there = ec_scan_unreadable(sc->bus, i);
+
+		return there && !sc->claims[there->station] ? there : NULL;
+	}
 	return sc->claims[s->station] == 1 ? ec_scan_unreadable(sc->bus, s->position) : NULL;
 }
 

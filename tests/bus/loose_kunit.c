@@ -260,12 +260,38 @@ static void loose_unread_stays_itself(struct kunit *test)
 	untouched(c, &w);
 }
 
+/* New slaves come before one that could not be read: they do not get its number. */
+static void loose_unread_keeps_its_number(struct kunit *test)
+{
+	struct bus *b = bus_up(test, text, N);
+	u64 device = bus_slave(b, 1 + N_LOOSE)->device;
+	u32 i, k;
+
+	bus_fault(b, EC_SIM_FAULT_EEPROM_BUSY, 1 + N_LOOSE, 0, 1, 0);
+	bus_fault(b, EC_SIM_FAULT_CUT, 0, 2, 0, 0);
+	msleep(300);
+	bus_fault(b, EC_SIM_FAULT_HEAL, 0, 2, 0, 0);
+	msleep(1000);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
+	KUNIT_ASSERT_EQ(test, bus_slave(b, 1 + N_LOOSE)->note.error, EC_SLAVE_SCAN_FAILED);
+	open_contact(b, ktime_get_ns(), 400 * NSEC_PER_MSEC, true);
+	msleep(300);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), 1u + N_SAFE);
+	msleep(2000);
+	KUNIT_ASSERT_EQ(test, bus_n_slaves(b), (u32)N);
+	KUNIT_EXPECT_EQ(test, bus_slave(b, 1 + N_LOOSE)->device, device);
+	for (i = 0; i < N; i++)
+		for (k = 0; k < i; k++)
+			KUNIT_EXPECT_NE(test, bus_slave(b, i)->device, bus_slave(b, k)->device);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE_PARAM(loose_other_branch_stays_in_op, contact_gen_params),
 	KUNIT_CASE(loose_address_of_another),
 	KUNIT_CASE(loose_addresses_overwritten),
 	KUNIT_CASE(loose_bus_empty_during_scan),
 	KUNIT_CASE(loose_unread_stays_itself),
+	KUNIT_CASE(loose_unread_keeps_its_number),
 	{}
 };
 
