@@ -186,7 +186,7 @@ static void scan_station_take_part(struct ec_slave *s, struct ec_slave *old)
 
 /*
  * The slave at @i, if it is one that could not be read before: by its address. By its place only if
- * no slave of the list has that, and the one that was there replies nowhere: it could be elsewhere.
+ * no slave of the list has that, and the one of that place replies nowhere else.
  */
 static const struct ec_slave *unread_before(const struct scan *sc, unsigned int i)
 {
