@@ -15,6 +15,7 @@
 #include "session/session_attach.h"
 #include "session/session_units.h"
 #include "bus/bus_list.h"
+#include "bus/ring_heal.h"
 
 static void master_device(struct ec_links *l, const struct ec_link *link, bool attached)
 {
@@ -124,6 +125,7 @@ static struct ec_master *create(unsigned int index, const char *main, const char
 		goto err;
 	ec_cycles_init(&m->cycles, m->base, &m->carry, &m->riders, &m->dc);
 	ret = ec_bus_init(&m->bus, m->base, &m->links, &bus_ops) ?:
+	      ec_ring_heal_init(&m->bus, &m->riders) ?:
 	      ec_sessions_init(&m->sessions, ec_session_again, ec_session_units);
 	if (ret)
 		goto err;

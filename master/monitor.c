@@ -514,7 +514,8 @@ static void look_at_ports(struct watch *w)
 	int count;
 
 	if (w->link_up && w->count)
-		result = ec_ports_work(&w->m->bus, w->scanned && w->count == w->m->bus.n_slaves);
+		result = ec_ports_work(&w->m->bus, w->scanned && w->count == w->m->bus.n_slaves,
+				       w->irq & EC_ECAT_EVENT_DL);
 	w->door = result != EC_PORTS_QUIET;
 	if (result != EC_PORTS_FOUND)
 		return;

@@ -82,6 +82,8 @@ struct ec_bus {
 	u32 ring_told[2];
 	/** @exit: the monitor's */
 	struct ec_ring_exit exit;
+	/** @heal: the monitor's */
+	struct ec_ring_heal heal;
 	/** @probe_ns: last probe of mute links (ktime); the monitor's */
 	u64 probe_ns;
 	/** @turned: device number of a slave of a ring that is the wrong way round, 0: none */

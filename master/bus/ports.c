@@ -10,6 +10,7 @@
 #include "graph.h"
 #include "ports.h"
 #include "ring_exit.h"
+#include "ring_heal.h"
 #include "slave.h"
 #include "trial.h"
 
@@ -118,7 +119,7 @@ static u8 wanted_loops(const struct ec_slave *s)
 	u8 loops = 0;
 
 	if (!ec_ports_are_guarded(s->bus) || s->ports.fixed)
-		return ec_ring_exit_loops(s, 0);
+		return ec_ring_exit_loops(s, ec_ring_heal_loops(s, 0));
 	for (p = 0; p < EC_MAX_PORT; p++)
 		loops |= wanted_loop(s, p) << 2 * p;
 	return ec_ring_exit_loops(s, loops);
@@ -140,8 +141,10 @@ static void note_written(struct ec_slave *s, const struct ec_dg *dg, u8 wrote, c
 	if (is[1] == wrote || !wrote)
 		return;
 	s->ports.fixed = true;
-	ec_slave_warn(s, "register 0x0101 keeps 0x%02x, not 0x%02x: slaves connected here during operation get process data at once\n",
-		      is[1], wrote);
+	ec_slave_warn(s, "register 0x0101 keeps 0x%02x, not 0x%02x: %s\n", is[1], wrote,
+		      ec_links_n(s->bus->links) == 1 ?
+		      "slaves connected here during operation get process data at once" :
+		      "a loose contact here costs a frame each time it changes");
 }
 
 static bool has_to_write(const struct ec_slave *s)
@@ -209,6 +212,9 @@ static void write_loops(struct ec_bus *bus)
 	if (list && dg && v) {
 		n = collect(bus, list, n);
 		read_ports(bus, list, n, dg, v);
+		ec_ring_heal_open(bus);
+		/* those that still have to be written */
+		n = collect(bus, list, n);
 		write_ports(bus, list, n, dg, v);
 	}
 	kvfree(list);
@@ -384,18 +390,24 @@ static enum ec_ports_result work_at_doors(struct ec_bus *bus)
  * ec_ports_work() - bring loop control up to date, and look behind ports that have got a link
  * @bus: bus
  * @scanned: the list is that of the slaves which reply now: positions are certain
+ * @event: a slave has shown the event of its DL status
  *
  * Context: The monitor thread. Waits for bus traffic.
  * Return: whether slaves were let in, or another look is due soon.
  */
-enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned)
+enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned, bool event)
 {
+	bool soon;
+
 	ec_ring_exit_look(bus);
+	soon = ec_ring_heal_look(bus, event);
 	write_loops(bus);
 	bus->lost_look_ns = ktime_get_ns();
 	if (xchg(&bus->retry, false))
 		forget_waits(bus);
-	return scanned && ec_ports_are_guarded(bus) ? work_at_doors(bus) : EC_PORTS_QUIET;
+	if (scanned && ec_ports_are_guarded(bus))
+		return work_at_doors(bus);
+	return soon ? EC_PORTS_DOOR : EC_PORTS_QUIET;
 }
 
 /**
@@ -514,5 +526,6 @@ void ec_ports_open_all(struct ec_bus *bus)
 {
 	WRITE_ONCE(bus->guarded, false);
 	bus->exit.device = 0;
+	ec_ring_heal_forget(bus);
 	write_loops(bus);
 }

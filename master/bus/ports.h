@@ -20,7 +20,7 @@ enum ec_ports_result {
 
 void ec_ports_guard(struct ec_bus *bus, bool on);
 bool ec_ports_are_guarded(const struct ec_bus *bus);
-enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned);
+enum ec_ports_result ec_ports_work(struct ec_bus *bus, bool scanned, bool event);
 void ec_ports_note_loss(struct ec_slave *s, unsigned int port, bool open);
 void ec_ports_retry(struct ec_bus *bus);
 int ec_ports_let_in(struct ec_slave *s, unsigned int port, const struct ec_behind *what);

@@ -4,6 +4,7 @@
 #include "graph.h"
 #include "ring_break.h"
 #include "ring_exit.h"
+#include "ring_heal.h"
 #include "ring_place.h"
 #include "slave.h"
 
@@ -156,6 +157,7 @@ void ec_ring_forget(struct ec_bus *bus, bool line)
 	WRITE_ONCE(bus->ring_told[0], EC_RING_NONE);
 	bus->turned = bus->turned_told = 0;
 	ec_ring_exit_forget(bus, line);
+	ec_ring_heal_forget(bus);
 	ec_ring_places_forget(bus);
 	bus->places.open = false;
 	ec_show_change_end(&bus->base->show);

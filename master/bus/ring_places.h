@@ -4,6 +4,7 @@
 #define EC_RING_PLACES_H
 
 #include <linux/types.h>
+#include "../carry/rider.h"
 
 /**
  * struct ec_ring_places - positions of a ring, changed with topo and ec_show_change_begin()
@@ -45,6 +46,38 @@ struct ec_ring_exit {
 	u16 station;
 	u8 open;
 	bool closed;
+};
+
+/**
+ * struct ec_ring_end - an end of a break, at a slave
+ * @device: number of that, 0: none
+ * @link_ns: since when it has had a link without loss (ktime), 0: it has none
+ * @port: port
+ * @lost: its counter of lost links as read last
+ * @cleared: that was full, and was cleared
+ */
+struct ec_ring_end {
+	u64 device;
+	u64 link_ns;
+	u8 port;
+	u8 lost;
+	bool cleared;
+};
+
+/**
+ * struct ec_ring_heal - ends that do not open by themselves
+ * @end: the one before and the one behind the break; both or none
+ * @open: mask of those that may open
+ * @read_ns: last read of both (ktime)
+ * @riders: of the master, immutable
+ * @rider: what opens them
+ */
+struct ec_ring_heal {
+	struct ec_ring_end end[2];
+	u8 open;
+	u64 read_ns;
+	struct ec_riders *riders;
+	struct ec_rider rider[2];
 };
 
 #endif

@@ -86,6 +86,15 @@ void ring_cable(struct bus *b, bool cut, u32 i)
 	ring_cable_of(b, cut, i, SLAVES, 0);
 }
 
+/*
+ * The cable of the next random event: @at again if it is cut, or if the ring is still open there,
+ * since two breaks cut slaves off; else @other.
+ */
+u32 ring_next_cut(struct bus *b, u32 at, bool is_cut, u32 other)
+{
+	return is_cut || bus_links(b)->ring.state != EC_RING_CLOSED ? at : other;
+}
+
 void ring_state(struct bus *b, u8 state, u32 front, u32 n)
 {
 	KUNIT_EXPECT_EQ(b->test, bus_links(b)->ring.state, state);

@@ -119,7 +119,7 @@ static void clocks_random(struct kunit *test)
 
 	prandom_seed_state(&rnd, 41);
 	for (i = 0; i < EVENTS; i++) {
-		at = i % 2 ? at : prandom_u32_state(&rnd) % CUTS;
+		at = ring_next_cut(k->b, at, i % 2, prandom_u32_state(&rnd) % CUTS);
 		ring_cable_of(k->b, !(i % 2), at, SLAVES,
 			      NSEC_PER_MSEC + prandom_u32_state(&rnd) % (NSEC_PER_MSEC / 4));
 		most = max(most, clocks_run(k, 2 + prandom_u32_state(&rnd) % 400));

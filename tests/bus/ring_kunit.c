@@ -159,7 +159,7 @@ static void ring_random(struct kunit *test)
 	prandom_seed_state(&rnd, 37);
 	ring_run(r, RING_MANY);
 	for (i = 0; i < EVENTS; i++) {
-		at = i % 2 ? at : prandom_u32_state(&rnd) % (RING_MANY + 1);
+		at = ring_next_cut(b, at, i % 2, prandom_u32_state(&rnd) % (RING_MANY + 1));
 		/* known before the frame sets out that it may meet */
 		ring_cable_of(b, !(i % 2), at, RING_MANY,
 			 NSEC_PER_MSEC + prandom_u32_state(&rnd) % (NSEC_PER_MSEC / 4));
@@ -288,7 +288,7 @@ static void ring_sdo(struct kunit *test)
 	t = talk_begin(b, SLAVES);
 	for (i = 0; i < 4 * CUTS; i++) {
 		ring_cable(b, !(i % 2), i / 2 % CUTS);
-		cyc_run(r->c, 50);
+		cyc_run(r->c, i % 2 ? 250 : 50);
 	}
 	while (!talk_end(t))
 		cyc_run(r->c, 1);

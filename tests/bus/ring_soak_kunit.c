@@ -119,15 +119,34 @@ static u8 outputs(const struct soak *s, u32 i)
 	return ec_app_od_get(app, ec_app_od_entry(app->model, 0x6060, 0));
 }
 
+static u8 loop_of(const struct soak *s, u32 i, u32 port)
+{
+	return bus_esc(s->b, i)->mem[EC_REG_DL_LOOPS] >> 2 * port & 3;
+}
+
 /* a port that leads away from the main device, closed by the master */
 static bool is_closed(const struct soak *s, u32 i)
 {
-	return (bus_esc(s->b, i)->mem[EC_REG_DL_LOOPS] >> 2 & 3) == EC_LOOP_CLOSED;
+	return loop_of(s, i, 1) == EC_LOOP_CLOSED;
+}
+
+/* the end of a break whose cable is whole again, which the master has not opened yet */
+static bool is_end(const struct soak *s, u32 i, u32 port)
+{
+	return loop_of(s, i, port) == EC_LOOP_AUTO_CLOSE && !bus_esc(s->b, i)->port[port].open;
+}
+
+/* from the main device to the next slave, and back */
+static bool is_way(const struct soak *s, u32 cable)
+{
+	if (cable && (is_closed(s, cable - 1) || is_end(s, cable - 1, 1)))
+		return false;
+	return !s->open[cable] && (cable == SLAVES || !is_end(s, cable, 0));
 }
 
 /*
- * The last port is closed while the master measures delays, another one when a trial has failed
- * there: then a break parts slaves.
+ * The last port is closed while the master measures delays: then a break parts slaves. So it does
+ * before the ends of another one, which has healed, are open.
  */
 static bool has_path(const struct soak *s, u32 i)
 {
@@ -135,9 +154,9 @@ static bool has_path(const struct soak *s, u32 i)
 	u32 k;
 
 	for (k = 0; k <= i; k++)
-		front &= !s->open[k] && !s->off[k] && (k == i || !is_closed(s, k));
+		front &= is_way(s, k) && !s->off[k];
 	for (k = i; k < SLAVES; k++)
-		back &= !s->off[k] && !s->open[k + 1] && !is_closed(s, k);
+		back &= !s->off[k] && is_way(s, k + 1);
 	return front || back;
 }
 

@@ -175,6 +175,7 @@ static void unit_leaves_op(struct kunit *test)
 		KUNIT_EXPECT_EQ(test, RUN(units_state(b, 0)), (u32)EC_UNIT_RUN_COMPLETE);
 		if (cables[k] < CUTS)
 			ring_cable(b, false, cables[k]);
+		cyc_run(c, 300);
 	}
 }
 
@@ -202,7 +203,7 @@ static void unit_at_both_sides(struct kunit *test)
 	}
 	prandom_seed_state(&rnd, 37);
 	for (i = 0; i < EVENTS; i++) {
-		at = i % 2 ? at : prandom_u32_state(&rnd) % CUTS;
+		at = ring_next_cut(b, at, i % 2, prandom_u32_state(&rnd) % CUTS);
 		ring_cable_of(b, !(i % 2), at, SLAVES,
 			      NSEC_PER_MSEC + prandom_u32_state(&rnd) % (NSEC_PER_MSEC / 4));
 		cyc_run(c, 2 + prandom_u32_state(&rnd) % 200);
