@@ -215,7 +215,7 @@ static struct ec_border_found *border_reuse(const struct ec_bus *bus)
 
 	lockdep_assert_held(&b->lock);
 	list_for_each_entry(f, &b->found, list) {
-		if (ec_known_is_connected(bus, f->device))
+		if (ec_known_connected(bus, f->device))
 			continue;
 		if (!f->let)
 			return f;

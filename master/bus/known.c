@@ -386,14 +386,14 @@ static struct ec_slave *known_find(const struct ec_bus *bus, u64 number)
 }
 
 /**
- * ec_known_is_connected() - has a slave of the list a device number?
+ * ec_known_connected() - the slave of the list with a device number
  * @bus: bus
  * @number: device number
  *
  * Context: The monitor thread, which alone changes the numbers.
- * Return: whether one has it.
+ * Return: the slave, or NULL.
  */
-bool ec_known_is_connected(const struct ec_bus *bus, u64 number)
+struct ec_slave *ec_known_connected(const struct ec_bus *bus, u64 number)
 {
 	return known_find(bus, number);
 }

@@ -20,7 +20,7 @@ u16 ec_known_fresh_station(struct ec_bus *bus, struct ec_slave *const *known, co
 struct ec_image *ec_known_image(const struct ec_bus *bus, u16 station, const u8 *head);
 void ec_known_forget_images(struct ec_bus *bus);
 struct ec_lost *ec_known_lost(const struct ec_bus *bus, u64 number);
-bool ec_known_is_connected(const struct ec_bus *bus, u64 number);
+struct ec_slave *ec_known_connected(const struct ec_bus *bus, u64 number);
 struct ec_slave *ec_known_slave(const struct ec_bus *bus, u64 number);
 size_t ec_known_text(const struct ec_bus *bus, u64 number, char *buf, size_t size);
 

@@ -67,7 +67,7 @@ static void set_ends(struct ec_bus *bus)
 
 static struct ec_slave *slave_of(const struct ec_bus *bus, const struct ec_ring_end *e)
 {
-	return ec_known_slave(bus, e->device);
+	return ec_known_connected(bus, e->device);
 }
 
 /* as read last */

@@ -299,7 +299,7 @@ static enum hrtimer_restart starved(struct hrtimer *t)
 	}
 	/* the timer was started on the CPU of the thread, or where it was kicked */
 	ec_log_event(b, EC_LOG_ANY, 0, KERN_WARNING,
-		     "thread EtherCAT%u-post has not run for a second: a thread of higher priority keeps its CPU, perhaps %u; lost frames are not found meanwhile\n",
+		     "thread EtherCAT%u-post has not run for a second: a thread of higher priority keeps its CPU, perhaps %u; lost frames are not found meanwhile, mailboxes wait\n",
 		     b->index, raw_smp_processor_id());
 	return HRTIMER_NORESTART;
 }

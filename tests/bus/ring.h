@@ -50,6 +50,7 @@ struct ring {
 struct ring *ring_new(struct kunit *test, struct bus *b);
 void ring_run(struct ring *r, u32 n);
 void ring_expect(struct ring *r, const char *after);
+void ring_is_whole(struct ring *r, const char *after);
 void ring_cable_of(struct bus *b, bool cut, u32 i, u32 n, u32 after_ns);
 void ring_cable(struct bus *b, bool cut, u32 i);
 u32 ring_next_cut(struct bus *b, u32 at, bool is_cut, u32 other);
