@@ -537,7 +537,8 @@ static void maybe_scan(struct watch *w)
 	/* one that is due, or asked for, has to wait */
 	if (READ_ONCE(m->bus.held))
 		return;
-	if (READ_ONCE(m->bus.rescan) || xchg(&m->bus.renew, false) || ec_doubt_is_due(&m->bus))
+	if (READ_ONCE(m->bus.rescan) || xchg(&m->bus.renew, false) ||
+	    ec_doubt_is_due(&m->bus) || (w->scanned && READ_ONCE(m->bus.due)))
 		scan_next(w);
 	if (w->scanned || (w->same < STABLE_LOOKS &&
 			   !(w->moving_ns && ktime_get_ns() - w->moving_ns >= MOVING_NS)))
@@ -567,10 +568,9 @@ static void maybe_scan(struct watch *w)
 	}
 	if (!ec_scan(&m->bus, w->count, &result)) {
 		w->scanned = !result.again;
-		if (result.again)
-			w->same = 0;
-		else
-			WRITE_ONCE(m->bus.due, false);
+		w->same = result.again ? 0 : w->same;
+		/* a reservation waits for the next one */
+		WRITE_ONCE(m->bus.due, result.again || result.unsure);
 		WRITE_ONCE(m->bus.scan_count, m->bus.scan_count + 1);
 		w->scanned_ns = ktime_get_ns();
 		/* the ports are proven to be as the scan has found them */

@@ -111,6 +111,21 @@ void ec_ring_places_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned 
 }
 
 /**
+ * ec_ring_places_are_unsure() - are positions not certain although the ring is closed?
+ * @bus: bus
+ *
+ * The bus has changed during the scan; another one makes them certain.
+ *
+ * Context: The monitor thread.
+ * Return: whether they are not.
+ */
+bool ec_ring_places_are_unsure(const struct ec_bus *bus)
+{
+	return !bus->links->only && bus->n_slaves && !bus->turned && !bus->places.sure &&
+	       bus->links->ring.state == EC_RING_CLOSED;
+}
+
+/**
  * ec_ring_places_forget() - what is absent now is absent for good
  * @bus: bus
  *

@@ -11,6 +11,7 @@ struct ec_slave;
 
 void ec_ring_places_exit(struct ec_ring_places *p);
 void ec_ring_places_note(struct ec_bus *bus, struct ec_slave **slaves, unsigned int n, bool whole);
+bool ec_ring_places_are_unsure(const struct ec_bus *bus);
 void ec_ring_places_forget(struct ec_bus *bus);
 int ec_ring_places_count(u32 place, u32 front, u32 n, u32 total);
 int ec_ring_places_find(const struct ec_bus *bus, u32 place, u32 total);

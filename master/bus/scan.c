@@ -12,6 +12,7 @@
 #include "leave_init.h"
 #include "ports_lost.h"
 #include "ring_exit.h"
+#include "ring_place.h"
 #include "scan.h"
 #include "scan_count.h"
 #include "scan_int.h"
@@ -363,6 +364,7 @@ int ec_scan(struct ec_bus *bus, unsigned int count, struct ec_scan_result *resul
 	if (!ret) {
 		result->changed = sc.changed;
 		result->again = ec_scan_is_partial(&sc);
+		result->unsure = !result->again && ec_ring_places_are_unsure(bus);
 		note_end(&sc, t0, frames);
 	}
 	scan_free(&sc);

@@ -377,14 +377,14 @@ static void held_although_scans_do_not_end(struct kunit *test)
 	u64 t0, ms;
 
 	in_op(b);
-	WRITE_ONCE(bus_table(b)->due, true);
+	WRITE_ONCE(bus_table(b)->scan_busy, true);
 	t0 = ktime_get_ns();
 	KUNIT_EXPECT_EQ(test, ec_ioc(&b->app, EC_IOC_DEACTIVATE, NULL), 0);
 	ms = div_u64(ktime_get_ns() - t0, NSEC_PER_MSEC);
 	KUNIT_EXPECT_GE(test, ms, (u64)EC_SCAN_WAIT_MS);
 	KUNIT_EXPECT_LE(test, ms, EC_SCAN_WAIT_MS + 1000ull);
+	WRITE_ONCE(bus_table(b)->scan_busy, false);
 	expect_held(b, N);
-	WRITE_ONCE(bus_table(b)->due, false);
 }
 
 /* What the scan has found when the list is held is thrown away; it is found again afterwards. */
