@@ -100,6 +100,30 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 	return to;
 }
 
+/**
+ * ec_ring_riders() - what rides in a frame of an open ring, behind the process data
+ * @c: active cycle
+ * @f: frame, for which ec_ring_join() has returned true
+ * @at: riders in the reply, up to its end
+ *
+ * Context: The cycle owner, in the RCU read section of the receive. RT-safe.
+ * Return: those of both copies in one, until the next call; NULL if what was sent is not known any
+ * more: then they have no result.
+ */
+const u8 *ec_ring_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *at)
+{
+	const struct ec_slot *slot = f->slot;
+	const u8 *sent = ec_slot_sent(slot);
+	size_t pos = at - slot->reply;
+	u8 *to = c->links->slots.merged + pos;
+
+	if (!sent)
+		return NULL;
+	ec_merge_dgrams(to, slot->got[EC_MAIN] + pos, slot->got[EC_BACKUP] + pos,
+			sent + EC_ETH_HDR + pos, slot->eth_len - EC_ETH_HDR - pos);
+	return to;
+}
+
 /* Does the backup link contribute to the domains of a frame of which it alone has a copy? */
 static void note_backup(struct ec_cycle *c, const struct ec_cyc_flight *f)
 {
@@ -126,12 +150,12 @@ static void note_backup(struct ec_cycle *c, const struct ec_cyc_flight *f)
  * ring was just breaking or healing: their values would be those of two moments.
  *
  * Context: The cycle owner. RT-safe: bounded, no sleep, no allocation.
- * Return: true: both copies have data; ec_ring_data() has those of each datagram.
+ * Return: true: both copies have data; ec_ring_data() has those of each datagram, ec_ring_riders()
+ * what rides behind them.
  */
 bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot)
 {
 	u8 processed = slot->back & ~slot->blank, crossed = processed & slot->crossed;
-	const u8 *sent;
 
 	if (!f->count)
 		return false;
@@ -152,11 +176,5 @@ bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_s
 		return false;
 	}
 	slot->reply = slot->got[EC_MAIN];
-	sent = ec_slot_sent(slot);
-	if (f->riding.mask && sent) {
-		slot->reply = c->links->slots.merged;
-		ec_merge_frame(c->links->slots.merged, slot->got[EC_MAIN], slot->got[EC_BACKUP],
-			       sent + EC_ETH_HDR, slot->eth_len - EC_ETH_HDR);
-	}
 	return true;
 }

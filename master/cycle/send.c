@@ -121,20 +121,15 @@ static void note_flight(struct ec_cycle *c, struct ec_slot *slot, unsigned int g
 	f->riding = send->riding;
 }
 
-/*
- * In a ring clock datagrams go one way, process data both ways. What rides in a frame is joined
- * with the frame that was sent, which has to be in the slot.
- */
-static noinline u8 *ring_buffer(struct ec_cycle *c, const struct send *send, bool alone,
+/* In a ring clock datagrams go one way, process data both ways. */
+static noinline u8 *ring_buffer(struct ec_links *l, const struct send *send, bool alone,
 				struct ec_tx *tx)
 {
-	struct ec_links *l = c->links;
-
 	if (alone)
 		return ec_links_tx_get(l, BIT(EC_MAIN), tx);
 	tx->sides = l->sides;
 	tx->link = NULL;
-	return send->both && !atomic_read(&c->riders->queued) ? ec_links_tx_get_both(l, tx) : NULL;
+	return send->both ? ec_links_tx_get_both(l, tx) : NULL;
 }
 
 /* One frame from datagram @g on; returns the first datagram of the next. */
@@ -162,7 +157,7 @@ static unsigned int send_frame(struct ec_cycle *c, unsigned int g, struct send *
 		tx.sides = l->sides;
 		frame = ec_link_tx_get(only, &tx.dev);
 	} else {
-		frame = ring_buffer(c, send, alone, &tx);
+		frame = ring_buffer(l, send, alone, &tx);
 	}
 	frame = frame ?: slot->frame;
 	count = fill(c, slot, frame, g, send, alone);

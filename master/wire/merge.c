@@ -147,9 +147,9 @@ static u16 merge_dgram(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t 
 }
 
 /**
- * ec_merge_frame() - merge the copies of a frame that both ends of a ring have received
+ * ec_merge_dgrams() - merge datagrams of a frame that both ends of a ring have received
  * @to: result; none of the others
- * @a: EtherCAT header and datagrams of one copy
+ * @a: last datagrams of one copy, or all
  * @b: the same of the other copy
  * @sent: the same as both were sent
  * @len: bytes of each; all have the same datagrams
@@ -161,13 +161,10 @@ static u16 merge_dgram(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t 
  *
  * Context: Any. RT-safe: bounded, no sleep, no allocation.
  */
-void ec_merge_frame(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
+void ec_merge_dgrams(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len)
 {
-	size_t at = EC_FRAME_HDR;
+	size_t at = 0;
 
-	if (len < at)
-		return;
-	memcpy(to, a, at);
 	while (at + EC_DGRAM_OVERHEAD <= len) {
 		u16 word = get_unaligned_le16(sent + at + 6), wkc;
 		size_t data = word & EC_DGRAM_LEN_MASK, size = EC_DGRAM_OVERHEAD + data;

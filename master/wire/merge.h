@@ -6,6 +6,6 @@
 #include "env.h"
 
 u8 *ec_merge_data(u8 *to, u8 *a, const u8 *b, const u8 *sent, size_t len, u16 *cut);
-void ec_merge_frame(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len);
+void ec_merge_dgrams(u8 *to, const u8 *a, const u8 *b, const u8 *sent, size_t len);
 
 #endif

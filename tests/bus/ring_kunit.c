@@ -131,6 +131,30 @@ static void ring_cut_in_op(struct kunit *test)
 	KUNIT_EXPECT_LE(test, r->flown, 2 * CUTS);
 }
 
+/* What rides in frames of an open ring has the replies of both sides: no frame of its own is sent. */
+static void ring_rider_of_both_sides(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	struct ring *r = ring_new(test, b);
+	u32 rides;
+	u64 frames;
+
+	ring_run(r, SLAVES);
+	ring_cable(b, true, 3);
+	cyc_run(r->c, 300);
+	ring_open(b, 3);
+	rides = bus_riders(b)->seq;
+	frames = bus_frames(b);
+	cyc_run(r->c, 500);
+	frames = bus_frames(b) - frames;
+	rides = bus_riders(b)->seq - rides;
+	bus_figure("open ring: %u riders in 500 cycles, %llu frames", rides, frames);
+	KUNIT_EXPECT_GE(test, rides, 500 / 25);
+	/* and the counters of line errors, perhaps */
+	KUNIT_EXPECT_LE(test, frames, 505ull);
+	ring_expect(r, "riders");
+}
+
 /* The slaves are found from both ends, in the order that the closed ring would have. */
 static void ring_starts_open(struct kunit *test)
 {
@@ -293,6 +317,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_is_found),
 	KUNIT_CASE(ring_cut_at_rest),
 	KUNIT_CASE(ring_cut_in_op),
+	KUNIT_CASE(ring_rider_of_both_sides),
 	KUNIT_CASE(ring_starts_open),
 	KUNIT_CASE(ring_random),
 	KUNIT_CASE(ring_second_cut),

@@ -29,7 +29,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t len)
 	memcpy(sent, data, each);
 	memcpy(a, data + each, each);
 	memcpy(b, data + 2 * each, each);
-	ec_merge_frame(to, a, b, sent, each);
+	if (each >= at)
+		ec_merge_dgrams(to + at, a + at, b + at, sent + at, each - at);
 	/* working counters are those of both */
 	while (at + EC_DGRAM_OVERHEAD <= each) {
 		u16 word = get_unaligned_le16(sent + at + 6);

@@ -31,8 +31,11 @@ static void vectors_merge_both_sides_of_break(struct kunit *test)
 	};
 	u8 to[sizeof(first)];
 
-	ec_merge_frame(to, first, backup, sent, sizeof(to));
-	KUNIT_EXPECT_MEMEQ(test, to, want, sizeof(want));
+	ec_merge_dgrams(to, first + 2, backup + 2, sent + 2, sizeof(to) - 2);
+	KUNIT_EXPECT_MEMEQ(test, to, want + 2, sizeof(want) - 2);
+	/* the second one alone */
+	ec_merge_dgrams(to, first + 16, backup + 16, sent + 16, sizeof(to) - 16);
+	KUNIT_EXPECT_MEMEQ(test, to, want + 16, sizeof(want) - 16);
 }
 
 /* 72 bytes of an LRW: the first one is of a slave of one side, two are of slaves of the other. */
