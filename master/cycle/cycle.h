@@ -95,6 +95,18 @@ struct ec_cycles {
 	struct ec_recorder __rcu *recorder;
 };
 
+/** struct ec_ring_look - a look of the monitor at an open ring, for ring_sides.c */
+struct ec_ring_look {
+	/** @changes: struct ec_bus.changes */
+	u32 changes;
+	/** @moves: struct ec_cycle.moves */
+	u16 moves;
+	/** @steady: the list of slaves is that of the ring as it is */
+	bool steady;
+	/** @known: struct ec_cyc_dgram.sides are up to date */
+	bool known;
+};
+
 /** struct ec_cycle_setup - what an application has set; under the lock of the configuration */
 struct ec_cycle_setup {
 	/** @kernel: how the kernel runs the cycle; period 0: the application runs it */
@@ -208,8 +220,15 @@ struct ec_cycle {
 	u64 shown_backup;
 	/** @opened: changes with each frame by which a ring has opened or closed */
 	u16 opened;
+	/**
+	 * @moves: changes with each frame of a ring that not the same slaves have processed as the
+	 * last one
+	 */
+	u16 moves;
 	/** @crossed: the last frame has crossed the ring */
 	bool crossed;
+	/** @ring_look: the last one; of the monitor, under the lock of the configuration */
+	struct ec_ring_look ring_look;
 	/** @last: frames of the last send */
 	struct ec_cyc_wire last;
 	/** @send: number of the last send */

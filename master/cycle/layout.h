@@ -51,15 +51,15 @@ struct ec_cyc_dgram {
 	u16 spare;
 	/** @full: working counter with all slaves */
 	u16 full;
+	/** @first_copy: first area that is copied into it, in struct ec_layout.areas */
+	u32 first_copy;
 	/**
 	 * @of: in a ring: working counters of the last copies, if both were processed, and struct
 	 * ec_cycle.opened then
 	 */
 	u64 of;
-	/** @cut: likewise, bytes of the main link in the last data, see ec_merge_data() */
-	u16 cut;
-	/** @first_copy: first area that is copied into it, in struct ec_layout.areas */
-	u32 first_copy;
+	/** @sides: likewise, which bytes are of which link, see ring_sides.h; 0: not known */
+	aligned_u64 sides;
 	/** @n_copies: areas that are copied into it */
 	u16 n_copies;
 	/** @n_plain: inputs that were sent with their last value */
@@ -70,6 +70,8 @@ struct ec_cyc_dgram {
 	u16 n_inputs;
 	/** @first_input: first of its inputs in struct ec_layout.areas */
 	u32 first_input;
+	/** @cut: in a ring: bytes of the main link in the last data, see ec_merge_data() */
+	u16 cut;
 };
 
 /* Did every slave process it that does so now? */

@@ -356,6 +356,13 @@ static bool is_lost(const struct ec_cycle *c, const struct ec_cyc_flight *f, u64
 	return is_overdue(c, f, now) && ec_slot_cancel(f->slot, *now);
 }
 
+static noinline void note_lost(struct ec_cycle *c, const struct ec_slot *slot)
+{
+	/* a copy may have been received just before */
+	ec_links_lost(c->links, slot, slot->sides & ~slot->back);
+	WRITE_ONCE(c->moves, c->moves + 1);
+}
+
 /* The copy of a link is missing, and may still be received: the slot goes into quarantine. */
 static noinline void put_partial(struct ec_links *l, struct ec_slot *slot)
 {
@@ -408,8 +415,7 @@ int ec_cycle_do_receive(struct ec_cycle *c)
 			else
 				put_partial(l, slot);
 		} else if (is_lost(c, f, &now)) {
-			/* a copy may have been received just before */
-			ec_links_lost(l, slot, slot->sides & ~slot->back);
+			note_lost(c, slot);
 		} else {
 			f->missed = true;
 			if (f->send == c->send)

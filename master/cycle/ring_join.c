@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: GPL-2.0-only
 /* Receive of the cycle owner in a ring: each frame has two copies. */
 #include <linux/bitops.h>
+#include "../base/once64.h"
 #include "../wire/merge.h"
 #include "ring_join.h"
+#include "ring_sides.h"
+
+static void note_move(struct ec_cycle *c)
+{
+	WRITE_ONCE(c->moves, c->moves + 1);
+}
 
 /* Links whose copy was missing, unless late ones show that these do return. */
 static void note_mute(struct ec_cycle *c, u8 missing)
@@ -42,13 +49,16 @@ static bool changes_meet(const u8 *a, const u8 *b, const u8 *sent, size_t len)
  * healed? Its inputs would be joined of two moments. If each copy has passed as many slaves as that
  * of the last frame, the same ones have processed it.
  */
-static bool is_doubtful(const struct ec_cycle *c, struct ec_cyc_dgram *d, u16 wa, u16 wb,
+static bool is_doubtful(struct ec_cycle *c, struct ec_cyc_dgram *d, u16 wa, u16 wb,
 			const u8 *a, const u8 *b, const u8 *sent)
 {
 	u64 of = (u64)c->opened << 32 | (u32)wa << 16 | wb;
 	bool same = d->of == of;
 
-	d->of = of;
+	if (unlikely(!same)) {
+		d->of = of;
+		note_move(c);
+	}
 	if (!wa || !wb)
 		return false;
 	if (likely(same))
@@ -80,6 +90,7 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 	const u8 *b = slot->got[EC_BACKUP] + pos, *sent;
 	u16 wa = get_unaligned_le16(a + d->len), wb = get_unaligned_le16(b + d->len);
 	u8 *to = c->links->slots.merged + pos;
+	u64 sides;
 
 	*irq |= get_unaligned_le16(a - 2) | get_unaligned_le16(b - 2);
 	if (wb)
@@ -95,7 +106,13 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 		return a;
 	if (!wa)
 		return b;
-	to = ec_merge_data(to, a, b, sent, d->len, &d->cut);
+	sides = ec_read64(&d->sides);
+	if (likely(sides >> 16 == ec_ring_sides_proof(c->moves, wa, wb))) {
+		memcpy(a + (u16)sides, b + (u16)sides, d->len - (u16)sides);
+		to = a;
+	} else {
+		to = ec_merge_data(to, a, b, sent, d->len, &d->cut);
+	}
 	put_unaligned_le16(wa + wb, to + d->len);
 	return to;
 }
@@ -124,17 +141,24 @@ const u8 *ec_ring_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, cons
 	return to;
 }
 
-/* Does the backup link contribute to the domains of a frame of which it alone has a copy? */
-static void note_backup(struct ec_cycle *c, const struct ec_cyc_flight *f)
+/*
+ * A frame of which one link alone has a copy: does the backup link contribute to its domains? A
+ * datagram of both sides is none any more.
+ */
+static void note_single(struct ec_cycle *c, const struct ec_cyc_flight *f, u8 side)
 {
-	const struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
-	const u8 *data = f->slot->got[EC_BACKUP] + EC_FRAME_HDR + EC_DGRAM_HDR;
+	struct ec_cyc_dgram *d = &c->layout.dgrams[f->first];
+	const u8 *data = f->slot->got[side] + EC_FRAME_HDR + EC_DGRAM_HDR;
 	unsigned int i;
 
 	for (i = 0; i < f->count; i++, d++) {
 		if (!(f->queued & BIT_ULL(d->domain)))
 			continue;
-		if (get_unaligned_le16(data + d->len))
+		if (unlikely(ec_read64(&d->sides))) {
+			ec_write64(&d->sides, 0);
+			note_move(c);
+		}
+		if (side == EC_BACKUP && get_unaligned_le16(data + d->len))
 			c->from_backup |= BIT_ULL(d->domain);
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
@@ -164,15 +188,17 @@ bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_s
 	if (unlikely(c->crossed != !!crossed)) {
 		c->crossed = crossed;
 		c->opened++;
+		note_move(c);
 	}
+	if (unlikely(slot->sides & ~slot->back))
+		note_move(c);
 	if (is_power_of_2(crossed)) {
 		slot->reply = slot->got[__ffs(crossed)];
 		return false;
 	}
-	if (!(processed & BIT(EC_BACKUP)))
-		return false;
-	if (!(processed & BIT(EC_MAIN))) {
-		note_backup(c, f);
+	if (processed != (BIT(EC_MAIN) | BIT(EC_BACKUP))) {
+		if (processed)
+			note_single(c, f, processed & BIT(EC_MAIN) ? EC_MAIN : EC_BACKUP);
 		return false;
 	}
 	slot->reply = slot->got[EC_MAIN];

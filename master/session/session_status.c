@@ -8,6 +8,7 @@
 #include "../cycle/cycle_sched.h"
 #include "../cycle/cycle_thread.h"
 #include "../cycle/receive.h"
+#include "../cycle/ring_sides.h"
 #include "../cycle/wire_time.h"
 #include "../base/once64.h"
 #include "../base/report.h"
@@ -198,6 +199,7 @@ void ec_session_status(struct ec_sessions *ss, bool scanned)
 		if (s->configs_seen != (u32)atomic_read(&ss->bus->changes) ||
 		    now - s->configs_ns >= EC_SURVEY_NS)
 			status_configs(s);
+		ec_ring_sides_look(&s->cycle, scanned);
 	}
 	mutex_unlock(&ss->lock);
 }

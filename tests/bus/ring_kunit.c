@@ -4,6 +4,7 @@
 #include "devices/sim/esc_int.h"
 #include "master/bus/graph.h"
 #include "master/bus/ring_break.h"
+#include "master/cycle/ring_sides.h"
 #include "master/mailbox/coe.h"
 
 #define EVENTS		1000		/* of the long run, half of them cuts */
@@ -106,18 +107,34 @@ static void ring_cut_at_rest(struct kunit *test)
 	}
 }
 
+/* The inputs of slaves from @front on are taken from the copy of the backup link. */
+static void ring_sides(struct ring *r, u32 front)
+{
+	const struct ec_cycle *c = bus_cycle(r->b);
+	u64 sides = c->layout.dgrams[0].sides;
+	const u8 *at = c->domains[0].image + (u16)sides;
+
+	KUNIT_EXPECT_EQ(r->b->test, sides >> 16,
+			ec_ring_sides_proof(c->moves, 3 * front, 3 * (SLAVES - front)));
+	KUNIT_EXPECT_TRUE(r->b->test, at > r->in[front - 1] && at <= r->in[front]);
+}
+
 static void ring_cut_in_op(struct kunit *test)
 {
 	struct bus *b = bus_up(test, ring_eight, SLAVES);
 	struct ring *r = ring_new(test, b);
-	u32 i;
+	u32 i, moves;
 
 	ring_run(r, SLAVES);
 	for (i = 0; i < CUTS; i++) {
+		moves = bus_cycle(b)->moves;
 		ring_cable(b, true, i);
 		cyc_run(r->c, 300);
 		ring_open(b, i);
 		ring_expect(r, "a cut");
+		KUNIT_EXPECT_NE(test, moves, bus_cycle(b)->moves);
+		if (i && i < SLAVES)
+			ring_sides(r, i);
 		/* with the last cable all slaves are before the break */
 		KUNIT_EXPECT_EQ(test, cyc_state(r->c, 0)->redundancy_active, i < SLAVES);
 		ring_cable(b, false, i);
@@ -131,7 +148,7 @@ static void ring_cut_in_op(struct kunit *test)
 	KUNIT_EXPECT_LE(test, r->flown, 2 * CUTS);
 }
 
-/* What rides in frames of an open ring has the replies of both sides: no frame of its own is sent. */
+/* What rides in frames of an open ring has the replies of both sides. */
 static void ring_rider_of_both_sides(struct kunit *test)
 {
 	struct bus *b = bus_up(test, ring_eight, SLAVES);
