@@ -101,7 +101,7 @@ struct ec_ring_look {
 	u32 changes;
 	/** @moves: struct ec_cycle.moves */
 	u16 moves;
-	/** @steady: the list of slaves is that of the ring as it is */
+	/** @steady: the list of slaves is up to date */
 	bool steady;
 	/** @known: struct ec_cyc_dgram.sides are up to date */
 	bool known;

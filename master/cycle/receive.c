@@ -127,17 +127,6 @@ static __always_inline void take_dgram(struct ec_cycle *c, struct ec_cyc_dgram *
 		take_inputs(c, d, f, data, complete);
 }
 
-static noinline void take_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *at,
-				 bool two)
-{
-	size_t len = f->slot->reply + f->slot->eth_len - EC_ETH_HDR - at;
-
-	if (two)
-		at = ec_ring_riders(c, f, at);
-	if (at)
-		ec_riders_take(c->riders, &f->riding, at, at + len);
-}
-
 /*
  * Take the data of a reply, or of the two of an open ring. Return: ECAT events of the slaves in its
  * IRQ fields.
@@ -162,8 +151,14 @@ static __always_inline u16 take_frame(struct ec_cycle *c, const struct ec_cyc_fl
 		take_dgram(c, d, f, likely(!two) ? data : ec_ring_data(c, f, d, data, &irq));
 		data += d->len + EC_DGRAM_OVERHEAD;
 	}
-	if (unlikely(f->riding.mask))
-		take_riders(c, f, data - EC_DGRAM_HDR, two);
+	if (unlikely(f->riding.mask)) {
+		const u8 *end = f->slot->reply + f->slot->eth_len - EC_ETH_HDR;
+
+		if (two)
+			ec_ring_riders(c, f, data - EC_DGRAM_HDR, end);
+		else
+			ec_riders_take(c->riders, &f->riding, data - EC_DGRAM_HDR, end);
+	}
 	return irq;
 }
 

@@ -118,27 +118,28 @@ const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct
 }
 
 /**
- * ec_ring_riders() - what rides in a frame of an open ring, behind the process data
+ * ec_ring_riders() - take the results of what rides in a frame of an open ring
  * @c: active cycle
  * @f: frame, for which ec_ring_join() has returned true
- * @at: riders in the reply, up to its end
+ * @at: riders in the reply, behind the process data
+ * @end: end of the reply
+ *
+ * Those of both copies are merged. If it is not known any more what was sent, they get no result.
  *
  * Context: The cycle owner, in the RCU read section of the receive. RT-safe.
- * Return: those of both copies in one, until the next call; NULL if what was sent is not known any
- * more: then they have no result.
  */
-const u8 *ec_ring_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *at)
+void ec_ring_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *at, const u8 *end)
 {
 	const struct ec_slot *slot = f->slot;
+	size_t pos = at - slot->reply, len = end - at;
 	const u8 *sent = ec_slot_sent(slot);
-	size_t pos = at - slot->reply;
 	u8 *to = c->links->slots.merged + pos;
 
 	if (!sent)
-		return NULL;
+		return;
 	ec_merge_dgrams(to, slot->got[EC_MAIN] + pos, slot->got[EC_BACKUP] + pos,
-			sent + EC_ETH_HDR + pos, slot->eth_len - EC_ETH_HDR - pos);
-	return to;
+			sent + EC_ETH_HDR + pos, len);
+	ec_riders_take(c->riders, &f->riding, to, to + len);
 }
 
 /*

@@ -8,7 +8,7 @@
 
 const u8 *ec_ring_data(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_cyc_dgram *d,
 		       const u8 *at, u16 *irq);
-const u8 *ec_ring_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *at);
+void ec_ring_riders(struct ec_cycle *c, const struct ec_cyc_flight *f, const u8 *at, const u8 *end);
 bool ec_ring_join(struct ec_cycle *c, const struct ec_cyc_flight *f, struct ec_slot *slot);
 
 /**
