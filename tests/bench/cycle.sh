@@ -414,7 +414,7 @@ record_cost() {
 # The same cycle with one native device, and with one at each end of a ring, closed and open.
 ring_cost() {
 	local n state limit one two mean work work1
-	local -A most=([closed]=140 [open]=160) mean_most=([closed]=145 [open]=168)
+	local -A most=([closed]=140 [open]=160) mean_most=([closed]=142 [open]=160)
 
 	echo "# a ring with two native devices, of what one device costs"
 	for n in 1 100; do
@@ -437,7 +437,8 @@ ring_cost() {
 			row "$two" $limit "instructions of the calls, median, ring $state: $n drive(s)"
 			gate "$n drive(s), ring $state: $two instructions, median, $(ratio $two $one) of one" \
 				"two > one && two <= limit"
-			# with the cycles in it that send a frame of the monitor, also twice
+			# with the cycles in it that carry a datagram of the monitor, and the frames
+			# of one or two of its rounds that read line errors
 			limit=$((mean * ${mean_most[$state]} / 100))
 			two=${v[total_mean]}
 			row "$two" $limit "the same, mean"
