@@ -95,7 +95,7 @@ static u8 forget_lost(struct ec_bus *bus)
 }
 
 /* The read has cleared the event: another port may have changed as well. */
-static void note_ports(struct ec_slave *s, const struct ec_ring_end *e, u16 dl)
+static void note_end_dl(struct ec_slave *s, const struct ec_ring_end *e, u16 dl)
 {
 	u16 own = EC_DLS_LINK(e->port) | EC_DLS_LOOP(e->port) | EC_DLS_COMM(e->port);
 
@@ -146,13 +146,13 @@ static void read_links(struct ec_bus *bus)
 			at[i]->link_ns = 0;
 			continue;
 		}
-		note_ports(slave_of(bus, at[i]), at[i], get_unaligned_le16(v[i]));
+		note_end_dl(slave_of(bus, at[i]), at[i], get_unaligned_le16(v[i]));
 		note_link(bus, at[i], v[i][2 + at[i]->port], now);
 	}
 }
 
 /* What is between two breaks may be connected to one of the ends alone. */
-static void judge(struct ec_ring_heal *h)
+static void judge_ends(struct ec_ring_heal *h)
 {
 	const struct ec_ring_end *e = h->end;
 	u64 now = ktime_get_ns(), least = e[0].link_ns && e[1].link_ns ? STABLE_NS : ALONE_NS;
@@ -217,13 +217,13 @@ bool ec_ring_heal_look(struct ec_bus *bus, bool event)
 	    ktime_get_ns() - h->read_ns >= UNASKED_NS)
 		read_links(bus);
 	forget_lost(bus);
-	judge(h);
+	judge_ends(h);
 	if (h->open == (BIT(0) | BIT(1)) && r->state == EC_RING_CLOSED)
 		ec_ring_heal_forget(bus);
 	return h->end[0].link_ns || h->end[1].link_ns;
 }
 
-static bool is_held(const struct ec_slave *s, unsigned int port)
+static bool end_is_held(const struct ec_slave *s, unsigned int port)
 {
 	return !s->ports.unsure && (s->ports.loops >> 2 * port & 3) == EC_LOOP_AUTO_CLOSE;
 }
@@ -249,7 +249,7 @@ void ec_ring_heal_open(struct ec_bus *bus)
 		const struct ec_slave *s = slave_of(bus, &h->end[i]);
 		struct ec_rider *r = &h->rider[n];
 
-		if (!(h->open & BIT(i)) || !s || !is_held(s, h->end[i].port))
+		if (!(h->open & BIT(i)) || !s || !end_is_held(s, h->end[i].port))
 			continue;
 		r->cmd = EC_CMD_FPWR;
 		r->adp = s->station;
