@@ -101,12 +101,21 @@ static void publish(struct ec_cycle *c, u16 moves)
 	up_read(&c->wanted->bus->topo);
 }
 
+/* Without frames no working counter shows that a slave has changed its side. */
+static void withdraw(struct ec_cycle *c)
+{
+	unsigned int i;
+
+	for (i = 0; i < c->layout.n_dgrams; i++)
+		ec_write64(&c->layout.dgrams[i].sides, 0);
+}
+
 /**
  * ec_ring_sides_look() - find out on which side of a break the data of each datagram are
  * @c: active cycle
  * @scanned: the slaves are those of the last scan
  *
- * That is known when two looks in a row find nothing that has changed.
+ * That is known when two looks in a row find nothing that has changed, until one finds a change.
  *
  * Context: The monitor thread, lock of the configuration held. May sleep.
  */
@@ -118,6 +127,7 @@ void ec_ring_sides_look(struct ec_cycle *c, bool scanned)
 		.moves = READ_ONCE(c->moves), .changes = atomic_read(&bus->changes),
 		.steady = !l->only && scanned && READ_ONCE(l->ring.state) == EC_RING_OPEN &&
 			  bus->front == l->ring.front && !READ_ONCE(l->ring.news) &&
+			  ec_access_is_cyclic(&l->access) &&
 			  ec_access_interval_us(&l->access) <= MOST_US,
 	};
 
@@ -129,6 +139,8 @@ void ec_ring_sides_look(struct ec_cycle *c, bool scanned)
 		if (!look->known)
 			publish(c, now.moves);
 		now.known = true;
+	} else if (look->known) {
+		withdraw(c);
 	}
 	*look = now;
 }

@@ -148,6 +148,29 @@ static void ring_cut_in_op(struct kunit *test)
 	KUNIT_EXPECT_LE(test, r->flown, 2 * CUTS);
 }
 
+/* Between two frames of an application that pauses, cables may be plugged in elsewhere. */
+static void ring_cycle_pauses(struct kunit *test)
+{
+	struct bus *b = bus_up(test, ring_eight, SLAVES);
+	struct ring *r = ring_new(test, b);
+	u32 i, old = 0;
+
+	ring_run(r, SLAVES);
+	ring_cable(b, true, 4);
+	cyc_run(r->c, 300);
+	ring_sides(r, 4);
+	r->c->period_ns = 50 * NSEC_PER_MSEC;
+	cyc_run(r->c, 10);
+	KUNIT_EXPECT_EQ(test, bus_cycle(b)->layout.dgrams[0].sides, 0ull);
+	bus_command(b, "swap d3 d6");
+	for (i = 0; i < 20; i++) {
+		cyc_run(r->c, 1);
+		old += cyc_state(r->c, 0)->wc_state == EC_STATUS_WC_COMPLETE &&
+		       *r->in[2] != r->value[2];
+	}
+	KUNIT_EXPECT_EQ(test, old, 0u);
+}
+
 /* What rides in frames of an open ring has the replies of both sides. */
 static void ring_rider_of_both_sides(struct kunit *test)
 {
@@ -334,6 +357,7 @@ static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_is_found),
 	KUNIT_CASE(ring_cut_at_rest),
 	KUNIT_CASE(ring_cut_in_op),
+	KUNIT_CASE(ring_cycle_pauses),
 	KUNIT_CASE(ring_rider_of_both_sides),
 	KUNIT_CASE(ring_starts_open),
 	KUNIT_CASE(ring_random),
