@@ -25,6 +25,20 @@ static bool may_hold(const struct ec_slave *s, unsigned int port)
 	       READ_ONCE(s->note.error) != EC_SLAVE_SCAN_FAILED;
 }
 
+/* The only port at which a slave may have been, or 0. */
+static u32 free_port(const struct ec_slave *s)
+{
+	u32 p, found = 0, n = 0;
+
+	for (p = 1; p < EC_MAX_PORT; p++) {
+		if (s->graph.at[p] || ec_slave_port_type(s, p) < 2)
+			continue;
+		found = p;
+		n++;
+	}
+	return n == 1 ? found : 0;
+}
+
 /* The ports of two slaves between which the ring is open. One towards a device is none. */
 static bool find_ends(const struct ec_bus *bus, struct ec_ring_end *end)
 {
@@ -39,9 +53,11 @@ static bool find_ends(const struct ec_bus *bus, struct ec_ring_end *end)
 		port = next->graph.parent_port;
 	} else {
 		/* the list is that of the open ring */
-		if (front != bus->front || up >= front || port >= EC_MAX_PORT)
+		if (front != bus->front || up >= front)
 			return false;
 		before = bus->slaves[up];
+		/* the ring was not closed so far */
+		port = port < EC_MAX_PORT ? port : free_port(before);
 	}
 	end[0] = (struct ec_ring_end){ .device = before->device, .port = port };
 	end[1] = (struct ec_ring_end){ .device = next->device, .port = next->graph.upstream };

@@ -173,12 +173,33 @@ static void ring_ends_of_another_master(struct kunit *test)
 	expect_loops(b, 0, false);
 }
 
+/* The ring was never closed: by which port it goes on shows as well. */
+static void ring_ends_at_start(struct kunit *test)
+{
+	struct bus *b = bus_new(test, ring_eight);
+	struct ring *r = ring_new(test, b);
+
+	ring_cable(b, true, 4);
+	bus_plug_scanned(b, SLAVES, 5000);
+	ring_run(r, SLAVES);
+	cyc_run(r->c, 300);
+	ring_open(b, 4);
+	expect_loops(b, 4, true);
+	bus_command(b, "bounce d4.1 pattern=01 step=1003us times=500");
+	cyc_run(r->c, 1500);
+	ring_closed(b, SLAVES);
+	expect_loops(b, 4, false);
+	ring_expect(r, "it has healed");
+	KUNIT_EXPECT_EQ(test, r->flown, 0u);
+}
+
 static struct kunit_case cases[] = {
 	KUNIT_CASE(ring_flap_costs_frames_in_flight),
 	KUNIT_CASE(ring_ends_wait),
 	KUNIT_CASE(ring_end_is_fixed),
 	KUNIT_CASE(ring_ends_with_bugs),
 	KUNIT_CASE(ring_ends_of_another_master),
+	KUNIT_CASE(ring_ends_at_start),
 	{ }
 };
 
