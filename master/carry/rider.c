@@ -39,12 +39,23 @@ static bool move(struct ec_rider *r, enum ec_rider_state from, enum ec_rider_sta
 	return atomic_cmpxchg(&r->state, from, to) == from;
 }
 
-static void queue(struct ec_riders *rs, struct ec_rider *r)
+/* At once: a frame carries all of them, as far as they fit. */
+static void queue_all(struct ec_riders *rs, struct ec_rider *r, unsigned int n)
 {
-	atomic_set_release(&r->state, EC_RIDER_QUEUED);
+	unsigned int i, mask = 0;
+
+	for (i = 0; i < n; i++) {
+		atomic_set_release(&r[i].state, EC_RIDER_QUEUED);
+		mask |= BIT(r[i].number);
+	}
 	/* the state before the bit: the cycle reads the bit, then the state */
 	smp_mb__before_atomic();
-	atomic_or(BIT(r->number), &rs->queued);
+	atomic_or(mask, &rs->queued);
+}
+
+static void queue(struct ec_riders *rs, struct ec_rider *r)
+{
+	queue_all(rs, r, 1);
 }
 
 /* Has the time for a cycle passed, or does none send any more? */
@@ -169,7 +180,8 @@ int ec_rider_exchange_all(struct ec_riders *rs, struct ec_rider *r, unsigned int
 	if (!ec_access_is_cyclic(&l->access))
 		return -EAGAIN;
 	for (i = 0; i < n; i++)
-		ec_rider_begin(rs, &r[i]);
+		reinit_completion(&r[i].done);
+	queue_all(rs, r, n);
 	for (i = 0; i < n; i++)
 		ret = await(rs, &r[i], sends_ns, until) ?: ret;
 	return ret;
