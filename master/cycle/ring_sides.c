@@ -102,7 +102,7 @@ static void publish(struct ec_cycle *c, u16 moves)
 }
 
 /* Without frames no working counter shows that a slave has changed its side. */
-static void withdraw(struct ec_cycle *c)
+static void forget_sides(struct ec_cycle *c)
 {
 	unsigned int i;
 
@@ -140,7 +140,7 @@ void ec_ring_sides_look(struct ec_cycle *c, bool scanned)
 			publish(c, now.moves);
 		now.known = true;
 	} else if (look->known) {
-		withdraw(c);
+		forget_sides(c);
 	}
 	*look = now;
 }
