@@ -303,7 +303,8 @@ u8 ec_ring_heal_loops(const struct ec_slave *s, u8 loops)
 	const struct ec_ring_heal *h = &s->bus->heal;
 	unsigned int i;
 
-	if (likely(!h->end[0].device))
+	/* one that does not keep the value is not written, and reported, at each look */
+	if (likely(!h->end[0].device) || s->ports.fixed)
 		return loops;
 	for (i = 0; i < 2; i++)
 		if (h->end[i].device == s->device && !(h->open & BIT(i)))

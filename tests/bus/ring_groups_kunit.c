@@ -558,7 +558,7 @@ static void hot_random(struct kunit *test)
 	for (i = 0; i < RANDOM; i++) {
 		k = prandom_u32_state(&rnd) % ARRAY_SIZE(events);
 		bus_command(b, events[k]);
-		/* the odd ones heal a cut */
+		/* each second event heals a cut */
 		k = prandom_u32_state(&rnd) % (ARRAY_SIZE(events) / 2) * 2 + 1;
 		if (prandom_u32_state(&rnd) % 4)
 			bus_command(b, events[k]);
